@@ -65,28 +65,9 @@ impl Region {
     /// How far a point is outside, by half ranges, and along what; none where it is inside.
     /// Channels that the point lacks do not count.
     pub fn beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
-        let scaled = |name: &String| Some(scale(value(name)?, self.ranges[name]));
-        let single = self
-            .ranges
-            .keys()
-            .filter_map(|name| Some((name.clone(), excess(scaled(name)?, [-1.0, 1.0]))));
-        let together = pairs(&self.ranges).filter_map(|(a, b)| {
-            let (x, y) = (scaled(a)?, scaled(b)?);
-            let along = |sign: char, at: f64| Some((format!("{a}{sign}{b}"), at));
-            let one = |(name, at): (String, f64)| {
-                let beyond = self.pairs.get(&name).map_or(0.0, |bounds| excess(at, *bounds));
-                (name, beyond)
-            };
-            let (sum, difference) = (one(along('+', x + y)?), one(along('-', x - y)?));
-            Some(if sum.1 >= difference.1 { sum } else { difference })
-        });
-        // A channel alone is named before two together where it is as far.
-        single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| {
-            match furthest {
-                Some((_, beyond)) if one.1 <= beyond => furthest,
-                _ => Some(one),
-            }
-        })
+        let resolved = ResolvedRegion::new(self);
+        let (along, beyond) = resolved.furthest(value, &mut Vec::new())?;
+        Some((resolved.name(along), beyond))
     }
 
     /// How a motion leaves it; none where it stays inside. `value(k, name)` is a channel at sample
@@ -96,22 +77,21 @@ impl Region {
         t_s: &[f64],
         value: &dyn Fn(usize, &str) -> Option<f64>,
     ) -> Option<Excursion> {
-        let mut outside: Option<Excursion> = None;
+        let (resolved, mut room) = (ResolvedRegion::new(self), Vec::new());
+        let mut furthest: Option<(f64, Along, f64)> = None;
         let mut count = 0_usize;
         for (k, t) in t_s.iter().enumerate() {
-            let Some((along, beyond)) = self.beyond(&|name| value(k, name)) else { continue };
+            let found = resolved.furthest(&|name| value(k, name), &mut room);
+            let Some((along, beyond)) = found else { continue };
             count += 1;
-            let excursion = outside.get_or_insert_with(|| Excursion {
-                first_s: *t,
-                share: 0.0,
-                along: along.clone(),
-                beyond,
-            });
-            if beyond > excursion.beyond {
-                (excursion.along, excursion.beyond) = (along, beyond);
+            let furthest = furthest.get_or_insert((*t, along, beyond));
+            if beyond > furthest.2 {
+                (furthest.1, furthest.2) = (along, beyond);
             }
         }
-        outside.map(|excursion| Excursion { share: count as f64 / t_s.len() as f64, ..excursion })
+        let (first_s, along, beyond) = furthest?;
+        let share = count as f64 / t_s.len() as f64;
+        Some(Excursion { first_s, share, along: resolved.name(along), beyond })
     }
 
     /// The directions in which it is bounded, for who asks often.
@@ -146,6 +126,77 @@ impl Region {
         match self.ranges.iter().chain(&self.pairs).find(wrong) {
             Some((name, &[low, high])) => Err(RangeError { name: name.clone(), low, high }),
             None => Ok(()),
+        }
+    }
+}
+
+/// A region whose names are looked up once: a motion has thousands of samples.
+struct ResolvedRegion<'a> {
+    /// By name: the middle of the range and half its width.
+    channels: Vec<(&'a str, f64, f64)>,
+    /// Two channels, and the bounds of their sum and of their difference.
+    pairs: Vec<([usize; 2], [Option<[f64; 2]>; 2])>,
+}
+
+/// A channel, or the sum or the difference of two, by their places.
+#[derive(Debug, Clone, Copy)]
+enum Along {
+    One(usize),
+    Two(usize, char, usize),
+}
+
+impl<'a> ResolvedRegion<'a> {
+    fn new(region: &'a Region) -> Self {
+        let channel = |(name, range): (&'a String, &[f64; 2])| {
+            let (centre, half) = centre_and_half(*range);
+            (name.as_str(), centre, half)
+        };
+        let channels: Vec<_> = region.ranges.iter().map(channel).collect();
+        let pair = |(i, j): (usize, usize)| {
+            let (a, b) = (channels[i].0, channels[j].0);
+            let of = |sign: char| region.pairs.get(&format!("{a}{sign}{b}")).copied();
+            ([i, j], [of('+'), of('-')])
+        };
+        let places = 0..channels.len();
+        let two = places.clone().flat_map(|i| places.clone().skip(i + 1).map(move |j| (i, j)));
+        let pairs = two.map(pair).collect();
+        Self { channels, pairs }
+    }
+
+    /// How far a point is outside, and along what; `scaled` is room for its channels.
+    fn furthest(
+        &self,
+        value: &dyn Fn(&str) -> Option<f64>,
+        scaled: &mut Vec<Option<f64>>,
+    ) -> Option<(Along, f64)> {
+        let scale = |&(name, centre, half): &(&str, f64, f64)| Some((value(name)? - centre) / half);
+        scaled.clear();
+        scaled.extend(self.channels.iter().map(scale));
+        let single = scaled.iter().enumerate();
+        let single = single.filter_map(|(i, x)| Some((Along::One(i), excess((*x)?, [-1.0, 1.0]))));
+        let together = self.pairs.iter().filter_map(|&([i, j], [sum, difference])| {
+            let (x, y) = (scaled[i]?, scaled[j]?);
+            let far = |at: f64, bounds: Option<[f64; 2]>| bounds.map_or(0.0, |b| excess(at, b));
+            let (sum, difference) = (far(x + y, sum), far(x - y, difference));
+            Some(if sum >= difference {
+                (Along::Two(i, '+', j), sum)
+            } else {
+                (Along::Two(i, '-', j), difference)
+            })
+        });
+        // A channel alone is named before two together where it is as far.
+        single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| {
+            match furthest {
+                Some((_, beyond)) if one.1 <= beyond => furthest,
+                _ => Some(one),
+            }
+        })
+    }
+
+    fn name(&self, along: Along) -> String {
+        match along {
+            Along::One(i) => self.channels[i].0.to_owned(),
+            Along::Two(i, sign, j) => format!("{}{sign}{}", self.channels[i].0, self.channels[j].0),
         }
     }
 }
