@@ -22,6 +22,8 @@ pub struct Arguments {
     pub sizes: Vec<f64>,
     /// Shares of their detection limits at which effects are hidden instead.
     pub limits: Vec<f64>,
+    /// Speeds of a steady wind with an anemometer, m/s, that are hidden instead.
+    pub winds: Vec<f64>,
     /// The program that is judged; this tree's where absent.
     pub program: Option<PathBuf>,
     /// Where refined models are kept.
@@ -57,6 +59,7 @@ impl Arguments {
             seeds: 1,
             sizes: vec![1.0],
             limits: Vec::new(),
+            winds: Vec::new(),
             program: None,
             models: None,
             jobs: 1,
@@ -65,7 +68,7 @@ impl Arguments {
 
     fn set(&mut self, flag: &str, value: &str) {
         let listed = || value.split(',').map(str::to_owned).collect::<Vec<_>>();
-        let share = |text: &String| text.parse::<f64>().expect("a share");
+        let share = |text: &String| text.parse::<f64>().expect("a number");
         let shares = || listed().iter().map(share).collect::<Vec<f64>>();
         match flag {
             "--only" => self.only = listed(),
@@ -73,6 +76,7 @@ impl Arguments {
             "--seeds" => self.seeds = value.parse().expect("a number of seeds"),
             "--sizes" => self.sizes = shares(),
             "--limits" => self.limits = shares(),
+            "--winds" => self.winds = shares(),
             "--program" => self.program = Some(value.into()),
             "--models" => self.models = Some(value.into()),
             "--jobs" => self.jobs = value.parse().expect("a number of jobs"),

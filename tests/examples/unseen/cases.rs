@@ -4,7 +4,7 @@ use sistership_tests::truth::causes::{Course, Hidden};
 use sistership_tests::truth::manoeuvre::Manoeuvre;
 
 use crate::arguments::Arguments;
-use crate::listed::{pairs, singles, unlisted};
+use crate::listed::{pairs, singles, steady_winds, unlisted};
 use crate::ships::TrueShip;
 
 /// What should come out.
@@ -41,6 +41,10 @@ const CLEAN: u64 = 3;
 pub fn cases(ship: &TrueShip, arguments: &Arguments) -> Vec<Case> {
     let mut all = Vec::new();
     for seed in 0..arguments.seeds {
+        if !arguments.winds.is_empty() {
+            all.extend(of_winds(ship, &arguments.winds, 50 * seed));
+            continue;
+        }
         for share in &arguments.sizes {
             all.extend(of_ship(ship, *share, 50 * seed));
         }
@@ -61,6 +65,14 @@ fn of_ship(ship: &TrueShip, share: f64, first: u64) -> Vec<Case> {
             case.label = format!("{} x{share}", case.label);
         }
     }
+    all
+}
+
+/// Steady winds that trials record.
+fn of_winds(ship: &TrueShip, speeds_m_s: &[f64], first: u64) -> Vec<Case> {
+    let mut all: Vec<Case> =
+        speeds_m_s.iter().flat_map(|speed| steady_winds(ship.truth.dimensions(), *speed)).collect();
+    all.iter_mut().enumerate().for_each(|(place, case)| case.seed = first + place as u64);
     all
 }
 

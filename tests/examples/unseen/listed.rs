@@ -37,6 +37,15 @@ fn wind(ship: &Dimensions, by_speed: f64, author: Author, is_recorded: bool) -> 
     Hidden { wind: Some(wind), ..Hidden::default() }
 }
 
+/// A wind of a speed, m/s, by each author.
+pub fn steady_winds(ship: &Dimensions, speed_m_s: f64) -> Vec<Case> {
+    let of = |author: Author| {
+        let hidden = wind(ship, speed_m_s / ship.speed_m_s, author, true);
+        case(&format!("wind of {speed_m_s} m/s, {author:?}"), &["wind"], hidden, &[])
+    };
+    vec![of(Author::Isherwood), of(Author::Blendermann)]
+}
+
 fn current(ship: &Dimensions, by_speed: f64, turns_deg: f64) -> Hidden {
     let (towards_rad, turns_rad) = (TOWARDS_DEG.to_radians(), turns_deg.to_radians());
     let current = Current { speed_m_s: by_speed * ship.speed_m_s, towards_rad, turns_rad };

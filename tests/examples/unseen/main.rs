@@ -5,8 +5,8 @@
 //! with cases that are not looked at while the diagnosis is worked on); `--only wind,clean` for the
 //! cases whose labels begin so, `--ship NAME`, `--seeds 3` for as many sets of random numbers,
 //! `--sizes 1,0.5` for other shares of the size that is hidden, `--limits 0.5,1.5` for effects at
-//! shares of the detection limits that the diagnosis of clean trials states, `--program FILE` for
-//! another program than this tree's, `--models FOLDER` to keep the refined models there and take
+//! shares of the detection limits that the diagnosis of clean trials states, `--winds 5,10,15` for
+//! steady winds of these speeds, `--program FILE` for another program than this tree's, `--models FOLDER` to keep the refined models there and take
 //! them again, `--jobs 2` for cases at once. `docs/evidence/diagnosis_unseen.md` has the results
 //! and what they mean.
 
