@@ -154,6 +154,7 @@ impl EffectChoice {
         // before what is new.
         let belief = |place: &usize| self.last_evidence(search, &found[*place]);
         accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
+        fitting_first(search, &found, &mut accepted);
         let mut better = None;
         for place in accepted {
             if !is_placebo(search, &found[place], base)? {
@@ -182,7 +183,8 @@ impl EffectChoice {
             let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY)
                 + THRESHOLDS.search.exchange;
             let is_better = |judged: &JudgedHypothesis| {
-                last_evidence(search, judged) > best && stands(search, judged, settings)
+                let evidence = last_evidence(search, judged);
+                evidence > best && self.stands(search, judged, settings, evidence)
             };
             let better = most_believed(search, &found, is_better);
             self.take(found, better);
@@ -213,7 +215,7 @@ impl EffectChoice {
             if rounds > 0 {
                 continue;
             }
-            let Some(place) = needless(&search, &best, request.settings) else {
+            let Some(place) = self.needless(&search, &best, request.settings) else {
                 return Ok(ConvergedChoice { search, base, best });
             };
             best = self.without(&search, &best, place)?;
@@ -269,39 +271,64 @@ impl EffectChoice {
         let held_out =
             |judged: &JudgedHypothesis| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
         let evidence = self.last_evidence(search, found);
-        stands_by(search, found, settings, evidence) && held_out(found) > held_out(self.best())
+        self.stands(search, found, settings, evidence) && held_out(found) > held_out(self.best())
+    }
+
+    /// Whether the evidence for the effect that came last is enough, and more than a shadow of the
+    /// others'.
+    fn stands(
+        &self,
+        search: &HypothesisSearch<'_>,
+        found: &JudgedHypothesis,
+        settings: &Settings,
+        of_last: f64,
+    ) -> bool {
+        let last = found.candidates.len() - 1;
+        of_last > settings.least_evidence.max(shadow(found, &self.evidence(search, found), last))
+    }
+
+    /// The weakest of effects that are judged together, where the evidence for it is not enough.
+    fn needless(
+        &self,
+        search: &HypothesisSearch<'_>,
+        best: &JudgedHypothesis,
+        settings: &Settings,
+    ) -> Option<usize> {
+        let evidence = all_evidence(search, best);
+        let bounded = self.evidence(search, best);
+        let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
+        weakest.filter(|&place| {
+            evidence[place] <= settings.least_evidence.max(shadow(best, &bounded, place))
+        })
+    }
+
+    /// The evidence for each effect of a set, none more than what the set has over the model alone:
+    /// seen from where all stand, the level of the random accelerations is that of the whole set,
+    /// at which a strong effect is worth a hundred times what it explains of the trials.
+    fn evidence(&self, search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec<f64> {
+        let most = judged.log_evidence - self.alone.log_evidence;
+        all_evidence(search, judged).into_iter().map(|evidence| evidence.min(most)).collect()
     }
 }
 
-/// Whether the evidence for the effect that came last is enough, and more than a shadow of the
-/// others'.
-fn stands(search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Settings) -> bool {
-    stands_by(search, found, settings, last_evidence(search, found))
-}
-
-/// The same by evidence that is known.
-fn stands_by(
+/// Puts in front whatever fits better than what is believed most by so much that what it explained
+/// of clean trials cannot be the reason: where the information on an effect is divided by its
+/// false-alarm level, so is the lead that it has.
+fn fitting_first(
     search: &HypothesisSearch<'_>,
-    found: &JudgedHypothesis,
-    settings: &Settings,
-    of_last: f64,
-) -> bool {
-    let last = found.candidates.len() - 1;
-    let evidence = all_evidence(search, found);
-    of_last > settings.least_evidence.max(shadow(found, &evidence, last))
-}
-
-/// The weakest of effects that are judged together, where the evidence for it is not enough.
-fn needless(
-    search: &HypothesisSearch<'_>,
-    best: &JudgedHypothesis,
-    settings: &Settings,
-) -> Option<usize> {
-    let evidence = all_evidence(search, best);
-    let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
-    weakest.filter(|&place| {
-        evidence[place] <= settings.least_evidence.max(shadow(best, &evidence, place))
-    })
+    found: &[JudgedHypothesis],
+    accepted: &mut [usize],
+) {
+    let lead = |before: usize, than: usize| {
+        let lead = found[before].log_evidence - found[than].log_evidence;
+        let discount = |last: &EffectCandidate| search.discount(last);
+        lead / found[before].candidates.last().map_or(1.0, discount)
+    };
+    for place in 1..accepted.len() {
+        if lead(accepted[place], accepted[0]) > THRESHOLDS.search.exchange {
+            accepted[..=place].rotate_right(1);
+        }
+    }
 }
 
 fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec<f64> {
@@ -309,9 +336,11 @@ fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec
     (0..judged.candidates.len()).map(evidence).collect()
 }
 
-/// What the others leave unexplained where their forms are another author's than nature's: of the
-/// evidence for each, its misfit squared; an effect beside them that explains no more may be that.
+/// What the others leave unexplained where their forms are another author's than nature's. Half the
+/// square of a response is the evidence for it, so that of the misfit the evidence is the misfit
+/// squared of that; an effect beside them that explains no more may be that.
 fn shadow(judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
-    let of = |other: usize| misfit(&judged.candidates[other]).powi(2) * evidence[other].max(0.0);
+    let share = |other: usize| THRESHOLDS.effect.misfits * misfit(&judged.candidates[other]);
+    let of = |other: usize| share(other).powi(2) * evidence[other].max(0.0);
     (0..evidence.len()).filter(|other| *other != place).map(of).sum()
 }

@@ -24,6 +24,8 @@ pub struct Arguments {
     pub limits: Vec<f64>,
     /// Speeds of a steady wind with an anemometer, m/s, that are hidden instead.
     pub winds: Vec<f64>,
+    /// Numbers that draw ships, which take the place of those of the half.
+    pub drawn: Vec<u64>,
     /// The program that is judged; this tree's where absent.
     pub program: Option<PathBuf>,
     /// Where refined models are kept.
@@ -60,6 +62,7 @@ impl Arguments {
             sizes: vec![1.0],
             limits: Vec::new(),
             winds: Vec::new(),
+            drawn: Vec::new(),
             program: None,
             models: None,
             jobs: 1,
@@ -77,6 +80,10 @@ impl Arguments {
             "--sizes" => self.sizes = shares(),
             "--limits" => self.limits = shares(),
             "--winds" => self.winds = shares(),
+            "--drawn" => {
+                let number = |text: &String| text.parse().expect("a number that draws a ship");
+                self.drawn = listed().iter().map(number).collect();
+            }
             "--program" => self.program = Some(value.into()),
             "--models" => self.models = Some(value.into()),
             "--jobs" => self.jobs = value.parse().expect("a number of jobs"),

@@ -10,6 +10,10 @@ pub(crate) struct EffectThresholds {
     /// `s_f`: how far its shape is, dimensionless. Source: as [`Self::size`], "0.3 % in shape"
     /// (`docs/evidence/diagnosis.md`).
     pub shape: f64,
+    /// `k_m`: how many times its misfit a form may be from nature's before what it leaves is taken
+    /// for an effect beside it, dimensionless. Source: derived: a misfit is a root mean square over
+    /// authors, of which 95 % are within twice as much.
+    pub misfits: f64,
     /// `D_0`: what the information on an effect is divided by where a model brings no uncertainty,
     /// dimensionless. Source: chosen; published coefficients have no clean trials on which a
     /// false-alarm level could be measured.
@@ -36,6 +40,7 @@ pub(crate) struct EffectThresholds {
 pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     size: 0.03,
     shape: 0.003,
+    misfits: 2.0,
     unknown_discount: 10.0,
     mass_deviation: 0.08,
     placebo_shifts: [0.25, 0.5, 0.75],
