@@ -134,8 +134,13 @@ impl Region {
 struct ResolvedRegion<'a> {
     /// By name: the middle of the range and half its width.
     channels: Vec<(&'a str, f64, f64)>,
-    /// Two channels, and the bounds of their sum and of their difference.
-    pairs: Vec<([usize; 2], [Option<[f64; 2]>; 2])>,
+    pairs: Vec<ResolvedPair>,
+}
+
+/// Two channels by their places, and the bounds of their sum and of their difference.
+struct ResolvedPair {
+    places: [usize; 2],
+    bounds: [Option<[f64; 2]>; 2],
 }
 
 /// A channel, or the sum or the difference of two, by their places.
@@ -155,7 +160,7 @@ impl<'a> ResolvedRegion<'a> {
         let pair = |(i, j): (usize, usize)| {
             let (a, b) = (channels[i].0, channels[j].0);
             let of = |sign: char| region.pairs.get(&format!("{a}{sign}{b}")).copied();
-            ([i, j], [of('+'), of('-')])
+            ResolvedPair { places: [i, j], bounds: [of('+'), of('-')] }
         };
         let places = 0..channels.len();
         let two = places.clone().flat_map(|i| places.clone().skip(i + 1).map(move |j| (i, j)));
@@ -174,7 +179,8 @@ impl<'a> ResolvedRegion<'a> {
         scaled.extend(self.channels.iter().map(scale));
         let single = scaled.iter().enumerate();
         let single = single.filter_map(|(i, x)| Some((Along::One(i), excess((*x)?, [-1.0, 1.0]))));
-        let together = self.pairs.iter().filter_map(|&([i, j], [sum, difference])| {
+        let together = self.pairs.iter().filter_map(|pair| {
+            let ([i, j], [sum, difference]) = (pair.places, pair.bounds);
             let (x, y) = (scaled[i]?, scaled[j]?);
             let far = |at: f64, bounds: Option<[f64; 2]>| bounds.map_or(0.0, |b| excess(at, b));
             let (sum, difference) = (far(x + y, sum), far(x - y, difference));

@@ -5,6 +5,7 @@
 //! chooses the thread.
 
 pub mod audit;
+mod beginning;
 pub mod compare;
 mod cursor;
 mod date;
@@ -29,6 +30,7 @@ pub mod upload;
 pub mod version;
 pub mod zoo;
 
+pub use beginning::{beginning, from_content};
 pub use error::{PageError, Result};
 pub use form::Fields;
 pub use problem::problem;

@@ -83,6 +83,11 @@ impl Catalogue {
         Ok(remember(&self.ships, fresh).zoo)
     }
 
+    /// The vectors of ships that have been read.
+    pub fn vectors(&self) -> &KnownVectors {
+        &self.vectors
+    }
+
     /// The ships that a ship is compared with, without their documents.
     async fn compared(
         &self,

@@ -108,6 +108,11 @@ impl App {
         Self(Arc::clone(&self.0), Arc::new(archive))
     }
 
+    /// The zoo as it was last seen.
+    pub(crate) fn catalogue(&self) -> &Catalogue {
+        &self.0.catalogue
+    }
+
     pub(crate) fn archive(&self) -> &Archive {
         &self.1
     }

@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::{Value, json};
 use sistership_pipeline::Archive;
 use sistership_pipeline::search::{
-    self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch,
+    self, FactRange, FoundShip, KnownVectors, MAX_RANGES, Page, Search, ShipSearch,
 };
 use sistership_sources::similarity::Definition;
 
@@ -70,7 +70,8 @@ pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
         Search { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
     let found = with_archive(&ships.store, async |archive: &Archive| {
         search::catch_up(archive).await?;
-        search::ships(archive, &search, &Page::first(i64::from(ships.limit))).await
+        let page = Page::first(i64::from(ships.limit));
+        search::ships(archive, &KnownVectors::default(), &search, &page).await
     })?;
     let more = found.next.is_some();
     output::print(ships.json, &document(&found.items, more), || text(&found.items, more))

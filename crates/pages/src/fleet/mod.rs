@@ -6,7 +6,7 @@ use askama::Template;
 use sistership_pipeline::Archive;
 use sistership_pipeline::condition::Condition;
 use sistership_pipeline::search::standing::{Class, ERROR, LEFT};
-use sistership_pipeline::search::{self, Search};
+use sistership_pipeline::search::{self, KnownVectors, Search};
 use sistership_report::numbers::{significant, stated};
 use sistership_store::{FoundShip, List, Page, ShipKey, ShipStanding};
 
@@ -54,9 +54,14 @@ struct ShipRow {
 ///
 /// # Errors
 /// A field of the query is wrong, or the store does not answer.
-pub async fn page(archive: &Archive, shell: Shell, fields: &Fields) -> Result<String> {
+pub async fn page(
+    archive: &Archive,
+    known: &KnownVectors,
+    shell: Shell,
+    fields: &Fields,
+) -> Result<String> {
     let query = FleetQuery::read(fields)?;
-    let found = found(archive, &query, query.search()?).await?;
+    let found = found(archive, known, &query, query.search()?).await?;
     let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
     let names: Vec<String> = found.items.iter().map(|ship| ship.name.clone()).collect();
     let mut standings = archive.store.standings(&names, ERROR, LEFT).await?;
@@ -80,11 +85,12 @@ pub async fn page(archive: &Archive, shell: Shell, fields: &Fields) -> Result<St
 
 async fn found(
     archive: &Archive,
+    known: &KnownVectors,
     query: &FleetQuery,
     search: Search,
 ) -> Result<List<FoundShip, ShipKey>> {
     let page = Page { after: query.after()?, limit: SHIPS };
-    Ok(search::ships(archive, &search, &page).await?)
+    Ok(search::ships(archive, known, &search, &page).await?)
 }
 
 fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> Result<ShipRow> {

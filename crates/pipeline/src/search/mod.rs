@@ -26,11 +26,12 @@ use crate::error::DeriveError;
 /// There is no such ship to be similar to, or the store does not answer.
 pub async fn ships(
     archive: &Archive,
+    known: &KnownVectors,
     search: &Search,
     page: &Page<ShipKey>,
 ) -> Result<List<FoundShip, ShipKey>, DeriveError> {
     match &search.similar_to {
         None => Ok(archive.store.ships().search(&search.ships, page).await?),
-        Some(ship) => similar::ships(archive, search, ship, page).await,
+        Some(ship) => similar::ships(archive, known, search, ship, page).await,
     }
 }

@@ -2,6 +2,7 @@
 //! category.
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 use sistership_model::Vessel;
 use sistership_sources::similarity::{CharacteristicVector, Definition, NormalisedComponents};
@@ -17,6 +18,7 @@ use crate::error::DeriveError;
 /// Ships that a search finds, the most similar first, without the ship itself.
 pub(super) async fn ships(
     archive: &Archive,
+    known: &KnownVectors,
     search: &Search,
     ship: &str,
     page: &Page<ShipKey>,
@@ -25,12 +27,58 @@ pub(super) async fn ships(
     let ship = archive.store.ships().get(ship).await?;
     let target = vessel(&ship.name, &ship.document)?;
     let definition = search.vector.unwrap_or_else(|| definition_for(&target));
+    if search.ships.tag.is_none() && search.ships.ranges.is_empty() {
+        let category = search.ships.category.as_ref().unwrap_or(&target.file.category);
+        let vectors = known.of(&archive.store, category, definition).await?;
+        return Ok(of_category(archive, &vectors, &target, definition, page).await?);
+    }
     let mut found = ranked(archive, &search.ships, &target, definition).await?;
     if let Some(after) = &page.after {
         let after = (after.0, after.1.as_str());
         found.retain(|ship| order(place(ship), after) == Ordering::Greater);
     }
     Ok(page.of(found, key))
+}
+
+/// A page of all ships of a category, the most similar first.
+async fn of_category(
+    archive: &Archive,
+    vectors: &[(String, NormalisedComponents)],
+    target: &Vessel,
+    definition: Definition,
+    page: &Page<ShipKey>,
+) -> Result<List<FoundShip, ShipKey>, StoreError> {
+    let components = CharacteristicVector::of(target, definition).components();
+    let mut keys = keys(vectors, target.name(), &components);
+    if let Some(after) = &page.after {
+        let after = (after.0, after.1.as_str());
+        keys.retain(|key| order(*key, after) == Ordering::Greater);
+    }
+    let wanted = usize::try_from(page.limit).unwrap_or(0);
+    let List { items, next } = page.of(keys, |key| (key.0, key.1.to_owned()));
+    let names: Vec<String> = items.iter().take(wanted).map(|key| key.1.to_owned()).collect();
+    let mut heads: BTreeMap<String, FoundShip> = BTreeMap::new();
+    for head in archive.store.ships().named(&names).await? {
+        heads.insert(head.name.clone(), head);
+    }
+    let found = |(value, name): (Option<f64>, &str)| {
+        heads.remove(name).map(|head| FoundShip { value, ..head })
+    };
+    Ok(List { items: items.into_iter().filter_map(found).collect(), next })
+}
+
+/// Correlation and name of each, the most similar first, without the ship itself.
+fn keys<'a>(
+    all: &'a [(String, NormalisedComponents)],
+    name: &str,
+    target: &NormalisedComponents,
+) -> Vec<(Option<f64>, &'a str)> {
+    let others = all.iter().filter(|(other, _)| other != name);
+    let mut found: Vec<_> = others
+        .filter_map(|(other, of)| Some((Some(target.correlation(of)?), other.as_str())))
+        .collect();
+    found.sort_unstable_by(|a, b| order(*a, *b));
+    found
 }
 
 /// The ships of a ship's category that are most similar to it, at most `count`, in no order.
@@ -53,12 +101,8 @@ fn first(
     target: &NormalisedComponents,
     count: usize,
 ) -> Vec<String> {
-    let others = all.iter().filter(|(other, _)| other != name);
-    let mut found: Vec<_> = others
-        .filter_map(|(other, of)| Some((Some(target.correlation(of)?), other.as_str())))
-        .collect();
-    found.sort_unstable_by(|a, b| order(*a, *b));
-    found.into_iter().take(count).map(|(_, other)| other.to_owned()).collect()
+    let found = keys(all, name, target).into_iter().take(count);
+    found.map(|(_, other)| other.to_owned()).collect()
 }
 
 async fn ranked(

@@ -99,7 +99,8 @@ async fn list(
     Params(query): Params<Vec<(String, String)>>,
 ) -> Result<Json<Listing<ShipHead>>> {
     let (asked, page) = ship_search::read(query)?;
-    let ships = search::ships(app.archive(), &asked, &page).await.map_err(|error| match error {
+    let found = search::ships(app.archive(), app.catalogue().vectors(), &asked, &page).await;
+    let ships = found.map_err(|error| match error {
         DeriveError::Store(StoreError::NotFound { kind: "ship", .. }) => {
             Problem::invalid("similar_to", error.to_string())
         }

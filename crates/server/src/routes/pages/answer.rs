@@ -1,19 +1,41 @@
 //! A page as an answer.
 
+use std::convert::Infallible;
+
+use axum::body::Body;
 use axum::http::{HeaderName, HeaderValue, header};
 use axum::response::{IntoResponse, Redirect, Response};
+use futures::{FutureExt as _, StreamExt as _, stream};
+use sistership_pages::from_content;
+use sistership_pipeline::budget::{Held, carried_on};
+
+use crate::problem::{Problem, Result};
 
 const REFERRER_POLICY: HeaderName = header::REFERRER_POLICY;
 
+/// A page whose content takes time: what stands before it is sent at once.
+pub(super) fn begun(
+    beginning: String,
+    page: impl Future<Output = Result<String>> + Send + 'static,
+) -> Response {
+    let content = tokio::spawn(carried_on(Held::current(), page)).map(|done| {
+        let page: Result<String> = done.map_err(Problem::internal).flatten();
+        let page = page.unwrap_or_else(|problem| problem.page().unwrap_or_default());
+        from_content(&page).to_owned()
+    });
+    let parts = stream::once(std::future::ready(beginning)).chain(stream::once(content));
+    answer(Body::from_stream(parts.map(Ok::<_, Infallible>)))
+}
+
 /// With the headers of a page.
-pub(super) fn answer(html: String) -> Response {
+pub(super) fn answer(html: impl Into<Body>) -> Response {
     let head = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
         (header::CONTENT_SECURITY_POLICY, sistership_pages::policy()),
         (header::CACHE_CONTROL, "no-cache"),
         (REFERRER_POLICY, "same-origin"),
     ];
-    (head, html).into_response()
+    (head, html.into()).into_response()
 }
 
 /// Where to go once something is done (RFC 9110, 15.4.4).

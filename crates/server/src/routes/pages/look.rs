@@ -7,7 +7,7 @@ use sistership_pages::Fields;
 use sistership_pipeline::budget;
 use sistership_pipeline::memory::trial_bytes;
 
-use super::answer::answer;
+use super::answer::{answer, begun};
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::form::shell;
@@ -16,13 +16,18 @@ use crate::web::{Id, Name, Number, Params, Place, Word};
 type Asked = Params<Vec<(String, String)>>;
 
 pub(super) async fn fleet(State(app): State<App>, Params(query): Asked) -> Result<Response> {
-    Ok(answer(pages::fleet::page(app.archive(), shell(&app), &Fields::from(query)).await?))
+    let (known, query) = (app.catalogue().vectors(), Fields::from(query));
+    Ok(answer(pages::fleet::page(app.archive(), known, shell(&app), &query).await?))
 }
 
 pub(super) async fn ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Response> {
     let gathered = pages::ship::gather(app.archive(), shell(&app), &ship).await?;
-    let zoo = app.zoo_shown(gathered.vessel()).await?;
-    Ok(answer(app.compute(move || gathered.html(&zoo)).await??))
+    let beginning = pages::beginning(shell(&app), &ship, "/")?;
+    let page = async move {
+        let zoo = app.zoo_shown(gathered.vessel()).await?;
+        Ok(app.compute(move || gathered.html(&zoo)).await??)
+    };
+    Ok(begun(beginning, page))
 }
 
 pub(super) async fn version(
@@ -30,8 +35,10 @@ pub(super) async fn version(
     Place((ship, number)): Place<(Name, Number)>,
 ) -> Result<Response> {
     let gathered = pages::version::gather(app.archive(), shell(&app), &ship, number.get()).await?;
-    let known = app.manoeuvres();
-    Ok(answer(app.compute(move || gathered.html(&known)).await??))
+    let (known, title) = (app.manoeuvres(), format!("{}/{}", &*ship, number.get()));
+    let beginning = pages::beginning(shell(&app), &title, "/")?;
+    let page = async move { Ok(app.compute(move || gathered.html(&known)).await??) };
+    Ok(begun(beginning, page))
 }
 
 pub(super) async fn trial(State(app): State<App>, Place(id): Place<Id>) -> Result<Response> {
@@ -43,14 +50,16 @@ pub(super) async fn trial(State(app): State<App>, Place(id): Place<Id>) -> Resul
 pub(super) async fn compare(State(app): State<App>, Params(query): Asked) -> Result<Response> {
     let query = Fields::from(query);
     let gathered = pages::compare::gather(app.archive(), shell(&app), &query).await?;
-    Ok(answer(app.compute(move || gathered.html()).await??))
+    let beginning = pages::beginning(shell(&app), "Compare", "/compare")?;
+    Ok(begun(beginning, async move { Ok(app.compute(move || gathered.html()).await??) }))
 }
 
 pub(super) async fn playground(State(app): State<App>, Params(query): Asked) -> Result<Response> {
     let query = Fields::from(query);
     let gathered = pages::playground::gather(app.archive(), shell(&app), query).await?;
     let most = app.limits().prediction_samples;
-    Ok(answer(app.compute(move || gathered.html(most)).await??))
+    let beginning = pages::beginning(shell(&app), "Playground", "/playground")?;
+    Ok(begun(beginning, async move { Ok(app.compute(move || gathered.html(most)).await??) }))
 }
 
 pub(super) async fn families(State(app): State<App>, Params(query): Asked) -> Result<Response> {
