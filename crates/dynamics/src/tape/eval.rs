@@ -58,8 +58,8 @@ struct Evaluation<'a, const N: usize> {
 impl<const N: usize> Wide for Evaluation<'_, N> {
     #[inline(always)]
     fn go(self) {
-        for index in 0..self.tape.instructions.len() {
-            self.work[index] = self.tape.result(index, self.inputs, self.work);
+        for (index, instruction) in self.tape.instructions.iter().enumerate() {
+            self.work[index] = self.tape.result(instruction, self.inputs, self.work);
         }
     }
 }
@@ -76,7 +76,8 @@ impl<const N: usize> Wide for PartialEvaluation<'_, N> {
     #[inline(always)]
     fn go(self) {
         for &slot in self.among {
-            self.work[slot as usize] = self.tape.result(slot as usize, self.inputs, self.work);
+            let instruction = &self.tape.instructions[slot as usize];
+            self.work[slot as usize] = self.tape.result(instruction, self.inputs, self.work);
         }
     }
 }
@@ -85,11 +86,11 @@ impl Tape {
     #[inline(always)]
     fn result<const N: usize>(
         &self,
-        index: usize,
+        instruction: &Instruction,
         inputs: &[Lanes<N>],
         work: &[Lanes<N>],
     ) -> Lanes<N> {
-        match &self.instructions[index] {
+        match instruction {
             Instruction::Op(op) => step(op, inputs, work),
             &Instruction::Products { first, from, to } => {
                 products(first, &self.terms[from as usize..to as usize], work)
