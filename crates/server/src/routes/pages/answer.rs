@@ -9,17 +9,17 @@ use futures::{FutureExt as _, StreamExt as _, stream};
 use sistership_pages::from_content;
 use sistership_pipeline::budget::{Held, carried_on};
 
-use crate::problem::{Problem, Result};
+use crate::problem::Result;
 
 const REFERRER_POLICY: HeaderName = header::REFERRER_POLICY;
 
-/// A page whose content takes time: what stands before it is sent at once.
+/// A page whose content takes time: what stands before it is sent at once. Whoever hangs up before
+/// a seat is free for the work takes none.
 pub(super) fn begun(
     beginning: String,
     page: impl Future<Output = Result<String>> + Send + 'static,
 ) -> Response {
-    let content = tokio::spawn(carried_on(Held::current(), page)).map(|done| {
-        let page: Result<String> = done.map_err(Problem::internal).flatten();
+    let content = carried_on(Held::current(), page).map(|page| {
         let page = page.unwrap_or_else(|problem| problem.page().unwrap_or_default());
         from_content(&page).to_owned()
     });
