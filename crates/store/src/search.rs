@@ -84,6 +84,7 @@ statements! {
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
     STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS \
         BIGINT) AS stamps FROM ship_vectors WHERE category = $1");
+    CATEGORIES = same("SELECT DISTINCT category FROM ship_vectors");
     // A limit keeps PostgreSQL from joining all ships.
     NAMED = pair(
         "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, \
@@ -132,6 +133,13 @@ record! {
         pub ships: i64,
         /// The sum of what tells their vectors apart.
         pub stamps: i64,
+    }
+}
+
+record! {
+    /// A category that has ships with vectors.
+    struct Category {
+        category: String,
     }
 }
 
@@ -302,6 +310,12 @@ impl Ships<'_> {
     pub async fn vectors_state(&self, category: &str) -> Result<VectorsState> {
         let state = self.0.database().optional(STATE, args![category: category]).await?;
         Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
+    }
+
+    /// The categories that have ships with vectors, in no order.
+    pub async fn vector_categories(&self) -> Result<Vec<String>> {
+        let found: Vec<Category> = self.0.database().all(CATEGORIES, &[]).await?;
+        Ok(found.into_iter().map(|found| found.category).collect())
     }
 
     /// The vectors of every ship of a category that a search finds, in no order.

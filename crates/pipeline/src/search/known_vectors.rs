@@ -41,6 +41,19 @@ impl KnownVectors {
         Ok(vectors)
     }
 
+    /// Reads those of every category that have changed, so that nobody who searches waits for it.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn catch_up(&self, store: &Store) -> Result<(), StoreError> {
+        for category in store.ships().vector_categories().await? {
+            for definition in Definition::ALL {
+                self.of(store, &category, definition).await?;
+            }
+        }
+        Ok(())
+    }
+
     fn known(&self, key: &Key, state: &VectorsState) -> Option<Vectors> {
         let all = self.0.read().unwrap_or_else(PoisonError::into_inner);
         let (then, vectors) = all.get(key)?;
@@ -61,7 +74,7 @@ fn read(rows: &[ShipVectors], definition: Definition) -> Vec<(String, Normalised
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use sistership_store::{ShipFacts, SystemClock};
+    use sistership_store::{NewShip, ShipFacts, SystemClock};
 
     /// What the search index knows of a ship.
     async fn put(store: &Store, vectors: &str) {
@@ -73,12 +86,34 @@ mod tests {
         }
     }
 
+    async fn store_of(ship: &NewShip) -> Store {
+        let store = Store::connect("sqlite::memory:", Arc::new(SystemClock)).await.unwrap();
+        store.ships().create(ship).await.unwrap();
+        store
+    }
+
+    fn kvlcc2() -> NewShip {
+        let zoo = sistership_model::Zoo::embedded().unwrap();
+        crate::seed::new_ship(zoo.vessel("kvlcc2").unwrap()).unwrap()
+    }
+
+    #[tokio::test]
+    async fn vectors_of_every_category_are_read_before_anybody_asks() {
+        let store = store_of(&kvlcc2()).await;
+        put(&store, r#"{"mei-2019":{"C_b":0.8}}"#).await;
+        let known = KnownVectors::default();
+        known.catch_up(&store).await.unwrap();
+        let state = store.ships().vectors_state("tanker").await.unwrap();
+        let read = known.known(&("tanker".to_owned(), Definition::Mei2019.name()), &state).unwrap();
+        assert_eq!(read.len(), 1);
+        let asked = known.of(&store, "tanker", Definition::Mei2019).await.unwrap();
+        assert!(Arc::ptr_eq(&read, &asked));
+    }
+
     #[tokio::test]
     async fn vectors_are_read_again_where_one_has_changed() {
-        let store = Store::connect("sqlite::memory:", Arc::new(SystemClock)).await.unwrap();
-        let zoo = sistership_model::Zoo::embedded().unwrap();
-        let kvlcc2 = crate::seed::new_ship(zoo.vessel("kvlcc2").unwrap()).unwrap();
-        store.ships().create(&kvlcc2).await.unwrap();
+        let kvlcc2 = kvlcc2();
+        let store = store_of(&kvlcc2).await;
         let known = KnownVectors::default();
         let of = async || known.of(&store, "tanker", Definition::Mei2019).await.unwrap();
         assert!(of().await.is_empty());
