@@ -138,8 +138,9 @@ record! {
 
 record! {
     /// A category that has ships with vectors.
-    struct Category {
-        category: String,
+    pub struct Category {
+        /// Its name.
+        pub category: String,
     }
 }
 
