@@ -4,13 +4,14 @@ use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
-/// The path of the `sistership` program, built in the profile of the tests.
+/// The path of the `sistership` program: the one that `SISTERSHIP_PROGRAM` names, such as a release,
+/// else that of this tree, built in the profile of the tests.
 ///
 /// # Panics
 /// Where it does not build.
 pub fn path() -> &'static PathBuf {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(build)
+    PATH.get_or_init(|| std::env::var_os("SISTERSHIP_PROGRAM").map_or_else(build, PathBuf::from))
 }
 
 /// Cargo does not build another package's program for a test, so it is asked to build a test of

@@ -1,6 +1,7 @@
 //! Pages of a large fleet: bytes, and the time until their first byte.
 //!
 //! `cargo run --release -p sistership-tests --example pages -- --ships 10000 --requests 15`
+//! (`SISTERSHIP_PROGRAM` names another program than the one of this tree and profile).
 //!
 //! Ships are made by REST in a store of their own, the server is started anew, and every page is
 //! asked for once and then so many times, each by a connection of its own. The exit status is 1
