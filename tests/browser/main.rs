@@ -17,12 +17,16 @@ use sistership_tests::server::TestServer;
 
 const SHIP: &str = "browsed";
 
-/// A user of the server with a role, and the password drawn for it.
-fn user(server: &TestServer, name: &str, role: &str) -> String {
+/// What a command says that is run on the server's store.
+fn told(server: &TestServer, words: &[&str]) -> Value {
     let store = server.store_arguments();
     let store: Vec<&str> = store.iter().map(String::as_str).collect();
-    let words = ["users", "add", name, "--role", role];
-    let added: Value = binary::json(&[&words[..], &store, &["--json"]].concat(), 0);
+    binary::json(&[words, &store, &["--json"]].concat(), 0)
+}
+
+/// A user of the server with a role, and the password drawn for it.
+fn user(server: &TestServer, name: &str, role: &str) -> String {
+    let added = told(server, &["users", "add", name, "--role", role]);
     added["password"].as_str().unwrap().to_owned()
 }
 
@@ -104,6 +108,9 @@ async fn compared(browser: &Browser, server: &TestServer) {
     browser.until("Lineage").await;
     shown(browser, "version").await;
     browser.leave_by("main a[href*='/validation']").await;
+    browser.until("There is nothing to validate this model by").await;
+    browser.go(&format!("{}/ships/kvlcc2/versions/1", server.url())).await;
+    browser.leave_by("main a[href*='/validation']").await;
     browser.until("ITTC 7.5-02-06-03").await;
     shown(browser, "validation").await;
 }
@@ -125,6 +132,9 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     sign_in(&browser, &server, "root", &root).await;
     browser.go(&format!("{}/users", server.url())).await;
     shown(&browser, "users").await;
+    browser.go(&format!("{}/audit", server.url())).await;
+    shown(&browser, "audit").await;
+    browser.go(&format!("{}/users", server.url())).await;
     browser.leave_by("form[action='/settings'] button").await;
 
     sign_in(&browser, &server, "ann", &ann).await;
@@ -165,7 +175,16 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     browser.until("Roll back to version 1").await;
     browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button.quiet")).await;
     browser.until("does not hold").await;
-    for (path, name) in [("/jobs", "jobs"), ("/zoo", "zoo"), ("/families", "families")] {
+    told(&server, &["family", "create", "sisters", "--foundation", "mariner/1", "--ship", SHIP]);
+    let pages = [
+        ("/jobs", "jobs"),
+        ("/zoo", "zoo"),
+        ("/zoo/laws/mmg", "law"),
+        ("/zoo/effects/wind", "effect"),
+        ("/families", "families"),
+        ("/families/sisters", "family"),
+    ];
+    for (path, name) in pages {
         browser.go(&format!("{}{path}", server.url())).await;
         shown(&browser, name).await;
     }
