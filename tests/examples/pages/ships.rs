@@ -67,7 +67,7 @@ fn ship(number: usize) -> Value {
             "displacement_m3": block * length * beam * draught,
             "service_speed_m_s": within(6.0..=11.0),
             "rudder_area_m2": length * draught / 55.0,
-            "propeller_diameter_m": 0.65 * draught,
+            "propeller_diameter_m": 0.5 * draught,
         } },
     })
 }
