@@ -109,7 +109,7 @@ async fn compared(browser: &Browser, server: &TestServer) {
     shown(browser, "version").await;
     browser.leave_by("main a[href*='/validation']").await;
     browser.until("There is nothing to validate this model by").await;
-    browser.go(&format!("{}/ships/kvlcc2/versions/1", server.url())).await;
+    browser.go(&format!("{}/ships/kcs/versions/1", server.url())).await;
     browser.leave_by("main a[href*='/validation']").await;
     browser.until("ITTC 7.5-02-06-03").await;
     shown(browser, "validation").await;
@@ -152,6 +152,12 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     let promoted = promote(&browser, &server, "looked over").await;
     assert!(promoted.contains("A ship in a browser"), "{promoted}");
     shown(&browser, "ship").await;
+
+    // A note that others see, with its author.
+    browser.fill("#text", "bow thruster out of order").await;
+    browser.leave_by(&format!("form[action='/ships/{SHIP}/note'] button")).await;
+    let noted = browser.until("bow thruster out of order").await;
+    assert!(noted.contains("bob"), "{noted}");
 
     // A trial with a current that nobody has said.
     sign_in(&browser, &server, "ann", &ann).await;

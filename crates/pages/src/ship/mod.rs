@@ -15,7 +15,7 @@ use sistership_pipeline::search::standing::Class;
 use sistership_report::numbers::{significant, stated};
 use sistership_sources::similarity::RankedSource;
 use sistership_sources::source;
-use sistership_store::{Alias, JobFilter, Page, Ship};
+use sistership_store::{Alias, JobFilter, Note, Page, Ship};
 
 use self::versions::{VersionRow, versions};
 use crate::date::date;
@@ -42,6 +42,7 @@ pub struct Gathered {
     more_trials: bool,
     jobs: Vec<JobRow>,
     tags: Vec<String>,
+    notes: Vec<NoteRow>,
     families: Vec<String>,
     laws: Vec<String>,
 }
@@ -65,6 +66,19 @@ impl ShipPage<'_> {
     /// Whether a version is what the ship is asked for.
     fn is_champion(&self, number: &i64) -> bool {
         self.of.condition.version == Some(*number)
+    }
+}
+
+/// A note as it is shown: when, by whom, and what.
+struct NoteRow {
+    made: String,
+    actor: String,
+    text: String,
+}
+
+impl NoteRow {
+    fn of(note: Note) -> Self {
+        Self { made: date(note.at_us), actor: note.actor, text: note.text }
     }
 }
 
@@ -98,6 +112,7 @@ pub async fn gather(archive: &Archive, shell: Shell, name: &str) -> Result<Gathe
     let jobs = store.jobs().list(&filter, &Page::first(10)).await?;
     let families = store.families().of_ship(name, &Page::first(LINES)).await?;
     let laws = store.laws().list(&Page::first(200)).await?;
+    let notes = store.ships().notes(name, &Page::first(10)).await?;
     Ok(Gathered {
         vessel: vessel(&ship.name, &ship.document)?,
         condition: Condition::of(store, name).await?,
@@ -107,6 +122,7 @@ pub async fn gather(archive: &Archive, shell: Shell, name: &str) -> Result<Gathe
         trials: trials.items.into_iter().map(TrialRow::of).collect(),
         jobs: jobs.items.into_iter().map(JobRow::of).collect(),
         tags: store.ships().tags(name).await?,
+        notes: notes.items.into_iter().map(NoteRow::of).collect(),
         families: families.items.into_iter().map(|family| family.name).collect(),
         laws: laws.items.into_iter().map(|law| law.name).collect(),
         aliases,

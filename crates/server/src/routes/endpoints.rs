@@ -7,7 +7,7 @@ use utoipa_axum::router::OpenApiRouter;
 
 use super::{
     about, aliases, audit, branches, bulk_refinements, champion, compare, diagnoses, drift,
-    effects, events, exports, families, health, jobs, keys, laws, metrics, predictions,
+    effects, events, exports, families, health, jobs, keys, laws, metrics, notes, predictions,
     refinements, register, reports, samples, session_stream, sessions, ship_changes, ships,
     similar, tags, trials, uploads, users, validation, versions, webhooks,
 };
@@ -32,6 +32,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(ships::routes())
         .merge(ship_changes::routes())
         .merge(tags::routes())
+        .merge(notes::routes())
         .merge(similar::routes())
         .merge(champion::routes())
         .merge(trials::routes())

@@ -24,6 +24,7 @@ mod laws;
 mod metrics;
 mod model_ref;
 mod named_trials;
+mod notes;
 mod pages;
 mod predictions;
 mod queue;

@@ -1,5 +1,5 @@
 use sistership_store::{
-    Expect, FactRange, FoundShip, List, NewShip, Page, ShipFacts, ShipKey, ShipSearch,
+    Actor, Expect, FactRange, FoundShip, List, NewShip, Page, ShipFacts, ShipKey, ShipSearch,
 };
 
 use crate::support::*;
@@ -212,6 +212,26 @@ async fn trials_that_come_and_go_are_news_of_their_ship(on: &TestStore) {
     assert_eq!(index(on).await, 0);
 }
 
+async fn notes_have_an_author_and_stay(on: &TestStore) {
+    let ships = on.store.ships();
+    ships.create(&ship("kcs")).await.unwrap();
+    ships.tag("kcs", "own").await.unwrap();
+    let ann = Actor::new("ann", "192.0.2.1");
+    ann.acting(async { ships.note("kcs", "hull cleaned in dock").await }).await.unwrap();
+    ships.note("kcs", "second\nline").await.unwrap();
+    let newest = ships.notes("kcs", &Page::first(1)).await.unwrap();
+    assert_eq!(newest.items[0].text, "second\nline");
+    let older = ships.notes("kcs", &Page::after(newest.next.unwrap(), 1)).await.unwrap();
+    let note = &older.items[0];
+    assert_eq!((note.actor.as_str(), note.text.as_str()), ("ann", "hull cleaned in dock"));
+    assert_eq!(older.next, None);
+    assert_invalid(ships.note("kcs", " \n").await, "text");
+    assert_invalid(ships.note("kcs", "a\0b").await, "text");
+    let long = "x".repeat(sistership_store::MAX_NOTE_CHARS + 1);
+    assert_invalid(ships.note("kcs", &long).await, "text");
+    assert_not_found(ships.note("pcc", "a").await, "ship");
+}
+
 async fn tags_are_put_on_and_taken_off(on: &TestStore) {
     let ships = on.store.ships();
     ships.create(&ship("kcs")).await.unwrap();
@@ -252,5 +272,6 @@ on_both_databases!(
     what_changes_is_written_anew,
     trials_that_come_and_go_are_news_of_their_ship,
     tags_are_put_on_and_taken_off,
+    notes_have_an_author_and_stay,
     a_search_that_cannot_be_is_refused
 );

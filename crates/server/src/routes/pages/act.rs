@@ -8,6 +8,7 @@ use super::super::{aliases, diagnoses, refinements};
 use super::answer::then;
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use crate::web::field::Remark;
 use crate::web::form::PageForm;
 use crate::web::{Id, Name, Place, Word};
 use sistership_pipeline::line::CHAMPION;
@@ -50,6 +51,17 @@ pub(super) async fn promote(
     let reason = form.needed("reason")?;
     aliases::move_to(&app, &ship, CHAMPION, form.whole("version")?, expect, reason).await?;
     Ok(then(&format!("/ships/{}", &*ship)))
+}
+
+pub(super) async fn note(
+    State(app): State<App>,
+    Place(ship): Place<Name>,
+    PageForm(form): PageForm,
+) -> Result<Response> {
+    let text = form.needed("text")?.parse::<Remark>();
+    let text = text.map_err(|message| Problem::invalid("text", message))?;
+    app.store().ships().note(&ship, &text).await?;
+    Ok(then(&format!("/ships/{}#notes", &*ship)))
 }
 
 pub(super) async fn tag(

@@ -27,6 +27,7 @@ pub(super) fn routes(limits: &Limits) -> Router<App> {
         .route("/ships/{ship}/refine", post(act::refine))
         .route("/ships/{ship}/diagnose", post(act::diagnose))
         .route("/ships/{ship}/champion", post(act::promote))
+        .route("/ships/{ship}/note", post(act::note))
         .route("/ships/{ship}/tag", post(act::tag))
         .route("/ships/{ship}/untag", post(act::untag))
         .route("/ships/{ship}/versions/{number}", get(look::version))

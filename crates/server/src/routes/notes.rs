@@ -1,0 +1,88 @@
+//! Notes about ships.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use sistership_store::Note;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::field::{Remark, RequestKey};
+use crate::web::{Key, Listing, Name, Paged, Params, Payload, Place, Reply};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list, add))
+}
+
+/// A note about a ship.
+#[derive(Debug, Serialize, ToSchema)]
+struct NoteView {
+    /// The number of its entry in the audit.
+    number: i64,
+    at_us: i64,
+    /// Who made it: a user, `key:PREFIX`, `server-key`, `local`, `command-line`.
+    actor: String,
+    text: String,
+}
+
+/// What is to be noted.
+#[derive(Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewNote {
+    /// It may have several lines.
+    #[schema(inline)]
+    text: Remark,
+}
+
+impl NoteView {
+    fn of(note: Note) -> Self {
+        let Note { number, at_us, actor, text } = note;
+        Self { number, at_us, actor, text }
+    }
+}
+
+/// Notes about a ship, the latest first
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}/notes", tag = "ships",
+    params(("ship" = inline(Name), Path), Paged),
+    responses((status = 200, body = Listing<NoteView>))
+)]
+async fn list(
+    State(app): State<App>,
+    Place(ship): Place<Name>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<NoteView>>> {
+    app.store().ships().get(&ship).await?;
+    let notes = app.store().ships().notes(&ship, &query.page()?).await?;
+    Ok(Json(Listing::of(notes, NoteView::of)))
+}
+
+/// Note something about a ship; notes are part of the audit, and stay
+#[utoipa::path(
+    post, path = "/v1/ships/{ship}/notes", tag = "ships",
+    params(
+        ("ship" = inline(Name), Path),
+        ("Idempotency-Key" = inline(Option<RequestKey>), Header,
+        description = "Repeat the request safely under this key"),
+    ),
+    request_body = NewNote,
+    responses((status = 201, body = NewNote))
+)]
+async fn add(
+    State(app): State<App>,
+    Place(ship): Place<Name>,
+    key: Key,
+    payload: Payload,
+) -> Result<Response> {
+    let new: NewNote = payload.json()?;
+    let work = |app: App| async move {
+        app.store().ships().note(&ship, &new.text).await?;
+        Reply::new(StatusCode::CREATED, &new)
+    };
+    key.once(&app, payload.bytes(), work).await
+}

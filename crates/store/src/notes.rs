@@ -1,0 +1,72 @@
+//! Notes: what people say of a ship. They are entries of the audit, so that each has its author and
+//! its time, and none is changed afterwards.
+
+use serde_json::json;
+
+use crate::arguments::args;
+use crate::checks;
+use crate::entry::AuditEntry;
+use crate::error::{Result, StoreError};
+use crate::page::{List, Page};
+use crate::ships::{self, Ships};
+use crate::statements::{same, statements};
+
+/// The longest note, characters.
+pub const MAX_NOTE_CHARS: usize = 1000;
+
+statements! {
+    OF_SHIP = same("SELECT number, at_us, actor, origin, action, subject, state_before, \
+        state_after, previous_sha256, sha256 FROM audit WHERE subject = $1 AND action = \
+        'ship.note' AND number < COALESCE($2, 9223372036854775807) ORDER BY number DESC LIMIT $3");
+}
+
+/// A note about a ship.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Note {
+    /// The number of its entry in the audit.
+    pub number: i64,
+    /// When it was made.
+    pub at_us: i64,
+    /// Who made it.
+    pub actor: String,
+    /// What it says.
+    pub text: String,
+}
+
+impl Note {
+    fn of(entry: AuditEntry) -> Self {
+        let AuditEntry { number, at_us, actor, state_after, .. } = entry;
+        let text = state_after
+            .and_then(|after| serde_json::from_str::<serde_json::Value>(&after).ok())
+            .and_then(|after| after["text"].as_str().map(str::to_owned));
+        Self { number, at_us, actor, text: text.unwrap_or_default() }
+    }
+}
+
+impl Ships<'_> {
+    /// Notes about a ship, the latest first, by number.
+    pub async fn notes(&self, name: &str, page: &Page<i64>) -> Result<List<Note, i64>> {
+        let values = args![subject: subject(name), after: page.after, limit: page.fetch()?];
+        let entries: Vec<AuditEntry> = self.0.database().all(OF_SHIP, values).await?;
+        let notes = entries.into_iter().map(Note::of).collect();
+        Ok(page.of(notes, |note: &Note| note.number))
+    }
+
+    /// Notes something about a ship, at most [`MAX_NOTE_CHARS`].
+    pub async fn note(&self, name: &str, text: &str) -> Result<()> {
+        checks::text("text", text)?;
+        if text.trim().is_empty() || text.chars().count() > MAX_NOTE_CHARS {
+            let message = format!("must have 1 to {MAX_NOTE_CHARS} characters");
+            return Err(StoreError::invalid("text", message));
+        }
+        let mut tx = self.0.begin().await?;
+        ships::find(&mut tx, name).await?;
+        let after = json!({ "text": text });
+        tx.note(self.0.now_us(), "ship.note", subject(name), None, Some(after));
+        tx.commit().await
+    }
+}
+
+fn subject(name: &str) -> String {
+    format!("ship:{name}")
+}
