@@ -46,7 +46,8 @@ impl Note {
 impl Ships<'_> {
     /// Notes about a ship, the latest first, by number.
     pub async fn notes(&self, name: &str, page: &Page<i64>) -> Result<List<Note, i64>> {
-        let values = args![subject: subject(name), after: page.after, limit: page.fetch()?];
+        let (subject, limit) = (subject(name), page.fetch()?);
+        let values = args![subject: &subject, after: page.after, limit: limit];
         let entries: Vec<AuditEntry> = self.0.database().all(OF_SHIP, values).await?;
         let notes = entries.into_iter().map(Note::of).collect();
         Ok(page.of(notes, |note: &Note| note.number))

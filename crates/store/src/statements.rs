@@ -43,9 +43,9 @@ mod prepare {
     use crate::store::Store;
     use crate::{
         aliases, audit, bulks, chain, current, diagnoses, effects, families, garbage, grants,
-        idempotency, identities, integrity, jobs, keys, laws, reports, room, search, search_index,
-        sessions, settings, ships, standings, statistics, store, tags, trials, users, version,
-        versions, webhooks, work,
+        idempotency, identities, integrity, jobs, keys, laws, notes, reports, room, search,
+        search_index, sessions, settings, ships, standings, statistics, store, tags, trials, users,
+        version, versions, webhooks, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -65,6 +65,7 @@ mod prepare {
         ("effects", effects::STATEMENTS),
         ("keys", keys::STATEMENTS),
         ("laws", laws::STATEMENTS),
+        ("notes", notes::STATEMENTS),
         ("reports", reports::STATEMENTS),
         ("room", room::STATEMENTS),
         ("search", search::STATEMENTS),

@@ -85,6 +85,7 @@ Listing_JobView = TypedDict('Listing_JobView', {'items': 'List[Dict[str, Any]]',
 Listing_KeyView = TypedDict('Listing_KeyView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_LawHead = TypedDict('Listing_LawHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_MemberView = TypedDict('Listing_MemberView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_NoteView = TypedDict('Listing_NoteView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_OutcomeView = TypedDict('Listing_OutcomeView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_ShipHead = TypedDict('Listing_ShipHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_TrialView = TypedDict('Listing_TrialView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
@@ -103,7 +104,10 @@ NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]',
 NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
 NewKeyView = TypedDict('NewKeyView', {'about': 'KeyView', 'key': 'str'}, total=True)
 NewMembers = TypedDict('NewMembers', {'ships': 'List[str]'}, total=True)
+NewNote = TypedDict('NewNote', {'text': 'str'}, total=True)
 NewWebhookView = TypedDict('NewWebhookView', {'about': 'WebhookView', 'secret': 'str'}, total=True)
+NoteView = TypedDict('NoteView', {'actor': 'str', 'at_us': 'int', 'number': 'int', 'text': 'str'}, total=True)
+Noted = TypedDict('Noted', {'ship': 'str', 'text': 'str'}, total=True)
 NumberOrExpression = Any  # 
 OrdersRequest = TypedDict('OrdersRequest', {'delta_rad': 'Union[float, None]', 'inputs': 'Dict[str, float]', 'n_rps': 'Union[float, None]'}, total=False)
 OutcomeView = TypedDict('OutcomeView', {'comparison': 'Dict[str, Any]', 'outcome': 'str', 'ship': 'str', 'version': 'Union[int, None]', 'worst_change': 'Union[float, None]'}, total=False)
@@ -463,6 +467,14 @@ class Core:
     def get_ships_ship_model(self, ship: str, *, format: Optional[Literal['json', 'yaml']] = None, if_none_match: Optional[str] = None) -> Champion:
         """The model of a ship: its champion."""
         return self.http.json('GET', f'/v1/ships/{ship}/model', query={'format': format}, headers={'If-None-Match': if_none_match})
+
+    def get_ships_ship_notes(self, ship: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_NoteView:
+        """Notes about a ship, the latest first."""
+        return self.http.json('GET', f'/v1/ships/{ship}/notes', query={'limit': limit, 'after': after})
+
+    def post_ships_ship_notes(self, ship: str, body: NewNote, *, idempotency_key: Optional[str] = None) -> Noted:
+        """Note something about a ship; notes are part of the audit, and stay."""
+        return self.http.json('POST', f'/v1/ships/{ship}/notes', headers={'Idempotency-Key': idempotency_key}, json=body)
 
     def get_ships_ship_similar(self, ship: str, *, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None, trials: Optional[bool] = None) -> Dict[str, Any]:
         """Rank the zoo for a ship, and say which ships may be its source."""

@@ -31,12 +31,19 @@ struct NoteView {
 }
 
 /// What is to be noted.
-#[derive(Debug, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewNote {
     /// It may have several lines.
     #[schema(inline)]
     text: Remark,
+}
+
+/// What has been noted.
+#[derive(Debug, Serialize, ToSchema)]
+struct Noted<'a> {
+    ship: &'a str,
+    text: &'a str,
 }
 
 impl NoteView {
@@ -71,7 +78,7 @@ async fn list(
         description = "Repeat the request safely under this key"),
     ),
     request_body = NewNote,
-    responses((status = 201, body = NewNote))
+    responses((status = 201, body = Noted))
 )]
 async fn add(
     State(app): State<App>,
@@ -82,7 +89,7 @@ async fn add(
     let new: NewNote = payload.json()?;
     let work = |app: App| async move {
         app.store().ships().note(&ship, &new.text).await?;
-        Reply::new(StatusCode::CREATED, &new)
+        Reply::new(StatusCode::CREATED, &Noted { ship: &ship, text: &new.text })
     };
     key.once(&app, payload.bytes(), work).await
 }
