@@ -24,7 +24,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("sources", &["formula", "model", "dynamics"]),
     ("estimate", &["formula", "model", "dynamics", "bands", "regression", "empirical", "sources"]),
     ("choice", &["model", "bands", "sources", "estimate"]),
-    ("diagnose", &["formula", "model", "dynamics", "regression", "sources", "estimate"]),
+    (
+        "diagnose",
+        &["formula", "model", "dynamics", "branches", "regression", "sources", "estimate"],
+    ),
     ("plan", &["model", "dynamics", "bands", "estimate", "diagnose"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),

@@ -5,9 +5,9 @@ use serde::Serialize;
 use sistership_model::branch::{Branch, Signal};
 use sistership_model::coefficient::Axis;
 
+use crate::dependence::rise;
 use crate::draws::Draws;
 use crate::rows::Row;
-use crate::sample::Sample;
 use crate::train::sample_of;
 use crate::weights::Weights;
 
@@ -29,18 +29,9 @@ pub fn importance(branch: &Branch, weights: &Weights, rows: &[Row], seed: u64) -
     let mut all = Vec::new();
     for (output, regressor) in branch.outputs.iter().zip(&weights.outputs) {
         let mut sample = sample_of(rows, output, branch.mode);
-        let error = |sample: &Sample| -> f64 {
-            let of = |k: usize| (regressor.answer(&sample.row(k)) - sample.targets[k]).powi(2);
-            (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
-        };
-        let before = error(&sample);
         for (place, input) in output.inputs.iter().enumerate() {
-            let order = draws.some_of(sample.len(), sample.len());
-            let shuffled = order.iter().map(|k| sample.columns[place][*k as usize]).collect();
-            let own = std::mem::replace(&mut sample.columns[place], shuffled);
             // Targets are in deviations, whose variance is 1.
-            let rise = error(&sample) - before;
-            sample.columns[place] = own;
+            let rise = rise(regressor, &mut sample, place, &mut draws);
             all.push(Importance { axis: output.axis, signal: input.signal, rise });
         }
     }

@@ -5,6 +5,7 @@
 
 mod boosted;
 mod choice;
+mod dependence;
 mod domain;
 mod draws;
 mod forest;
@@ -27,6 +28,7 @@ mod version;
 mod weights;
 
 pub use choice::{BranchChoice, TriedKind, choose};
+pub use dependence::{InputDependence, LearnedDependence, dependence};
 pub use domain::FadedDomain;
 pub use importance::{Importance, importance};
 pub use joined::{JoinError, attach, ship};

@@ -9,6 +9,7 @@ mod confounded;
 mod constancy;
 mod corrected;
 mod covariance;
+mod dependence;
 mod discount;
 mod evidence;
 mod expected;
@@ -43,7 +44,8 @@ pub use calibrate::calibrate;
 pub use expected::{ExpectedInformation, Unknowns, forms_of};
 pub use outcome::{
     Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
-    NextTrial, ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained, Value, Verdict,
+    NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained,
+    Value, VariableDependence, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;

@@ -32,6 +32,9 @@ pub struct Diagnosis {
     pub effects: Vec<Found>,
     /// What no effect explains.
     pub unexplained: Vec<Unexplained>,
+    /// On what depends what is left there, by acceleration.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub depends_on: Vec<RemainderDependence>,
     /// How small each effect that was not found would still have been shown, with a probability of
     /// 90 %.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -162,6 +165,32 @@ pub struct Unexplained {
     pub from_s: f64,
     /// Until when, s of the trial.
     pub to_s: f64,
+}
+
+/// On what depends what is left of an acceleration in which something is unexplained: a random
+/// forest learned it from half of the trials' blocks of time, and was asked on the others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RemainderDependence {
+    /// `u`, `v`, `r` or `p`.
+    pub channel: String,
+    /// The share of its variance that the recorded variables and time explain there; 0 where they
+    /// explain nothing.
+    pub explained: f64,
+    /// The variables that it depends on most, the first one most.
+    pub variables: Vec<VariableDependence>,
+}
+
+/// How what is left depends on a variable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VariableDependence {
+    /// A recorded channel, or `t`, the time of the trial.
+    pub variable: String,
+    /// How much of the variance is lost where it is shuffled among the samples.
+    pub share: f64,
+    /// Its values, rising, SI.
+    pub at: Vec<f64>,
+    /// What is left in the mean where it is held there, m/s2 or rad/s2.
+    pub remainder: Vec<f64>,
 }
 
 /// The trial that would tell effects apart.

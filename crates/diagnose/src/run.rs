@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::Request;
 use super::choose::{ConvergedChoice, EffectChoice, choose};
 use super::constancy::inconstant;
+use super::dependence::of_remainder;
 use super::hypothesis::JudgedHypothesis;
 use super::judge::{SimulatedErrors, errors};
 use super::limits::{but, cannot_tell};
@@ -120,8 +121,10 @@ fn written(
     let names: Vec<String> = named.found.iter().map(|found| found.name.clone()).collect();
     let limits = but(choice.limits.clone(), &names);
     let FittedModel { errors, taken } = fitted;
+    let residuals = residuals(first, search, best)?;
     Ok(Diagnosis {
         verdict: verdict(&remaining, &named.found),
+        depends_on: of_remainder(first.trials, &residuals, &remaining),
         effects: named.found,
         unexplained: remaining,
         cannot_tell: cannot_tell(&limits),
@@ -136,7 +139,7 @@ fn written(
         hypotheses: hypotheses(request, search, &choice),
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
-        residuals: residuals(first, search, best)?,
+        residuals,
         discrepancies: levels(search, &base.workspace, &choice.alone, best),
         model: named.model,
         settings: request.settings.clone(),

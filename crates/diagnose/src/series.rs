@@ -116,13 +116,23 @@ fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
 
 /// A variable and the residual at the times of a series.
 fn pairs(trials: &[&Trial], series: &ResidualSeries, variable: Channel) -> Option<Vec<(f64, f64)>> {
+    let values = recorded(trials, series, variable)?;
+    Some(values.into_iter().zip(series.before.iter().copied()).collect())
+}
+
+/// A variable at the times of a series; a heading within a turn.
+pub(super) fn recorded(
+    trials: &[&Trial],
+    series: &ResidualSeries,
+    variable: Channel,
+) -> Option<Vec<f64>> {
     let trial = trials.iter().find(|trial| trial.name == series.trial)?;
     let values = trial.channel(variable)?;
     let at = |t_s: &f64| values[trial.t_s.partition_point(|t| t < t_s).min(values.len() - 1)];
     let turned = |value: f64| {
         if variable == Channel::Psi { value.rem_euclid(std::f64::consts::TAU) } else { value }
     };
-    Some(series.t_s.iter().map(|t| turned(at(t))).zip(series.before.iter().copied()).collect())
+    Some(series.t_s.iter().map(|t| turned(at(t))).collect())
 }
 
 /// The share of the variance of the second that lies between classes of the first.

@@ -129,6 +129,32 @@ pub(crate) fn axis(axis: &str) -> &'static str {
     }
 }
 
+/// A recorded variable in words, the unit it is shown in, and how.
+pub(crate) fn recorded(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
+    let plain: fn(f64) -> f64 = |value| value;
+    let degrees: fn(f64) -> f64 = |value| value.to_degrees();
+    match name {
+        "psi" => ("heading", "deg", |value| (value.to_degrees()).rem_euclid(360.0)),
+        "wind_from" => {
+            ("direction the wind comes from", "deg", |value| (value.to_degrees()).rem_euclid(360.0))
+        }
+        "apparent_wind_from" => {
+            ("apparent wind from the bow", "deg", |value| (value.to_degrees()).rem_euclid(360.0))
+        }
+        "delta" => ("rudder angle", "deg", degrees),
+        "n" => ("propeller revolutions", "1/s", plain),
+        "wind_speed" => ("wind speed", "m/s", plain),
+        "apparent_wind_speed" => ("apparent wind speed", "m/s", plain),
+        "depth" => ("water depth", "m", plain),
+        "t" | "time" => ("time", "s", plain),
+        other => match channel(other) {
+            Some(quantity) if quantity.factor == 1.0 => (quantity.name, quantity.unit, plain),
+            Some(quantity) => (quantity.name, quantity.unit, degrees),
+            None => (other, "SI", plain),
+        },
+    }
+}
+
 /// The unit in which an acceleration is shown, and the factor to it from SI.
 pub(crate) fn acceleration(channel: &str) -> (&'static str, f64) {
     match channel {

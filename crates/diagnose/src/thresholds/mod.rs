@@ -18,7 +18,7 @@ use effects::{
     CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds,
 };
 use limits::{LIMITS, LimitThresholds};
-use remainder::{REMAINDER, RemainderThresholds};
+use remainder::{DEPENDENCE, DependenceThresholds, REMAINDER, RemainderThresholds};
 use search::{REFIT, RefitThresholds, SEARCH, SearchThresholds};
 use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, TrialThresholds};
 
@@ -43,6 +43,8 @@ pub(crate) struct Thresholds {
     pub limits: LimitThresholds,
     /// When something remains unexplained.
     pub remainder: RemainderThresholds,
+    /// On what it depends.
+    pub dependence: DependenceThresholds,
     /// The fit of the model that is given.
     pub refit: RefitThresholds,
     /// How trials are read and replayed.
@@ -63,6 +65,7 @@ pub(crate) const THRESHOLDS: Thresholds = Thresholds {
     confounding: CONFOUNDING,
     limits: LIMITS,
     remainder: REMAINDER,
+    dependence: DEPENDENCE,
     refit: REFIT,
     trials: TRIALS,
     next_trial: NEXT_TRIAL,

@@ -32,3 +32,37 @@ pub(super) const REMAINDER: RemainderThresholds = RemainderThresholds {
     margin: 1.25,
     channels: [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Psi],
 };
+
+/// How it is asked on what a remainder depends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DependenceThresholds {
+    /// `n_g`: trees of the forest, a count. Source: chosen; the mean over more moves shares by less
+    /// than their scatter between the halves.
+    pub trees: usize,
+    /// `n_f`: fewest samples in a leaf, a count. Source: chosen; a step of a curve
+    /// has at least a fiftieth of a series of [`super::trials::SeriesThresholds::points`].
+    pub leaf: usize,
+    /// `n_d`: most splits from root to leaf, a count. Source: chosen; 64 steps of a staircase.
+    pub depth: usize,
+    /// `n_h`: blocks into which a series is cut, every second of which is learned from, a count.
+    /// Source: chosen; a zigzag's half period or longer in records of usual length.
+    pub blocks: usize,
+    /// `n_c`: points of a curve, a count. Source: chosen, about what a small plot shows.
+    pub points: usize,
+    /// `s_d`: share of the variance above which a variable is shown, dimensionless. Source: chosen;
+    /// what is shuffled without need moves the error by about a hundredth of the variance.
+    pub share: f64,
+    /// `n_v`: variables that are shown, a count. Source: chosen.
+    pub shown: usize,
+}
+
+/// The dependence's values.
+pub(super) const DEPENDENCE: DependenceThresholds = DependenceThresholds {
+    trees: 40,
+    leaf: 5,
+    depth: 6,
+    blocks: 16,
+    points: 9,
+    share: 0.05,
+    shown: 3,
+};

@@ -37,6 +37,8 @@ struct DiagnosisPage<'a> {
     trials: Vec<DiagnosisTrialPlots<'a>>,
     scatters: Vec<Plot>,
     unexplained: Table,
+    dependences: Vec<String>,
+    curves: Vec<Plot>,
     discrepancies: Table,
     coefficients: Option<Table>,
     provenance: Vec<(&'static str, String)>,
@@ -88,6 +90,8 @@ pub(crate) fn page(
         trials: replayed.iter().map(|replayed| DiagnosisTrialPlots::of(input, replayed)).collect(),
         scatters: plots::scatters(&diagnosis.residuals),
         unexplained: remaining::unexplained(&diagnosis.unexplained),
+        dependences: remaining::dependences(&diagnosis.depends_on),
+        curves: plots::dependences(&diagnosis.depends_on),
         discrepancies: remaining::discrepancies(&diagnosis.discrepancies),
         coefficients: diagnosis
             .model

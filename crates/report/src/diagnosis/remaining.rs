@@ -1,13 +1,15 @@
 //! What remains: stretches that nothing explains, the level of the discrepancy, and how the
 //! coefficients moved.
 
-use sistership_diagnose::{DiscrepancyLevel, Settings, Unexplained};
+use sistership_diagnose::{
+    DiscrepancyLevel, RemainderDependence, Settings, Unexplained, VariableDependence,
+};
 use sistership_model::Model;
 
 use super::sentence::motion;
-use crate::numbers::{fixed, known, signed, significant};
+use crate::numbers::{fixed, known, list, signed, significant};
 use crate::tables::{Cell, Column, Row, Table, setting};
-use crate::words::acceleration;
+use crate::words::{acceleration, recorded};
 
 /// Stretches that no effect explains.
 pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
@@ -25,6 +27,29 @@ pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
         Row::of(names.into_iter().chain(times).chain([remainder]).collect())
     };
     Table { columns, rows: stretches.iter().map(row).collect() }
+}
+
+/// On what depends what is left, in a sentence each.
+pub(crate) fn dependences(all: &[RemainderDependence]) -> Vec<String> {
+    all.iter().map(dependence).collect()
+}
+
+fn dependence(of: &RemainderDependence) -> String {
+    let percent = |share: f64| fixed(100.0 * share.min(1.0), 0);
+    let one = |variable: &VariableDependence| {
+        let (name, ..) = recorded(&variable.variable);
+        format!("{name} ({} %)", percent(variable.share))
+    };
+    let names: Vec<String> = of.variables.iter().map(one).collect();
+    let equation = motion(&of.channel);
+    match names.is_empty() {
+        true => format!("What is left in {equation} follows nothing that was recorded."),
+        false => format!(
+            "{} % of what is left in {equation} follows what was recorded, most of all {}.",
+            percent(of.explained),
+            list(&names)
+        ),
+    }
 }
 
 /// The level of what nothing explains.

@@ -52,8 +52,9 @@ fn every_part_is_there_and_in_order() {
     let places: Vec<usize> =
         ids.iter().map(|id| html.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted());
-    // Trajectory, series and residual of each trial; one scatter for each acceleration.
-    assert_eq!(html.matches("class=\"plot\"").count(), 2 * 3 + 2);
+    // Trajectory, series and residual of each trial; one scatter for each acceleration; a curve for
+    // each variable on which what is left depends.
+    assert_eq!(html.matches("class=\"plot\"").count(), 2 * 3 + 2 + 2);
     assert!(
         html.contains("class=\"band\"")
             && html.contains("class=\"stretch\"")

@@ -2,6 +2,7 @@
 
 pub mod axes;
 mod decimate;
+mod dependence;
 mod ground;
 mod hull;
 mod lines;
@@ -13,6 +14,7 @@ mod trajectory;
 use askama::Template;
 
 pub use decimate::{kept, path};
+pub(crate) use dependence::dependences;
 pub use ground::GroundChart;
 pub use hull::Hull;
 pub(crate) use residual::residual;

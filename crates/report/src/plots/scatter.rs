@@ -8,7 +8,7 @@ use sistership_diagnose::ResidualSeries;
 use super::axes::{Scale, columns, extent, padded, rows};
 use super::decimate::kept;
 use super::{Plot, Shape};
-use crate::words::{self, acceleration};
+use crate::words::{acceleration, recorded};
 
 /// Narrower than other plots: three stand side by side.
 const WIDTH: f64 = 350.0;
@@ -17,7 +17,6 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 24.0;
 const HEIGHT: f64 = 190.0;
 const BOTTOM: f64 = 38.0;
-const DEG: f64 = 180.0 / std::f64::consts::PI;
 
 /// One plot for each acceleration and variable.
 pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
@@ -38,7 +37,7 @@ pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
 
 fn scatter(channel: &str, against: &str, group: &[&ResidualSeries]) -> Plot {
     let ((name, unit, of_variable), (residual_unit, factor)) =
-        (variable(against), acceleration(channel));
+        (recorded(against), acceleration(channel));
     let points = |of: fn(&ResidualSeries) -> &[f64]| -> Vec<(f64, f64)> {
         let pairs = group.iter().flat_map(|series| series.variable.iter().zip(of(series)));
         pairs.map(|(x, y)| (of_variable(*x), y * factor)).collect()
@@ -78,30 +77,4 @@ fn cloud(points: &[(f64, f64)], across: &Scale, up: &Scale, class: &'static str)
         format!("M{:.1} {:.1}h0", across.at(points[index].0), up.at(points[index].1))
     };
     Shape::Path { d: kept(points.len()).into_iter().map(dot).collect(), class }
-}
-
-/// A recorded variable in words, the unit it is shown in, and how.
-fn variable(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
-    let plain: fn(f64) -> f64 = |value| value;
-    let degrees: fn(f64) -> f64 = |value| value * DEG;
-    match name {
-        "psi" => ("heading", "deg", |value| (value * DEG).rem_euclid(360.0)),
-        "wind_from" => {
-            ("direction the wind comes from", "deg", |value| (value * DEG).rem_euclid(360.0))
-        }
-        "apparent_wind_from" => {
-            ("apparent wind from the bow", "deg", |value| (value * DEG).rem_euclid(360.0))
-        }
-        "delta" => ("rudder angle", "deg", degrees),
-        "n" => ("propeller revolutions", "1/s", plain),
-        "wind_speed" => ("wind speed", "m/s", plain),
-        "apparent_wind_speed" => ("apparent wind speed", "m/s", plain),
-        "depth" => ("water depth", "m", plain),
-        "t" | "time" => ("time", "s", plain),
-        other => match words::channel(other) {
-            Some(quantity) if quantity.factor == 1.0 => (quantity.name, quantity.unit, plain),
-            Some(quantity) => (quantity.name, quantity.unit, degrees),
-            None => (other, "SI", plain),
-        },
-    }
 }

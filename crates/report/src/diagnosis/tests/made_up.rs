@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use sistership_diagnose::{
     Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
-    NextTrial, ResidualSeries, SailedManoeuvre, Settings, TrialErrors, Unexplained, Value, Verdict,
+    NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre, Settings, TrialErrors,
+    Unexplained, Value, VariableDependence, Verdict,
 };
 use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
 use sistership_model::effect::ActsOn;
@@ -186,6 +187,18 @@ fn limits() -> Vec<DetectionLimit> {
     ]
 }
 
+/// What follows the rudder, and the heading less.
+fn depends_on() -> RemainderDependence {
+    let variable = |variable: &str, share: f64| VariableDependence {
+        variable: variable.to_owned(),
+        share,
+        at: vec![-0.3, 0.0, 0.3],
+        remainder: vec![-2e-4, 0.0, 1e-4],
+    };
+    let variables = vec![variable("delta", 0.6), variable("psi", 0.2)];
+    RemainderDependence { channel: "r".to_owned(), explained: 0.7, variables }
+}
+
 fn diagnosis(after: Model) -> Diagnosis {
     let residuals = ["zz<1>", "turn"]
         .into_iter()
@@ -212,6 +225,7 @@ fn diagnosis(after: Model) -> Diagnosis {
         verdict: Verdict::Effects,
         effects: vec![current()],
         unexplained: vec![stretch],
+        depends_on: vec![depends_on()],
         limits: limits(),
         cannot_tell: BTreeMap::from([("wave-drift".to_owned(), LimitedBy::Model)]),
         prior_odds: BTreeMap::from([("current".to_owned(), 0.5), ("wave-drift".to_owned(), 0.15)]),

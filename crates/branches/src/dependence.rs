@@ -1,0 +1,145 @@
+//! What a learned answer depends on: how much its error rises where an input is shuffled among the
+//! samples (permutation importance: Breiman 2001, Sec. 10), and its mean over the samples where an
+//! input is held (partial dependence: Friedman 2001, Ann Stat 29, 1189-1232; `f(x) = 1/n sum_i
+//! f(x, x_iC)`).
+
+use sistership_model::branch::Learner;
+
+use crate::draws::Draws;
+use crate::regressor::Regressor;
+use crate::sample::{Sample, centre_and_scale};
+
+/// What was learned of a target, judged on samples that were not learned from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LearnedDependence {
+    /// The share of the target's variance that is explained there; below 0 where the mean would say
+    /// more.
+    pub explained: f64,
+    /// What each input has to do with it, in their order.
+    pub inputs: Vec<InputDependence>,
+}
+
+/// What an answer owes to an input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InputDependence {
+    /// Rise of the mean squared error where it is shuffled, by the target's variance.
+    pub rise: f64,
+    /// Values of the input, rising, in its unit.
+    pub at: Vec<f64>,
+    /// The mean answer where it is held there, in the target's unit.
+    pub answer: Vec<f64>,
+}
+
+/// Learns a target from some samples and asks others what it depends on, each input at `points` of
+/// its quantiles. None where there is nothing to learn.
+pub fn dependence(
+    learner: &Learner,
+    seen: &Sample,
+    unseen: &Sample,
+    points: usize,
+    seed: u64,
+) -> Option<LearnedDependence> {
+    if seen.is_empty() || unseen.is_empty() {
+        return None;
+    }
+    let scales: Vec<(f64, f64)> = seen.columns.iter().map(|c| centre_and_scale(c)).collect();
+    let of_target = centre_and_scale(&seen.targets);
+    let regressor = Regressor::train(learner, &scaled(seen, &scales, of_target), seed, 0)?;
+    let mut judged = scaled(unseen, &scales, of_target);
+    let (_, deviation) = centre_and_scale(&judged.targets);
+    let explained = 1.0 - error(&regressor, &judged) / deviation.powi(2);
+    let mut draws = Draws::new(seed, 1);
+    let inputs = (0..scales.len()).map(|place| {
+        let rise = rise(&regressor, &mut judged, place, &mut draws) / deviation.powi(2);
+        let at = quantiles(&unseen.columns[place], points);
+        let (centre, scale) = scales[place];
+        let held = |x: &f64| held(&regressor, &judged, place, (x - centre) / scale);
+        let answer = at.iter().map(|x| of_target.0 + of_target.1 * held(x)).collect();
+        InputDependence { rise, at, answer }
+    });
+    Some(LearnedDependence { explained, inputs: inputs.collect() })
+}
+
+/// Rise of the mean squared error of an answer where an input is shuffled among the samples.
+pub(crate) fn rise(
+    regressor: &Regressor,
+    sample: &mut Sample,
+    place: usize,
+    draws: &mut Draws,
+) -> f64 {
+    let before = error(regressor, sample);
+    let order = draws.some_of(sample.len(), sample.len());
+    let shuffled = order.iter().map(|k| sample.columns[place][*k as usize]).collect();
+    let own = std::mem::replace(&mut sample.columns[place], shuffled);
+    let rise = error(regressor, sample) - before;
+    sample.columns[place] = own;
+    rise
+}
+
+fn error(regressor: &Regressor, sample: &Sample) -> f64 {
+    let of = |k: usize| (regressor.answer(&sample.row(k)) - sample.targets[k]).powi(2);
+    (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
+}
+
+/// The mean answer over the samples with an input held at a value.
+fn held(regressor: &Regressor, sample: &Sample, place: usize, value: f64) -> f64 {
+    let of = |k: usize| {
+        let mut row = sample.row(k);
+        row[place] = value;
+        regressor.answer(&row)
+    };
+    (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
+}
+
+fn scaled(sample: &Sample, scales: &[(f64, f64)], of_target: (f64, f64)) -> Sample {
+    let by = |values: &[f64], (centre, scale): (f64, f64)| {
+        values.iter().map(|x| (x - centre) / scale).collect::<Vec<f64>>()
+    };
+    let columns = sample.columns.iter().zip(scales).map(|(column, scale)| by(column, *scale));
+    Sample { columns: columns.collect(), targets: by(&sample.targets, of_target) }
+}
+
+/// The middles of as many classes of equal count, each value once.
+fn quantiles(values: &[f64], points: usize) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let middle = |k: usize| sorted[(2 * k + 1) * sorted.len() / (2 * points)];
+    let mut all: Vec<f64> = (0..points).map(middle).collect();
+    all.dedup();
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// A target that is twice the square of the first input; the second has nothing to do with it.
+    fn samples(seed: u64) -> Sample {
+        let mut draws = Draws::new(seed, 0);
+        let mut column = || (0..400).map(|_| draws.signed()).collect::<Vec<f64>>();
+        let columns = vec![column(), column()];
+        let targets = columns[0].iter().map(|x| 10.0 + 2.0 * x * x).collect();
+        Sample { columns, targets }
+    }
+
+    #[test]
+    fn the_input_that_matters_and_its_curve_are_told() {
+        let learner = Learner::RandomForest { trees: 30, tried: 2, leaf: 5, depth: 6 };
+        let told = dependence(&learner, &samples(1), &samples(2), 9, 7).unwrap();
+        assert!(told.explained > 0.9, "{}", told.explained);
+        let [first, second] = &told.inputs[..] else { panic!("two inputs") };
+        assert!(first.rise > 1.0 && second.rise.abs() < 0.05, "{told:?}");
+        for (x, y) in first.at.iter().zip(&first.answer) {
+            assert!((y - (10.0 + 2.0 * x * x)).abs() < 0.15, "{x}: {y}");
+        }
+        assert_eq!(told, dependence(&learner, &samples(1), &samples(2), 9, 7).unwrap());
+    }
+
+    #[test]
+    fn nothing_is_told_of_nothing() {
+        let learner = Learner::RandomForest { trees: 3, tried: 1, leaf: 5, depth: 3 };
+        let none = Sample { columns: vec![Vec::new()], targets: Vec::new() };
+        assert_eq!(dependence(&learner, &none, &none, 3, 1), None);
+    }
+}
