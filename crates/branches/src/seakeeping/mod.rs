@@ -1,5 +1,5 @@
 //! Standard deviations of heave, pitch and roll from a directional wave spectrum (Kanazawa 2023,
-//! sec. 3.4): closed-form responses, and a factor for each motion that is learned from samples, the
+//! sec. 3.4): responses by closed forms or by a table, and a factor for each motion that is learned from samples, the
 //! common ones thinned out. The branch is in series: it maps what the responses give.
 
 mod factor;
@@ -8,10 +8,12 @@ mod hull;
 mod response;
 mod roll;
 mod spectrum;
+mod table;
 mod thinned;
 
 pub use factor::factor;
 pub use hull::WaveHull;
-pub use response::Motion;
+pub use response::{Motion, Responses};
 pub use spectrum::DirectionalSpectrum;
+pub use table::{ResponseTable, TableFault};
 pub use thinned::thinned;

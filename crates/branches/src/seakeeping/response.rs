@@ -18,13 +18,21 @@ pub enum Motion {
     Roll,
 }
 
+/// Whatever answers how a ship moves among waves.
+pub trait Responses {
+    /// Amplitude of a motion by that of a wave, m/m or rad/m. `omega` is the wave's frequency,
+    /// rad/s; `beta` where it goes from the bow, rad: pi is a head sea.
+    fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64;
+}
+
 impl WaveHull {
     /// Every motion.
     pub const MOTIONS: [Motion; 3] = [Motion::Heave, Motion::Pitch, Motion::Roll];
+}
 
-    /// Amplitude of a motion by that of a wave, m/m or rad/m. `omega` is the wave's frequency,
-    /// rad/s; `beta` where it goes from the bow, rad: pi is a head sea.
-    pub fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64 {
+/// By closed forms.
+impl Responses for WaveHull {
+    fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64 {
         match motion {
             Motion::Heave => heave(self, omega, beta),
             Motion::Pitch => pitch(self, omega, beta),

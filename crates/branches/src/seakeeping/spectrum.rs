@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::hull::WaveHull;
-use super::response::Motion;
+use super::response::{Motion, Responses};
 
 /// Density of the waves' variance by frequency and direction, m2 s/rad.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,8 +23,8 @@ impl DirectionalSpectrum {
     }
 
     /// Standard deviation of a motion, m or rad: Kanazawa 2023, Eqs. 2.12, 2.13 and 3.7.
-    pub fn deviation(&self, hull: &WaveHull, motion: Motion) -> f64 {
-        self.moment(|omega, beta| hull.response(motion, omega, beta).powi(2)).sqrt()
+    pub fn deviation(&self, ship: &impl Responses, motion: Motion) -> f64 {
+        self.moment(|omega, beta| ship.response(motion, omega, beta).powi(2)).sqrt()
     }
 
     fn moment(&self, of: impl Fn(f64, f64) -> f64) -> f64 {
@@ -42,6 +41,7 @@ impl DirectionalSpectrum {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::seakeeping::WaveHull;
 
     /// Long waves: it rides them, heave is the elevation and roll its slope.
     #[test]

@@ -1,6 +1,8 @@
 //! What a diagnosis made of a case.
 
-use sistership_diagnose::{Diagnosis, Found, Unexplained, Value, Verdict};
+use sistership_diagnose::{
+    Diagnosis, Found, RemainderDependence, Unexplained, Value, VariableDependence, Verdict,
+};
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 
@@ -41,6 +43,8 @@ pub struct Outcome {
     pub named: Vec<String>,
     pub verdict: Verdict,
     pub unexplained: Vec<Unexplained>,
+    /// On what depends what is left.
+    pub depends_on: Vec<RemainderDependence>,
     pub parameters: Vec<Estimate>,
     /// Against a model that knows the effects.
     pub ratio: Option<f64>,
@@ -62,6 +66,7 @@ impl Outcome {
             named: diagnosis.effects.iter().map(|found| found.name.clone()).collect(),
             verdict: diagnosis.verdict,
             unexplained: diagnosis.unexplained.clone(),
+            depends_on: diagnosis.depends_on.clone(),
             parameters: effects
                 .iter()
                 .flat_map(|effect| deviations(effect, &diagnosis.effects))
@@ -102,8 +107,9 @@ impl Outcome {
             format!("{} {:.1} {:.0}-{:.0} s", u.channel, u.rms_over_noise, u.from_s, u.to_s)
         };
         let open: Vec<String> = self.unexplained.iter().take(3).map(open).collect();
+        let left: Vec<String> = self.depends_on.iter().map(left).collect();
         format!(
-            "{} {} {:?} seed {}: {:?} [{}] open [{}] ratio {:.2} {} {:.1} s",
+            "{} {} {:?} seed {}: {:?} [{}] open [{}] by [{}] ratio {:.2} {} {:.1} s",
             if self.is_right() { "  " } else { "X " },
             self.label,
             self.kind,
@@ -111,11 +117,20 @@ impl Outcome {
             self.verdict,
             self.evidence.join(", "),
             open.join(", "),
+            left.join(", "),
             self.ratio.unwrap_or(f64::NAN),
             off.join(", "),
             self.seconds
         )
     }
+}
+
+/// `v 0.62: psi 0.90, u 0.11`: the channel, the share explained, variables with their shares.
+fn left(of: &RemainderDependence) -> String {
+    let one =
+        |variable: &VariableDependence| format!("{} {:.2}", variable.variable, variable.share);
+    let variables: Vec<String> = of.variables.iter().map(one).collect();
+    format!("{} {:.2}: {}", of.channel, of.explained, variables.join(", "))
 }
 
 /// How far the parameters of an effect that was found in its true form are from the truth, in
