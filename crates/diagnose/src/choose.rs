@@ -284,7 +284,8 @@ impl EffectChoice {
         of_last: f64,
     ) -> bool {
         let last = found.candidates.len() - 1;
-        of_last > settings.least_evidence.max(shadow(found, &self.evidence(search, found), last))
+        let evidence = self.bounded(found, &all_evidence(search, found));
+        of_last > settings.least_evidence.max(shadow(found, &evidence, last))
     }
 
     /// The weakest of effects that are judged together, where the evidence for it is not enough.
@@ -295,7 +296,7 @@ impl EffectChoice {
         settings: &Settings,
     ) -> Option<usize> {
         let evidence = all_evidence(search, best);
-        let bounded = self.evidence(search, best);
+        let bounded = self.bounded(best, &evidence);
         let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
         weakest.filter(|&place| {
             evidence[place] <= settings.least_evidence.max(shadow(best, &bounded, place))
@@ -305,9 +306,9 @@ impl EffectChoice {
     /// The evidence for each effect of a set, none more than what the set has over the model alone:
     /// seen from where all stand, the level of the random accelerations is that of the whole set,
     /// at which a strong effect is worth a hundred times what it explains of the trials.
-    fn evidence(&self, search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec<f64> {
+    fn bounded(&self, judged: &JudgedHypothesis, evidence: &[f64]) -> Vec<f64> {
         let most = judged.log_evidence - self.alone.log_evidence;
-        all_evidence(search, judged).into_iter().map(|evidence| evidence.min(most)).collect()
+        evidence.iter().map(|evidence| evidence.min(most)).collect()
     }
 }
 

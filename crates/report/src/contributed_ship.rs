@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use sistership_model::Vessel;
 use sistership_validation::{Appraisal, Dataset, Review, Severity};
 
+use crate::numbers::hundredths;
+
 /// Particulars, models, published trials, findings and sources of a ship.
 pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
     [
@@ -16,11 +18,6 @@ pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
         sources(vessel),
     ]
     .concat()
-}
-
-/// Two decimals, or a dash.
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 
 fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
@@ -74,10 +71,10 @@ fn model(model: &Appraisal) -> Vec<String> {
         format!("`{name}`"),
         format!("`{}`", model.law),
         model.standing.word().to_owned(),
-        number(model.turn_lengths(|turn| turn.advance_m)),
-        number(model.turn_lengths(|turn| turn.tactical_diameter_m)),
-        number(model.first_overshoot_deg(10.0)),
-        number(model.first_overshoot_deg(20.0)),
+        hundredths(model.turn_lengths(|turn| turn.advance_m)),
+        hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+        hundredths(model.first_overshoot_deg(10.0)),
+        hundredths(model.first_overshoot_deg(20.0)),
     ]
 }
 
@@ -89,7 +86,7 @@ fn trials(review: &Review) -> String {
                 format!("`{}`", model.model),
                 one.figure.clone(),
                 format!("{:.2} ± {:.2} {}", one.published, one.uncertainty, one.unit),
-                number(one.sailed),
+                hundredths(one.sailed),
                 format!("{:.2}", one.limit),
                 if one.is_within() { "yes" } else { "no" }.to_owned(),
                 one.source.clone(),

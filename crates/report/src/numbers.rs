@@ -76,6 +76,11 @@ pub fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "–".into(), format)
 }
 
+/// A value of two decimals that may be unknown.
+pub fn hundredths(value: Option<f64>) -> String {
+    known(value, |value| fixed(value, 2))
+}
+
 /// Words as a list: `a, b and c`.
 pub(crate) fn list(words: &[String]) -> String {
     match words {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use sistership_report::numbers::hundredths;
 use sistership_validation::{Appraisal, Comparison, Dataset, Review, Severity, Work};
 
 use crate::table::TextTable;
@@ -26,18 +27,13 @@ fn table(models: &[Appraisal]) -> String {
             model.model.clone(),
             model.law.clone(),
             model.standing.word().to_owned(),
-            number(model.turn_lengths(|turn| turn.advance_m)),
-            number(model.turn_lengths(|turn| turn.tactical_diameter_m)),
-            number(model.first_overshoot_deg(10.0)),
-            number(model.first_overshoot_deg(20.0)),
+            hundredths(model.turn_lengths(|turn| turn.advance_m)),
+            hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+            hundredths(model.first_overshoot_deg(10.0)),
+            hundredths(model.first_overshoot_deg(20.0)),
         ]);
     }
     table.to_string()
-}
-
-/// Two decimals, or a dash.
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 
 fn trials(models: &[Appraisal]) -> String {
@@ -58,9 +54,9 @@ fn trial(model: &Appraisal, one: &Comparison) -> [String; 7] {
         model.model.clone(),
         one.figure.clone(),
         one.unit.to_owned(),
-        number(Some(one.published)),
-        number(one.sailed),
-        number(Some(one.limit)),
+        hundredths(Some(one.published)),
+        hundredths(one.sailed),
+        hundredths(Some(one.limit)),
         if one.is_within() { "met" } else { "missed" }.to_owned(),
     ]
 }
