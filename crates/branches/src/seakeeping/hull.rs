@@ -23,3 +23,16 @@ pub struct WaveHull {
     /// The part of it that makes waves, from which the moment of waves follows.
     pub roll_radiation: f64,
 }
+
+/// A hull about as large as R/V Gunnerus.
+#[cfg(test)]
+pub(super) const GUNNERUS: WaveHull = WaveHull {
+    lpp_m: 33.9,
+    beam_m: 9.6,
+    draught_m: 2.7,
+    block_coefficient: 0.6,
+    gm_m: 1.5,
+    roll_period_s: 5.0,
+    roll_damping: 0.1,
+    roll_radiation: 0.02,
+};

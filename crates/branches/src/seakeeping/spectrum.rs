@@ -41,21 +41,12 @@ impl DirectionalSpectrum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::seakeeping::WaveHull;
+    use crate::seakeeping::hull::GUNNERUS;
 
     /// Long waves: it rides them, heave is the elevation and roll its slope.
     #[test]
     fn in_long_waves_the_ship_follows_the_surface() {
-        let hull = WaveHull {
-            lpp_m: 33.9,
-            beam_m: 9.6,
-            draught_m: 2.7,
-            block_coefficient: 0.6,
-            gm_m: 1.5,
-            roll_period_s: 5.0,
-            roll_damping: 0.1,
-            roll_radiation: 0.02,
-        };
+        let hull = GUNNERUS;
         let (omega, beam) = (0.15, std::f64::consts::FRAC_PI_2);
         let slope = omega * omega / 9.80665;
         assert!((hull.response(Motion::Heave, omega, beam) - 1.0).abs() < 0.01);

@@ -139,18 +139,8 @@ fn around(grid: &[f64], beta: f64) -> (usize, usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::seakeeping::hull::GUNNERUS as HULL;
     use crate::seakeeping::{DirectionalSpectrum, WaveHull};
-
-    const HULL: WaveHull = WaveHull {
-        lpp_m: 33.9,
-        beam_m: 9.6,
-        draught_m: 2.7,
-        block_coefficient: 0.6,
-        gm_m: 1.5,
-        roll_period_s: 5.0,
-        roll_damping: 0.1,
-        roll_radiation: 0.02,
-    };
 
     /// What the closed forms give, on a grid.
     fn table() -> ResponseTable {

@@ -9,6 +9,7 @@ mod lines;
 mod residual;
 mod scatter;
 mod series;
+mod small;
 mod trajectory;
 
 use askama::Template;

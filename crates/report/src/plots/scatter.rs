@@ -5,18 +5,12 @@ use std::collections::BTreeMap;
 
 use sistership_diagnose::ResidualSeries;
 
-use super::axes::{Scale, columns, extent, padded, rows};
 use super::decimate::kept;
+use super::small::SmallPlot;
 use super::{Plot, Shape};
 use crate::words::{acceleration, recorded};
 
-/// Narrower than other plots: three stand side by side.
-const WIDTH: f64 = 350.0;
-const LEFT: f64 = 56.0;
-const RIGHT: f64 = 12.0;
-const TOP: f64 = 24.0;
 const HEIGHT: f64 = 190.0;
-const BOTTOM: f64 = 38.0;
 
 /// One plot for each acceleration and variable.
 pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
@@ -43,38 +37,22 @@ fn scatter(channel: &str, against: &str, group: &[&ResidualSeries]) -> Plot {
         pairs.map(|(x, y)| (of_variable(*x), y * factor)).collect()
     };
     let (before, after) = (points(|series| &series.before), points(|series| &series.after));
-    let range = |of: fn(&(f64, f64)) -> f64| {
-        padded(extent(before.iter().chain(&after).map(of)).unwrap_or((0.0, 1.0)), 0.05)
-    };
-    let (x, y) = (range(|point| point.0), range(|point| point.1));
-    let across = Scale { low: x.0, high: x.1, length: WIDTH - LEFT - RIGHT, reversed: false };
-    let up = Scale { low: y.0, high: y.1, length: HEIGHT, reversed: true };
-    let title = format!("residual of d{channel}/dt [{residual_unit}]");
-    let mut shapes = vec![Shape::Text { at: (LEFT, TOP - 8.0), text: title, class: "title" }];
-    shapes.extend(rows((LEFT, TOP), across.length, &up, 5));
-    shapes.extend(columns((LEFT, TOP), HEIGHT, &across, 5, true));
-    let clouds = [(before, "cloud source"), (after, "cloud refined")]
-        .map(|(points, class)| cloud(&points, &across, &up, class));
-    shapes.push(Shape::Panel {
-        at: (LEFT, TOP),
-        size: (across.length, HEIGHT),
-        shapes: clouds.into(),
-    });
-    shapes.push(Shape::Rect { at: (LEFT, TOP), size: (across.length, HEIGHT), class: "frame" });
-    let below = (LEFT + across.length / 2.0, TOP + HEIGHT + 32.0);
-    shapes.push(Shape::Text { at: below, text: format!("{name} [{unit}]"), class: "title mid" });
-    Plot {
-        width: WIDTH,
-        height: TOP + HEIGHT + BOTTOM,
-        label: format!("Residual of d{channel}/dt against {name}"),
-        shapes,
-    }
+    let plot = SmallPlot::over(before.iter().chain(&after), HEIGHT);
+    let clouds = [(&before, "cloud source"), (&after, "cloud refined")]
+        .map(|(points, class)| cloud(points, &plot, class));
+    plot.with(
+        clouds.into(),
+        format!("residual of d{channel}/dt [{residual_unit}]"),
+        format!("{name} [{unit}]"),
+        format!("Residual of d{channel}/dt against {name}"),
+    )
 }
 
 /// Points as strokes without length: far smaller than as many circles.
-fn cloud(points: &[(f64, f64)], across: &Scale, up: &Scale, class: &'static str) -> Shape {
+fn cloud(points: &[(f64, f64)], plot: &SmallPlot, class: &'static str) -> Shape {
     let dot = |index: usize| {
-        format!("M{:.1} {:.1}h0", across.at(points[index].0), up.at(points[index].1))
+        let (x, y) = plot.at(&points[index]);
+        format!("M{x:.1} {y:.1}h0")
     };
     Shape::Path { d: kept(points.len()).into_iter().map(dot).collect(), class }
 }
