@@ -12,6 +12,7 @@ pub mod host;
 pub mod known;
 pub mod large;
 pub mod metrics;
+pub mod operations;
 pub mod page;
 pub mod params;
 pub mod payload;

@@ -1,115 +1,21 @@
 //! The OpenAPI document.
 
-use axum::http::{StatusCode, header};
+use axum::http::header;
 use axum::response::IntoResponse;
 use serde_json::Value;
-use utoipa::openapi::path::{Operation, ParameterIn};
-use utoipa::openapi::{Components, Content, PathItem, Ref, RefOr, Response, ResponseBuilder};
 
 use super::{described, endpoints};
 use crate::config::Limits;
-use crate::problem::{MEDIA, Problem};
-use crate::web::query::parameters;
-use sistership_http::tidy;
+use sistership_http::{operations, tidy};
 
 /// The contract of the server, as `/openapi.json` serves it.
 pub fn openapi() -> Value {
     let mut document = endpoints::api(&Limits::default()).into_openapi();
-    for (path, item) in &mut document.paths.paths {
-        for (method, operation) in operations(item) {
-            operation.operation_id = Some(id(method, path));
-            add_problems(method, path, operation);
-        }
-    }
-    let components = document.components.get_or_insert_with(Components::new);
-    components
-        .responses
-        .extend(PROBLEMS.map(|status| (problem_name(status), problem(status).into())));
+    operations::complete(&mut document);
     let mut document = serde_json::to_value(&document).unwrap_or_default();
     described::add(&mut document);
     tidy::tidy(&mut document);
     document
-}
-
-/// Statuses of problems that operations have in common.
-const PROBLEMS: [u16; 17] =
-    [400, 401, 403, 404, 406, 408, 409, 412, 413, 415, 422, 428, 429, 500, 503, 504, 507];
-
-fn problem_name(status: u16) -> String {
-    format!("Problem{status}")
-}
-
-fn problem(status: u16) -> Response {
-    let status = StatusCode::from_u16(status).unwrap_or_default();
-    let content = Content::new(Some(Ref::from_schema_name("Problem")));
-    ResponseBuilder::new()
-        .description(Problem::new(status, "").title)
-        .content(MEDIA, content)
-        .build()
-}
-
-fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut Operation)> {
-    let all = [
-        ("get", &mut item.get),
-        ("put", &mut item.put),
-        ("post", &mut item.post),
-        ("delete", &mut item.delete),
-    ];
-    all.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
-}
-
-/// A name for programs that are made from the document: `get_ships_ship_model`.
-fn id(method: &str, path: &str) -> String {
-    let words = path
-        .split('/')
-        .filter(|word| !word.is_empty() && *word != "v1")
-        .map(|word| word.trim_matches(['{', '}']));
-    std::iter::once(method).chain(words).collect::<Vec<_>>().join("_")
-}
-
-/// Whatever goes wrong is a problem; the statuses follow from what the operation reads.
-fn add_problems(method: &str, path: &str, operation: &mut Operation) {
-    let has = |place: ParameterIn, name: &str| {
-        let all = parameters(operation);
-        all.filter(|known| known.parameter_in == place)
-            .any(|known| name.is_empty() || known.name == name)
-    };
-    let forms = operation.responses.responses.get("200").map_or(0, |response| match response {
-        RefOr::T(response) => response.content.len(),
-        RefOr::Ref(_) => 0,
-    });
-    let (body, change, key) =
-        (operation.request_body.is_some(), method != "get", path.starts_with("/v1"));
-    let if_match = has(ParameterIn::Header, "If-Match");
-    let statuses = PROBLEMS.into_iter().filter(|status| match status {
-        400 | 401 | 403 | 429 | 504 => key,
-        404 => has(ParameterIn::Path, ""),
-        406 => forms > 1,
-        409 | 507 => change,
-        412 | 428 => if_match,
-        408 | 413 | 415 => body,
-        422 => body || change,
-        _ => true,
-    });
-    let statuses: Vec<u16> = statuses.collect();
-    let responses = &mut operation.responses.responses;
-    for status in statuses {
-        responses
-            .entry(status.to_string())
-            .or_insert_with(|| RefOr::Ref(Ref::from_response_name(problem_name(status))));
-    }
-    responses.insert("default".to_owned(), RefOr::Ref(Ref::from_response_name(problem_name(500))));
-    responses.iter_mut().for_each(|(status, response)| describe(status, response));
-}
-
-/// Every response must have a description; where none is written, the status has one.
-fn describe(status: &str, response: &mut RefOr<Response>) {
-    let RefOr::T(response) = response else { return };
-    if response.description.is_empty() {
-        let known = status.parse().ok().and_then(|status: u16| StatusCode::from_u16(status).ok());
-        response.description =
-            known.and_then(|status| status.canonical_reason()).unwrap_or("The answer").to_owned();
-    }
 }
 
 /// The document as text, indented, with a line feed at its end.
