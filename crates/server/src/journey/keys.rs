@@ -47,6 +47,9 @@ async fn request(harness: &Harness, route: &str) -> RequestBuilder {
             let model = harness.get("/v1/ships/mariner/model").await["model"].clone();
             post("/v1/models/mariner/versions").json(&json!({ "model": model, "origin": "a test" }))
         }
+        "post /v1/ships/{ship}/notes" => {
+            post("/v1/ships/mariner/notes").json(&json!({ "text": "docked" }))
+        }
         "post /v1/trials" => upload(harness, "again").await,
         "post /v1/families" => post("/v1/families")
             .json(&json!({ "name": "another", "foundation": "mariner", "members": ["mariner"] })),
