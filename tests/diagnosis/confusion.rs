@@ -1,6 +1,6 @@
 //! A few cases of the confusion table, which `--example hidden_effects` prints whole.
 
-use sistership_tests::hidden_effects::confusion::{depends_on, named};
+use sistership_tests::hidden_effects::confusion::named;
 
 #[test]
 fn a_weak_current_is_named() {
@@ -15,9 +15,4 @@ fn an_askew_rudder_is_named() {
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
     assert_eq!(named("clean", 1.0), Vec::<String>::new());
-}
-
-#[test]
-fn an_unlisted_force_by_the_heading_is_told_to_depend_on_it() {
-    assert_eq!(depends_on("heading-force", 1.0, "v").as_deref(), Some("psi"));
 }

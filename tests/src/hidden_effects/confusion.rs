@@ -30,24 +30,13 @@ pub fn confusion(part: &Part) -> Vec<String> {
 
 /// What is named in a case, the first thing first; nothing where nothing is.
 pub fn named(label: &str, share: f64) -> Vec<String> {
-    alone(label, share).map(|outcome| outcome.named).unwrap_or_default()
-}
-
-/// The variable on which what is left of an acceleration depends most in a case.
-pub fn depends_on(label: &str, share: f64, channel: &str) -> Option<String> {
-    let left = alone(label, share)?.depends_on.into_iter().find(|left| left.channel == channel)?;
-    left.variables.into_iter().next().map(|first| first.variable)
-}
-
-/// One case.
-fn alone(label: &str, share: f64) -> Option<Outcome> {
     let part = Part {
         cases: Some(vec![label.to_owned()]),
         strengths: vec![share],
         seeds: 1,
         is_judged: false,
     };
-    cases(&part).first().map(run)
+    cases(&part).first().map(|case| run(case).named).unwrap_or_default()
 }
 
 /// Every case in its place, on as many threads as there are cores.
