@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
-/// The path of the `sistership` program: the one that `SISTERSHIP_PROGRAM` names, such as a release,
-/// else that of this tree, built in the profile of the tests.
+/// The path of the `sistership` program: the one that `SISTERSHIP_PROGRAM` names, such as a
+/// release, else that of this tree, built in the profile of the tests.
 ///
 /// # Panics
 /// Where it does not build.

@@ -1,5 +1,5 @@
-//! On which recorded variables depends what no effect explains: a random forest is learned from what
-//! is left of an acceleration, and asked on parts of the trials that it has not seen.
+//! On which recorded variables depends what no effect explains: a random forest is learned from
+//! what is left of an acceleration, and asked on parts of the trials that it has not seen.
 //!
 //! A term of the law that would say the same is tried before, as the effect `missing-term`.
 
@@ -21,7 +21,11 @@ pub(super) fn of_remainder(
     residuals: &[ResidualSeries],
     unexplained: &[Unexplained],
 ) -> Vec<RemainderDependence> {
-    let is_left = |channel: &str| unexplained.iter().any(|stretch| stretch.channel == channel);
+    // A heading that does not follow is asked of the yaw acceleration.
+    let is_of = |stretch: &Unexplained, channel: &str| {
+        stretch.channel == channel || (stretch.channel == "psi" && channel == "r")
+    };
+    let is_left = |channel: &str| unexplained.iter().any(|stretch| is_of(stretch, channel));
     let mut channels: Vec<&str> = residuals.iter().map(|series| &*series.channel).collect();
     channels.sort_unstable();
     channels.dedup();
@@ -40,6 +44,10 @@ fn of_channel(
     channel: &str,
     series: &[&ResidualSeries],
 ) -> Option<RemainderDependence> {
+    let samples: usize = series.iter().map(|one| one.t_s.len()).sum();
+    if samples < THRESHOLDS.dependence.samples {
+        return None;
+    }
     let variables = variables(trials, series);
     let halves = [0, 1].map(|half| sample(&variables, series, half));
     let learner = learner(variables.len());
@@ -68,8 +76,8 @@ fn of_channel(
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
     all.truncate(THRESHOLDS.dependence.shown);
     let explained = mean(&|told| told.explained).max(0.0);
-    // What says no more than the mean depends on nothing that it was told.
-    let variables = if explained > 0.0 { all } else { Vec::new() };
+    // What says hardly more than the mean depends on nothing that it was told.
+    let variables = if explained > THRESHOLDS.dependence.share { all } else { Vec::new() };
     Some(RemainderDependence { channel: channel.to_owned(), explained, variables })
 }
 
@@ -99,23 +107,26 @@ fn variables(trials: &[&Trial], series: &[&ResidualSeries]) -> Vec<Variable> {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
         high - low > 1e-9
     };
-    let time = (TIME, series.iter().map(|one| one.t_s.clone()).collect());
+    let since = |one: &&ResidualSeries| one.t_s.iter().map(|t| t - one.t_s[0]).collect();
+    let time = (TIME, series.iter().map(since).collect());
     let channels = THRESHOLDS.series.variables.iter().filter_map(along);
     channels.filter(varies).chain([time]).collect()
 }
 
-/// Every second block of each series: neighbours in time are alike, so that single samples would
-/// tell of one another.
+/// Every second block of each series, or all of every second series where they are short:
+/// neighbours in time are alike, so that single samples would tell of one another.
 fn sample(variables: &[Variable], series: &[&ResidualSeries], half: usize) -> Sample {
-    let is_in = |length: usize, k: usize| k * THRESHOLDS.dependence.blocks / length % 2 == half;
-    let taken = |values: &[f64]| -> Vec<f64> {
-        let kept = values.iter().enumerate().filter(|(k, _)| is_in(values.len(), *k));
+    let taken = |(place, values): (usize, &Vec<f64>)| -> Vec<f64> {
+        let blocks = THRESHOLDS.dependence.blocks;
+        let is_short = values.len() < THRESHOLDS.dependence.block * blocks;
+        let block = |k: usize| if is_short { place } else { k * blocks / values.len() };
+        let kept = values.iter().enumerate().filter(|(k, _)| block(*k) % 2 == half);
         kept.map(|(_, value)| *value).collect()
     };
-    let column = |(_, values): &Variable| values.iter().flat_map(|one| taken(one)).collect();
+    let column = |(_, values): &Variable| values.iter().enumerate().flat_map(taken).collect();
     Sample {
         columns: variables.iter().map(column).collect(),
-        targets: series.iter().flat_map(|one| taken(&one.after)).collect(),
+        targets: series.iter().map(|one| &one.after).enumerate().flat_map(taken).collect(),
     }
 }
 
@@ -149,16 +160,19 @@ mod tests {
         (Trial { name: "a".into(), t_s, channels, ..Trial::default() }, series)
     }
 
-    fn told(left: fn(f64, f64, f64) -> f64) -> RemainderDependence {
-        let (trial, series) = case(left);
-        let stretch = Unexplained {
+    fn stretch() -> Unexplained {
+        Unexplained {
             channel: "r".into(),
             rms_over_noise: 5.0,
             trial: "a".into(),
             from_s: 0.0,
             to_s: 480.0,
-        };
-        of_remainder(&[&trial], &[series], &[stretch]).remove(0)
+        }
+    }
+
+    fn told(left: fn(f64, f64, f64) -> f64) -> RemainderDependence {
+        let (trial, series) = case(left);
+        of_remainder(&[&trial], &[series], &[stretch()]).remove(0)
     }
 
     #[test]
@@ -174,6 +188,28 @@ mod tests {
     fn what_begins_is_told_by_time() {
         let told = told(|_, _, t| if t > 240.0 { 1e-3 } else { 0.0 });
         assert_eq!(told.variables[0].variable, "t");
+    }
+
+    #[test]
+    fn time_is_that_of_the_trial() {
+        let (first, one) = case(|_, _, t| if t > 240.0 { 1e-3 } else { 0.0 });
+        let late = |t: &mut f64| *t += 9e4;
+        let mut second = Trial { name: "b".into(), ..first.clone() };
+        let mut other = ResidualSeries { trial: "b".into(), ..one.clone() };
+        second.t_s.iter_mut().for_each(late);
+        other.t_s.iter_mut().for_each(late);
+        let psi = Unexplained { channel: "psi".into(), ..stretch() };
+        let told = of_remainder(&[&first, &second], &[one, other], &[psi]).remove(0);
+        let time = &told.variables[0];
+        assert!(time.variable == "t" && time.at.iter().all(|t| *t < 480.0), "{time:?}");
+    }
+
+    #[test]
+    fn too_few_samples_are_not_asked() {
+        let (trial, mut series) = case(|delta, _, _| delta);
+        series.t_s.truncate(20);
+        series.after.truncate(20);
+        assert!(of_remainder(&[&trial], &[series], &[stretch()]).is_empty());
     }
 
     #[test]

@@ -167,8 +167,10 @@ pub struct Unexplained {
     pub to_s: f64,
 }
 
-/// On what depends what is left of an acceleration in which something is unexplained: a random
-/// forest learned it from half of the trials' blocks of time, and was asked on the others.
+/// On what depends what is left of an acceleration in which something is unexplained, or in yaw
+/// where the heading is: a random forest learned it from half of the trials' blocks of time, and
+/// was asked on the others, and another one the other way round. Shares are means of both; curves
+/// are the first one's.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RemainderDependence {
     /// `u`, `v`, `r` or `p`.
@@ -185,7 +187,8 @@ pub struct RemainderDependence {
 pub struct VariableDependence {
     /// A recorded channel, or `t`, the time of the trial.
     pub variable: String,
-    /// How much of the variance is lost where it is shuffled among the samples.
+    /// By how much of the remainder's variance the squared error rises where it is shuffled among
+    /// the samples.
     pub share: f64,
     /// Its values, rising, SI.
     pub at: Vec<f64>,

@@ -24,6 +24,8 @@ macro_rules! entries {
     };
 }
 
+pub(crate) use entries;
+
 statements! {
     LIST = entries!("number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
     LIST_ACTOR = entries!("actor = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY \

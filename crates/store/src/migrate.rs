@@ -22,6 +22,7 @@ const SQLITE: &[MigrationSource] = &[
     (10, "webhooks", include_str!("../../../migrations/sqlite/0010_webhooks.sql")),
     (11, "identities", include_str!("../../../migrations/sqlite/0011_identities.sql")),
     (12, "vector_stamps", include_str!("../../../migrations/sqlite/0012_vector_stamps.sql")),
+    (13, "notes", include_str!("../../../migrations/sqlite/0013_notes.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -36,6 +37,7 @@ const POSTGRES: &[MigrationSource] = &[
     (10, "webhooks", include_str!("../../../migrations/postgres/0010_webhooks.sql")),
     (11, "identities", include_str!("../../../migrations/postgres/0011_identities.sql")),
     (12, "vector_stamps", include_str!("../../../migrations/postgres/0012_vector_stamps.sql")),
+    (13, "notes", include_str!("../../../migrations/postgres/0013_notes.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

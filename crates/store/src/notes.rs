@@ -4,20 +4,20 @@
 use serde_json::json;
 
 use crate::arguments::args;
+use crate::audit::entries;
 use crate::checks;
 use crate::entry::AuditEntry;
 use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
-use crate::ships::{self, Ships};
+use crate::ships::{self, Ships, subject};
 use crate::statements::{same, statements};
 
 /// The longest note, characters.
 pub const MAX_NOTE_CHARS: usize = 1000;
 
 statements! {
-    OF_SHIP = same("SELECT number, at_us, actor, origin, action, subject, state_before, \
-        state_after, previous_sha256, sha256 FROM audit WHERE subject = $1 AND action = \
-        'ship.note' AND number < COALESCE($2, 9223372036854775807) ORDER BY number DESC LIMIT $3");
+    OF_SHIP = entries!("subject = $1 AND action = 'ship.note' AND number < COALESCE($2, \
+        9223372036854775807) ORDER BY number DESC LIMIT $3");
 }
 
 /// A note about a ship.
@@ -66,8 +66,4 @@ impl Ships<'_> {
         tx.note(self.0.now_us(), "ship.note", subject(name), None, Some(after));
         tx.commit().await
     }
-}
-
-fn subject(name: &str) -> String {
-    format!("ship:{name}")
 }

@@ -84,7 +84,8 @@ statements! {
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
     STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS \
         BIGINT) AS stamps FROM ship_vectors WHERE category = $1");
-    CATEGORIES = same("SELECT DISTINCT category FROM ship_vectors");
+    NEXT_CATEGORY = same("SELECT category FROM ship_vectors WHERE category > $1 ORDER BY category \
+        LIMIT 1");
     // A limit keeps PostgreSQL from joining all ships.
     NAMED = pair(
         "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, \
@@ -313,10 +314,16 @@ impl Ships<'_> {
         Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
     }
 
-    /// The categories that have ships with vectors, in no order.
+    /// The categories that have ships with vectors, by name. Each is looked up after the one before:
+    /// the index holds every ship, and its categories are few.
     pub async fn vector_categories(&self) -> Result<Vec<String>> {
-        let found: Vec<Category> = self.0.database().all(CATEGORIES, &[]).await?;
-        Ok(found.into_iter().map(|found| found.category).collect())
+        let mut all: Vec<String> = Vec::new();
+        loop {
+            let last = all.last().map_or("", String::as_str);
+            let next = self.0.database().optional(NEXT_CATEGORY, args![last: last]).await?;
+            let Some(Category { category }) = next else { return Ok(all) };
+            all.push(category);
+        }
     }
 
     /// The vectors of every ship of a category that a search finds, in no order.

@@ -206,7 +206,7 @@ impl Ships<'_> {
 }
 
 /// What stands for a ship in the audit.
-fn subject(name: &str) -> String {
+pub(crate) fn subject(name: &str) -> String {
     format!("ship:{name}")
 }
 

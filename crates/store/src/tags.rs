@@ -7,7 +7,7 @@ use crate::checks;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::record::{Counted, record};
-use crate::ships::{self, Ships};
+use crate::ships::{self, Ships, subject};
 use crate::statements::{pair, same, statements};
 
 /// The most tags of one ship.
@@ -49,7 +49,7 @@ impl Ships<'_> {
         check_count(&mut tx, name).await?;
         if new > 0 {
             let after = json!({ "tag": tag });
-            tx.note(self.0.now_us(), "ship.tag", format!("ship:{name}"), None, Some(after));
+            tx.note(self.0.now_us(), "ship.tag", subject(name), None, Some(after));
         }
         tx.commit().await
     }
@@ -61,7 +61,7 @@ impl Ships<'_> {
         let removed = tx.execute(REMOVE, args![ship: name, tag: tag]).await?;
         if removed > 0 {
             let before = json!({ "tag": tag });
-            tx.note(self.0.now_us(), "ship.untag", format!("ship:{name}"), Some(before), None);
+            tx.note(self.0.now_us(), "ship.untag", subject(name), Some(before), None);
         }
         tx.commit().await?;
         if removed > 0 { Ok(()) } else { Err(StoreError::missing("tag", format!("{name}/{tag}"))) }

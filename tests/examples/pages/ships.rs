@@ -32,10 +32,10 @@ pub async fn made(server: &TestServer, ships: usize) {
     settled(server).await;
 }
 
-/// Waits until the fleet's page says nothing of ships that change.
+/// Waits until the fleet's page says nothing of ships that change; of a page that is not measured.
 pub async fn settled(server: &TestServer) {
     loop {
-        let asked = server.request(Method::GET, "/").header("accept", "text/html");
+        let asked = server.request(Method::GET, "/?standing=holds").header("accept", "text/html");
         let page = asked.send().await.expect("an answer").text().await.expect("a page");
         tokio::time::sleep(PAUSE).await;
         if !page.contains("Some ships changed a moment ago") {

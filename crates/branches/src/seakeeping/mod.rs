@@ -1,6 +1,7 @@
 //! Standard deviations of heave, pitch and roll from a directional wave spectrum (Kanazawa 2023,
-//! sec. 3.4): responses by closed forms or by a table, and a factor for each motion that is learned from samples, the
-//! common ones thinned out. The branch is in series: it maps what the responses give.
+//! sec. 3.4): responses by closed forms or by a table, and a factor for each motion that is learned
+//! from samples, the common ones thinned out. The branch is in series: it maps what the responses
+//! give.
 
 mod factor;
 mod heave_pitch;
@@ -15,5 +16,5 @@ pub use factor::factor;
 pub use hull::WaveHull;
 pub use response::{Motion, Responses};
 pub use spectrum::DirectionalSpectrum;
-pub use table::{ResponseTable, TableFault};
+pub use table::{ResponseGrid, ResponseTable, TableFault, TableFaults};
 pub use thinned::thinned;

@@ -1,6 +1,6 @@
 //! Responses of a ship among waves as a table: by a strip theory program, by panels, or measured.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +9,11 @@ use super::response::{Motion, Responses};
 /// Amplitudes of motions by that of a wave, on a grid of frequencies and directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ResponseTable {
+pub struct ResponseGrid {
     /// Frequencies of waves, rad/s, rising.
     pub omegas: Vec<f64>,
-    /// Where waves go from the bow, rad, rising within one turn: pi is a head sea.
+    /// Where waves go from the bow, rad, rising: all around the ship, or from 0 to pi, of which the
+    /// other side is the mirror image. pi is a head sea.
     pub betas: Vec<f64>,
     /// By frequency, then by direction, m/m.
     pub heave: Vec<Vec<f64>>,
@@ -21,6 +22,11 @@ pub struct ResponseTable {
     /// The same, rad/m.
     pub roll: Vec<Vec<f64>>,
 }
+
+/// A grid that has been checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ResponseGrid", into = "ResponseGrid")]
+pub struct ResponseTable(ResponseGrid);
 
 /// Why a table cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -31,6 +37,9 @@ pub enum TableFault {
     /// Directions go around the ship more than once.
     #[error("betas: they go around the ship more than once")]
     Turn,
+    /// Directions leave out a part of the ship's surroundings.
+    #[error("betas: they neither go around the ship nor from 0 to pi")]
+    Gap,
     /// A row is missing or too long.
     #[error("{field}: {found} rows or columns, where the grid has {wanted}")]
     Shape {
@@ -53,24 +62,71 @@ pub enum TableFault {
     },
 }
 
-impl ResponseTable {
-    /// Everything that is wrong with it; nothing where it can be used.
-    pub fn faults(&self) -> Vec<TableFault> {
+/// Everything that is wrong with a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TableFaults(pub Vec<TableFault>);
+
+impl std::fmt::Display for TableFaults {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let all: Vec<String> = self.0.iter().map(ToString::to_string).collect();
+        f.write_str(&all.join("; "))
+    }
+}
+
+impl std::error::Error for TableFaults {}
+
+impl TryFrom<ResponseGrid> for ResponseTable {
+    type Error = TableFaults;
+
+    fn try_from(grid: ResponseGrid) -> Result<Self, TableFaults> {
+        let faults = grid.faults();
+        if faults.is_empty() { Ok(Self(grid)) } else { Err(TableFaults(faults)) }
+    }
+}
+
+impl From<ResponseTable> for ResponseGrid {
+    fn from(table: ResponseTable) -> Self {
+        table.0
+    }
+}
+
+/// How far from 0 and pi directions of one side may begin and end, rad.
+const NEAR: f64 = 1e-3;
+/// How many times the largest step the step from the last direction to the first may be.
+const SEAM: f64 = 2.0;
+
+impl ResponseGrid {
+    fn faults(&self) -> Vec<TableFault> {
         let mut faults: Vec<TableFault> = [("omegas", &self.omegas), ("betas", &self.betas)]
             .into_iter()
             .filter(|(_, grid)| !rises(grid))
             .map(|(field, _)| TableFault::Grid(field))
             .collect();
-        if let (Some(first), Some(last)) = (self.betas.first(), self.betas.last())
-            && last - first >= TAU
-        {
-            faults.push(TableFault::Turn);
+        if rises(&self.betas) {
+            faults.extend(self.around());
         }
         for (field, rows) in [("heave", &self.heave), ("pitch", &self.pitch), ("roll", &self.roll)]
         {
             faults.extend(self.of_motion(field, rows));
         }
         faults
+    }
+
+    /// What is wrong with the directions as a way around the ship.
+    fn around(&self) -> Option<TableFault> {
+        let over = self.betas[self.betas.len() - 1] - self.betas[0];
+        let steps = self.betas.windows(2).map(|pair| pair[1] - pair[0]);
+        let most = steps.fold(0.0, f64::max);
+        match over {
+            _ if over >= TAU => Some(TableFault::Turn),
+            _ if self.is_one_side() || TAU - over <= SEAM * most => None,
+            _ => Some(TableFault::Gap),
+        }
+    }
+
+    fn is_one_side(&self) -> bool {
+        let (first, last) = (self.betas[0], self.betas[self.betas.len() - 1]);
+        first.abs() < NEAR && (last - PI).abs() < NEAR
     }
 
     fn of_motion(&self, field: &'static str, rows: &[Vec<f64>]) -> Vec<TableFault> {
@@ -103,9 +159,12 @@ impl ResponseTable {
 impl Responses for ResponseTable {
     /// Linear between neighbours in both; beyond the frequencies that of the nearest.
     fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64 {
-        let rows = self.rows(motion);
-        let (low, high, share) = between(&self.omegas, omega);
-        let (left, right, turned) = around(&self.betas, beta);
+        let (grid, rows) = (&self.0, self.0.rows(motion));
+        let (low, high, share) = between(&grid.omegas, omega);
+        let (left, right, turned) = match grid.is_one_side() {
+            true => between(&grid.betas, beta.rem_euclid(TAU).min((-beta).rem_euclid(TAU))),
+            false => around(&grid.betas, beta),
+        };
         let along = |row: &[f64]| row[left] + turned * (row[right] - row[left]);
         let (below, above) = (along(&rows[low]), along(&rows[high]));
         below + share * (above - below)
@@ -142,10 +201,10 @@ mod tests {
     use crate::seakeeping::hull::GUNNERUS as HULL;
     use crate::seakeeping::{DirectionalSpectrum, WaveHull};
 
-    /// What the closed forms give, on a grid.
-    fn table() -> ResponseTable {
+    /// What the closed forms give every 5 degrees, on a grid.
+    fn grid(directions: i32) -> ResponseGrid {
         let omegas: Vec<f64> = (0..120).map(|k| 0.1 + 0.025 * f64::from(k)).collect();
-        let betas: Vec<f64> = (0..72).map(|k| (5.0 * f64::from(k)).to_radians()).collect();
+        let betas: Vec<f64> = (0..directions).map(|k| (5.0 * f64::from(k)).to_radians()).collect();
         let of = |motion| {
             let row = |omega: &f64| {
                 betas.iter().map(|beta| HULL.response(motion, *omega, *beta)).collect()
@@ -153,7 +212,11 @@ mod tests {
             omegas.iter().map(row).collect::<Vec<Vec<f64>>>()
         };
         let [heave, pitch, roll] = WaveHull::MOTIONS.map(of);
-        ResponseTable { omegas, betas, heave, pitch, roll }
+        ResponseGrid { omegas, betas, heave, pitch, roll }
+    }
+
+    fn table(directions: i32) -> ResponseTable {
+        ResponseTable::try_from(grid(directions)).unwrap_or_else(|faults| panic!("{faults}"))
     }
 
     /// JONSWAP's shape is not needed: any sea that covers frequencies and directions.
@@ -170,36 +233,46 @@ mod tests {
 
     #[test]
     fn a_table_of_the_closed_forms_gives_their_deviations() {
-        let (table, sea) = (table(), sea());
-        assert_eq!(table.faults(), []);
-        for motion in WaveHull::MOTIONS {
-            let (by_table, closed) = (sea.deviation(&table, motion), sea.deviation(&HULL, motion));
+        let sea = sea();
+        for (table, motion) in [table(72), table(37)]
+            .iter()
+            .flat_map(|table| WaveHull::MOTIONS.map(|motion| (table, motion)))
+        {
+            let (by_table, closed) = (sea.deviation(table, motion), sea.deviation(&HULL, motion));
             assert!((by_table / closed - 1.0).abs() < 0.01, "{motion:?}: {by_table} for {closed}");
         }
     }
 
     #[test]
     fn directions_go_around_the_ship() {
-        let table = table();
-        let at = |beta: f64| table.response(Motion::Roll, 0.8, beta);
-        assert!((at(-0.02) - at(TAU - 0.02)).abs() < 1e-12);
-        assert!((at(6.25) - at(6.25 + TAU)).abs() < 1e-12);
+        let at = |directions: i32, beta: f64| table(directions).response(Motion::Roll, 0.8, beta);
+        assert!((at(72, -0.02) - at(72, TAU - 0.02)).abs() < 1e-12);
+        assert!((at(72, 6.25) - at(72, 6.25 + TAU)).abs() < 1e-12);
+        assert!((at(37, 1.5 * PI) - at(37, 0.5 * PI)).abs() < 1e-12 && at(37, 1.5 * PI) > 0.1);
     }
 
     #[test]
     fn every_fault_is_told_at_once() {
-        let mut table = table();
-        table.omegas.swap(3, 4);
-        table.pitch[2].pop();
-        table.roll[5][7] = f64::NAN;
-        let told: Vec<String> = table.faults().iter().map(ToString::to_string).collect();
+        let mut grid = grid(72);
+        grid.omegas.swap(3, 4);
+        grid.pitch[2].pop();
+        grid.roll[5][7] = f64::NAN;
+        let told = ResponseTable::try_from(grid).map_err(|faults| faults.to_string());
         assert_eq!(
             told,
-            [
-                "omegas: at least two numbers that rise are needed",
-                "pitch: 71 rows or columns, where the grid has 72",
-                "roll: row 6, column 8: an amplitude is a number of at least 0",
-            ]
+            Err("omegas: at least two numbers that rise are needed; pitch: 71 rows or columns, \
+                 where the grid has 72; roll: row 6, column 8: an amplitude is a number of at \
+                 least 0"
+                .to_owned())
         );
+    }
+
+    #[test]
+    fn a_table_that_leaves_out_a_side_is_refused() {
+        let faults = |directions| ResponseTable::try_from(grid(directions)).err();
+        assert_eq!(faults(30), Some(TableFaults(vec![TableFault::Gap])));
+        assert_eq!(faults(74), Some(TableFaults(vec![TableFault::Turn])));
+        let json = r#"{"omegas":[],"betas":[],"heave":[],"pitch":[],"roll":[]}"#;
+        assert!(serde_json::from_str::<ResponseTable>(json).is_err());
     }
 }

@@ -98,11 +98,14 @@ fn dependence(of: &RemainderDependence) -> String {
     };
     let names: Vec<String> = of.variables.iter().map(one).collect();
     let of_what = format!("What is left of d{}/dt", of.channel);
-    match names.is_empty() {
-        true => format!("{of_what} follows nothing that was recorded\n"),
-        false => format!(
-            "{of_what}: {:.0} % of it follows what was recorded, most of all {}\n",
-            100.0 * of.explained,
+    let explained = format!("{:.0} %", 100.0 * of.explained);
+    match (names.is_empty(), explained == "0 %") {
+        (true, true) => format!("{of_what} follows nothing that was recorded\n"),
+        (true, false) => format!(
+            "{of_what}: {explained} of it follows what was recorded, no one variable by itself\n"
+        ),
+        (false, _) => format!(
+            "{of_what}: {explained} of it follows what was recorded, most of all {}\n",
             names.join(", ")
         ),
     }

@@ -47,6 +47,13 @@ pub(crate) struct DependenceThresholds {
     /// `n_h`: blocks into which a series is cut, every second of which is learned from, a count.
     /// Source: chosen; a zigzag's half period or longer in records of usual length.
     pub blocks: usize,
+    /// `n_s`: fewest samples of a block, a count; in shorter series every second one is learned from
+    /// as a whole. Source: chosen; with fewer a block's ends, which are like their neighbours, are
+    /// most of it.
+    pub block: usize,
+    /// `n_m`: fewest samples of an acceleration, a count. Source: derived: the fewest from which a
+    /// branch is trained, twice, as half is learned from.
+    pub samples: usize,
     /// `n_c`: points of a curve, a count. Source: chosen, about what a small plot shows.
     pub points: usize,
     /// `s_d`: share of the variance above which a variable is shown, dimensionless. Source: chosen;
@@ -62,6 +69,8 @@ pub(super) const DEPENDENCE: DependenceThresholds = DependenceThresholds {
     leaf: 5,
     depth: 6,
     blocks: 16,
+    block: 4,
+    samples: 80,
     points: 9,
     share: 0.05,
     shown: 3,

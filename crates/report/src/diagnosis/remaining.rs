@@ -42,11 +42,15 @@ fn dependence(of: &RemainderDependence) -> String {
     };
     let names: Vec<String> = of.variables.iter().map(one).collect();
     let equation = motion(&of.channel);
-    match names.is_empty() {
-        true => format!("What is left in {equation} follows nothing that was recorded."),
-        false => format!(
-            "{} % of what is left in {equation} follows what was recorded, most of all {}.",
-            percent(of.explained),
+    let explained = percent(of.explained);
+    match (names.is_empty(), explained == "0") {
+        (true, true) => format!("What is left in {equation} follows nothing that was recorded."),
+        (true, false) => format!(
+            "{explained} % of what is left in {equation} follows what was recorded, no one variable \
+             by itself."
+        ),
+        (false, _) => format!(
+            "{explained} % of what is left in {equation} follows what was recorded, most of all {}.",
             list(&names)
         ),
     }
