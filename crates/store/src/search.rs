@@ -314,8 +314,8 @@ impl Ships<'_> {
         Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
     }
 
-    /// The categories that have ships with vectors, by name. Each is looked up after the one before:
-    /// the index holds every ship, and its categories are few.
+    /// The categories that have ships with vectors, by name. Each is looked up after the one
+    /// before: the index holds every ship, and its categories are few.
     pub async fn vector_categories(&self) -> Result<Vec<String>> {
         let mut all: Vec<String> = Vec::new();
         loop {

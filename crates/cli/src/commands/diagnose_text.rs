@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnose::{
-    Confounded, Diagnosis, Found, Hypothesis, LimitedBy, NextTrial, RemainderDependence,
-    Unexplained, VariableDependence, Verdict,
+    Confounded, Diagnosis, Found, Hypothesis, LimitedBy, NextTrial, Unexplained, Verdict,
 };
 use sistership_model::Model;
-use sistership_report::distinct;
+use sistership_report::{dependence, distinct};
 
 use super::channels::CHANNELS;
 use super::worth;
@@ -28,7 +27,7 @@ pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> S
     parts.extend(diagnosis.effects.iter().map(effect));
     if !diagnosis.unexplained.is_empty() {
         parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
-        parts.extend(diagnosis.depends_on.iter().map(dependence));
+        parts.extend(diagnosis.depends_on.iter().map(|left| dependence(left) + "\n"));
     }
     parts.extend(diagnosis.next_trial.as_ref().map(next_trial));
     parts.extend(limits(diagnosis));
@@ -90,25 +89,6 @@ fn unexplained(stretches: &[Unexplained]) -> TextTable {
         table.row([stretch.trial.clone(), stretch.channel.clone()].into_iter().chain(figures));
     }
     table
-}
-
-fn dependence(of: &RemainderDependence) -> String {
-    let one = |variable: &VariableDependence| {
-        format!("{} ({:.0} %)", variable.variable, 100.0 * variable.share.min(1.0))
-    };
-    let names: Vec<String> = of.variables.iter().map(one).collect();
-    let of_what = format!("What is left of d{}/dt", of.channel);
-    let explained = format!("{:.0} %", 100.0 * of.explained);
-    match (names.is_empty(), explained == "0 %") {
-        (true, true) => format!("{of_what} follows nothing that was recorded\n"),
-        (true, false) => format!(
-            "{of_what}: {explained} of it follows what was recorded, no one variable by itself\n"
-        ),
-        (false, _) => format!(
-            "{of_what}: {explained} of it follows what was recorded, most of all {}\n",
-            names.join(", ")
-        ),
-    }
 }
 
 fn next_trial(next: &NextTrial) -> String {

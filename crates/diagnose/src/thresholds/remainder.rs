@@ -47,8 +47,8 @@ pub(crate) struct DependenceThresholds {
     /// `n_h`: blocks into which a series is cut, every second of which is learned from, a count.
     /// Source: chosen; a zigzag's half period or longer in records of usual length.
     pub blocks: usize,
-    /// `n_s`: fewest samples of a block, a count; in shorter series every second one is learned from
-    /// as a whole. Source: chosen; with fewer a block's ends, which are like their neighbours, are
+    /// `n_s`: fewest samples of a block, a count; of shorter series every second one is learned
+    /// from as a whole. Source: chosen; with fewer a block's ends, which are like their neighbours, are
     /// most of it.
     pub block: usize,
     /// `n_m`: fewest samples of an acceleration, a count. Source: derived: the fewest from which a

@@ -23,6 +23,7 @@ mod tests;
 
 pub use distinct::distinct;
 pub use input::DiagnosisInput;
+pub use remaining::dependence;
 
 use serde_json::{Value, json};
 

@@ -34,7 +34,8 @@ pub(crate) fn dependences(all: &[RemainderDependence]) -> Vec<String> {
     all.iter().map(dependence).collect()
 }
 
-fn dependence(of: &RemainderDependence) -> String {
+/// On what depends what is left of an acceleration, in a sentence.
+pub fn dependence(of: &RemainderDependence) -> String {
     let percent = |share: f64| fixed(100.0 * share.min(1.0), 0);
     let one = |variable: &VariableDependence| {
         let (name, ..) = recorded(&variable.variable);
@@ -46,11 +47,12 @@ fn dependence(of: &RemainderDependence) -> String {
     match (names.is_empty(), explained == "0") {
         (true, true) => format!("What is left in {equation} follows nothing that was recorded."),
         (true, false) => format!(
-            "{explained} % of what is left in {equation} follows what was recorded, no one variable \
-             by itself."
+            "{explained} % of what is left in {equation} follows what was recorded, no one \
+             variable by itself."
         ),
         (false, _) => format!(
-            "{explained} % of what is left in {equation} follows what was recorded, most of all {}.",
+            "{explained} % of what is left in {equation} follows what was recorded, most of all \
+             {}.",
             list(&names)
         ),
     }

@@ -58,7 +58,7 @@ pub(super) async fn note(
     Place(ship): Place<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    // Forms send ends of lines as two characters (WHATWG, HTML, 4.10.22), of which a person sees one.
+    // Forms send ends of lines as two characters (WHATWG, HTML, 4.10.22); a person sees one.
     let text = form.needed("text")?.replace("\r\n", "\n").parse::<Remark>();
     let text = text.map_err(|message| Problem::invalid("text", message))?;
     app.store().ships().note(&ship, &text).await?;
