@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use sistership_model::FileError;
 use sistership_model::manifest::Manifest;
 use sistership_model::trial::{Finding, Trial};
@@ -81,25 +83,33 @@ impl Listed {
     }
 }
 
-/// What `take` makes of each trial of a path, in the manifest's order.
-fn each<T>(
+/// What `take` makes of each trial of a path, in the manifest's order; files are read side by side.
+fn each<T: Send>(
     path: &Path,
-    mut take: impl FnMut(String, io::Result<Examined>) -> T,
+    take: impl Fn(String, io::Result<Examined>) -> T + Sync,
 ) -> Result<(Option<Manifest>, Vec<T>), FileError> {
     let (manifest, listed) = listed(path)?;
-    let mut taken: Vec<Option<T>> = listed.iter().map(|_| None).collect();
-    for at in 0..listed.len() {
-        if taken[at].is_none() {
-            let same =
-                (at..listed.len()).filter(|&k| k == at || listed[k].shares_file(&listed[at]));
-            let same: Vec<usize> = same.collect();
-            let group: Vec<&Listed> = same.iter().map(|&k| &listed[k]).collect();
-            for (k, examined) in same.into_iter().zip(examined(&group)) {
-                taken[k] = Some(take(listed[k].name.clone(), examined));
-            }
+    let taken = |places: Vec<usize>| -> Vec<(usize, T)> {
+        let group: Vec<&Listed> = places.iter().map(|&k| &listed[k]).collect();
+        let each = places.iter().zip(examined(&group));
+        each.map(|(&k, examined)| (k, take(listed[k].name.clone(), examined))).collect()
+    };
+    let mut all: Vec<(usize, T)> =
+        by_file(&listed).into_par_iter().with_max_len(1).flat_map_iter(taken).collect();
+    all.sort_by_key(|(place, _)| *place);
+    Ok((manifest, all.into_iter().map(|(_, taken)| taken).collect()))
+}
+
+/// Places of what is read in one pass.
+fn by_file(listed: &[Listed]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (place, this) in listed.iter().enumerate() {
+        match groups.iter_mut().find(|group| listed[group[0]].shares_file(this)) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
         }
     }
-    Ok((manifest, taken.into_iter().flatten().collect()))
+    groups
 }
 
 /// One file, or several stretches of one, which are read in one pass.
