@@ -8,6 +8,7 @@ pub struct Gear {
     limit_rad: f64,
     rate_rad_s: f64,
     time_constant_s: f64,
+    band_rad: f64,
 }
 
 impl Gear {
@@ -17,12 +18,19 @@ impl Gear {
             limit_rad: steering.limit_deg.to_radians(),
             rate_rad_s: steering.rate_deg_s.to_radians(),
             time_constant_s: steering.time_constant_s,
+            band_rad: 0.0,
         }
     }
 
     /// The same gear with a further lag, s.
     pub fn with_lag(self, lag_s: f64) -> Self {
         Self { time_constant_s: self.time_constant_s + lag_s, ..self }
+    }
+
+    /// The same gear that follows its order only where that leaves a band of so much to either
+    /// side, rad.
+    pub fn with_band(self, band_rad: f64) -> Self {
+        Self { band_rad, ..self }
     }
 
     /// Largest rudder angle, rad.
@@ -35,6 +43,11 @@ impl Gear {
         self.rate_rad_s
     }
 
+    /// Half of the band within which an order is not followed, rad.
+    pub fn band_rad(&self) -> f64 {
+        self.band_rad
+    }
+
     /// Time constant, s.
     pub fn time_constant_s(&self) -> f64 {
         self.time_constant_s
@@ -44,7 +57,22 @@ impl Gear {
     /// what it covers in one step of `step_s` it goes straight there.
     pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         let order = order_rad.clamp(-self.limit_rad, self.limit_rad);
+        let order = angle_rad.clamp(order - self.band_rad, order + self.band_rad);
         let time = self.time_constant_s.max(step_s);
         ((order - angle_rad) / time).clamp(-self.rate_rad_s, self.rate_rad_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_order_within_the_play_is_not_followed() {
+        let steering = Steering { limit_deg: 35.0, rate_deg_s: 2.0, ..Steering::default() };
+        let gear = Gear::new(&steering).with_band(0.02);
+        assert_eq!(gear.rate(0.1, 0.09, 1.0), 0.0);
+        assert!((gear.rate(0.1, 0.05, 1.0) - 0.03).abs() < 1e-12, "to the edge of the play");
+        assert!((gear.rate(-0.1, -0.05, 1.0) + 0.03).abs() < 1e-12);
     }
 }

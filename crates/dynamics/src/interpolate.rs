@@ -65,9 +65,26 @@ pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
     out
 }
 
+/// What follows samples only where they leave a band about it (a play, or backlash); it starts with
+/// the first sample.
+pub fn within_band(values: &[f64], half: f64) -> Vec<f64> {
+    let mut out = values.to_vec();
+    for k in 1..values.len() {
+        out[k] = out[k - 1].clamp(values[k] - half, values[k] + half);
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_behind_a_play_follows_at_a_distance_and_turns_late() {
+        let recorded = [0.0, 0.5, 3.0, 2.5, 1.5, 0.0, 0.5];
+        assert_eq!(within_band(&recorded, 1.0), [0.0, 0.0, 2.0, 2.0, 2.0, 1.0, 1.0]);
+        assert_eq!(within_band(&recorded, 0.0), recorded);
+    }
 
     #[test]
     fn lines_are_exact_and_steps_do_not_overshoot() {

@@ -33,6 +33,7 @@ pub struct Plant {
     open: Vec<String>,
     input_defaults: Vec<Option<f64>>,
     lags_s: Vec<(usize, f64)>,
+    bands: Vec<(usize, f64)>,
 }
 
 /// Where the outputs stand on the tape.
@@ -99,7 +100,8 @@ impl Plant {
             open,
             input_names: law.inputs.keys().cloned().collect(),
             input_defaults: law.inputs.values().map(|input| input.default).collect(),
-            lags_s: lags(equations)?,
+            lags_s: by_input(equations, &equations.law().dressing.lags)?,
+            bands: by_input(equations, &equations.law().dressing.bands)?,
         })
     }
 
@@ -116,6 +118,11 @@ impl Plant {
     /// Inputs that reach the ship through a lag: their place and its time constant, s.
     pub fn lags_s(&self) -> &[(usize, f64)] {
         &self.lags_s
+    }
+
+    /// Half widths of the dead bands of inputs, by the input's place.
+    pub fn bands(&self) -> &[(usize, f64)] {
+        &self.bands
     }
 
     /// Whether the law has roll.
@@ -164,8 +171,11 @@ fn lay_out(
     Ok(layout)
 }
 
-/// Time constants of the inputs that reach the ship through a lag, by the input's place.
-fn lags(equations: &EquationsOfMotion<'_>) -> Result<Vec<(usize, f64)>, PlantError> {
+/// Figures of inputs by the input's place, none below zero.
+fn by_input(
+    equations: &EquationsOfMotion<'_>,
+    figures: &[(String, Expr)],
+) -> Result<Vec<(usize, f64)>, PlantError> {
     let law = equations.law();
     let one = |(input, expr): &(String, Expr)| {
         let place = law.inputs.get_index_of(input)?;
@@ -173,7 +183,7 @@ fn lags(equations: &EquationsOfMotion<'_>) -> Result<Vec<(usize, f64)>, PlantErr
         let lowered = lowering.output(expr);
         Some(lowered.map(|_| (place, lowering.finish().values(&[])[0].max(0.0))))
     };
-    law.dressing.lags.iter().filter_map(one).collect()
+    figures.iter().filter_map(one).collect()
 }
 
 fn constant_mass(tape: &Tape, layout: &Layout) -> Option<Matrix4<f64>> {

@@ -105,13 +105,13 @@ impl Ship {
         let envelope = Envelope::new(lpp_m, speed);
         let domain = model.branch.as_ref().map(|branch| &branch.domain);
         let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
-        let lag_s = plant
-            .lags_s()
-            .iter()
-            .find(|(place, _)| Some(*place) == slots.delta)
-            .map_or(0.0, |&(_, lag_s)| lag_s);
+        let of_rudder = |figures: &[(usize, f64)]| {
+            let found = figures.iter().find(|(place, _)| Some(*place) == slots.delta);
+            found.map_or(0.0, |&(_, figure)| figure)
+        };
+        let (lag_s, band_rad) = (of_rudder(plant.lags_s()), of_rudder(plant.bands()));
         Ok(Self {
-            gear: Gear::new(&model.steering).with_lag(lag_s),
+            gear: Gear::new(&model.steering).with_lag(lag_s).with_band(band_rad),
             plant,
             instruments,
             envelope,
@@ -205,6 +205,11 @@ impl Ship {
     /// Inputs that reach the ship through a lag: their place and its time constant, s.
     pub fn lags_s(&self) -> &[(usize, f64)] {
         self.plant.lags_s()
+    }
+
+    /// Half widths of the dead bands of inputs, by the input's place.
+    pub fn bands(&self) -> &[(usize, f64)] {
+        self.plant.bands()
     }
 
     /// What the instruments say of a state; `inputs` as in [`Ship::rate_with`].

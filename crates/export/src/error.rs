@@ -19,6 +19,14 @@ pub enum ExportError {
         /// The input behind the lag.
         input: String,
     },
+    /// An effect keeps an input from what was ordered.
+    #[error("`{model}` carries a dead band on `{input}`, which no exported format knows")]
+    Band {
+        /// The model.
+        model: String,
+        /// The input with the band.
+        input: String,
+    },
     /// An effect of the model cannot be used.
     #[error("{field}: {message}")]
     Effect {

@@ -184,6 +184,9 @@ fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
     if let Some((input, _)) = law.dressing.lags.iter().find(|(input, _)| input != "delta") {
         return Err(ExportError::Lag { model: model.name.clone(), input: input.clone() });
     }
+    if let Some((input, _)) = law.dressing.bands.first() {
+        return Err(ExportError::Band { model: model.name.clone(), input: input.clone() });
+    }
     let (effect, form, parameters) = CURRENT;
     for name in parameters.map(|parameter| qualified(effect, form, parameter)) {
         let Some(value) = law.dressing.parameters.remove(&name) else { continue };

@@ -21,7 +21,7 @@ pub(super) struct InstrumentBlock {
 impl InstrumentBlock {
     pub fn new(system: &ResidualSystem, measured: &[usize], detail: Detail) -> Self {
         let tape = &system.instruments;
-        let first = tape.inputs().len() - system.lagged.len();
+        let first = tape.inputs().len() - system.followed.len();
         let of_column = |column: &usize| first + column - system.columns.nuisance.len();
         let states = if detail == Detail::Whole { system.states } else { &[] };
         let inputs = states.iter().map(|&state| of_instruments(state));

@@ -81,9 +81,11 @@ fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64>
 
 /// The deviation of a normal variable with the median of these magnitudes.
 fn scatter(magnitudes: &[f64]) -> f64 {
-    let mut sorted = magnitudes.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or_default() / 0.6745
+    let (mut ordered, middle) = (magnitudes.to_vec(), magnitudes.len() / 2);
+    if ordered.is_empty() {
+        return 0.0;
+    }
+    *ordered.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
 }
 
 #[cfg(test)]

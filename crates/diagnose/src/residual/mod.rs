@@ -14,6 +14,7 @@
 
 mod columns;
 mod filter;
+mod followed;
 mod gram;
 mod instruments;
 mod jumps;

@@ -1,13 +1,12 @@
 //! The recorded motion that a model is linearised along.
 
-use sistership_dynamics::interpolate::lagged;
 use sistership_dynamics::state::at;
 use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::trial::Channel;
 
+use super::followed::Followed;
 use super::lanes::{LANES, lanes};
 use super::record::smoothed;
-use super::thresholds::RESIDUAL;
 use super::{ResidualSystem, TrialReadings};
 use sistership_estimate::refine::RefineError;
 
@@ -19,9 +18,9 @@ pub(super) struct RecordedPath<'a> {
     /// What the instruments said, by channel of the system; absent where nothing was recorded.
     pub said: Vec<Option<&'a [f64]>>,
     pub inputs: Vec<Vec<f64>>,
-    /// For each parameter that acts through a lag: the delayed input with a slightly (or first)
-    /// longer lag, and by how much.
-    pub delayed: Vec<Option<(Vec<f64>, f64)>>,
+    /// For each parameter that acts on how an input is followed: the input with a slightly (or
+    /// first) larger figure of that, and by how much.
+    pub followed: Vec<Option<(Vec<f64>, f64)>>,
 }
 
 impl<'a> RecordedPath<'a> {
@@ -48,8 +47,8 @@ impl<'a> RecordedPath<'a> {
         for (name, default) in &system.inputs {
             inputs.push(record.input(name, *default)?);
         }
-        let delayed = delayed(system, record, &mut inputs);
-        let mut path = Self { record, states, said, inputs, delayed };
+        let followed = followed(system, record, &mut inputs);
+        let mut path = Self { record, states, said, inputs, followed };
         path.correct(system);
         Ok(path)
     }
@@ -122,8 +121,8 @@ impl<'a> RecordedPath<'a> {
     }
 }
 
-/// Puts lags into effect and prepares their derivatives.
-fn delayed(
+/// Puts lags and dead bands into effect and prepares their derivatives.
+fn followed(
     system: &ResidualSystem,
     record: &TrialReadings<'_>,
     inputs: &mut [Vec<f64>],
@@ -135,21 +134,17 @@ fn delayed(
         .iter()
         .flat_map(|c| c.at.iter().copied().zip(c.form.parameters.values()));
     let mut derivatives = Vec::new();
-    for ((value, parameter), input) in parameters.zip(&system.lagged) {
-        let Some(input) = *input else {
+    for ((value, parameter), followed) in parameters.zip(&system.followed) {
+        let Some(Followed { input, way }) = *followed else {
             derivatives.push(None);
             continue;
         };
-        let more = if value > 0.0 {
-            RESIDUAL.lag_share * value + RESIDUAL.lag_step_s
-        } else {
-            parameter.start.max(RESIDUAL.lag_step_s)
-        };
-        let longer = lagged(t_s, &inputs[input], value + more);
+        let more = way.more(value, parameter.start);
+        let larger = way.of(t_s, &inputs[input], value + more);
         if value > 0.0 {
-            inputs[input] = lagged(t_s, &inputs[input], value);
+            inputs[input] = way.of(t_s, &inputs[input], value);
         }
-        derivatives.push(Some((longer, more)));
+        derivatives.push(Some((larger, more)));
     }
     derivatives
 }

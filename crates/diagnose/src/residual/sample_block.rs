@@ -97,10 +97,10 @@ impl<'a> SampleBlock<'a> {
         (0..axes).map(row).collect()
     }
 
-    /// What a parameter delays, with a longer lag.
-    pub fn delayed(&self, parameter: usize) -> Lanes<LANES> {
-        let longer = self.path.delayed[parameter].as_ref();
-        longer.map_or([0.0; LANES], |(longer, _)| lanes(|k| longer[self.samples[k]]))
+    /// What a parameter changes of an input, with a larger figure.
+    pub fn followed(&self, parameter: usize) -> Lanes<LANES> {
+        let larger = self.path.followed[parameter].as_ref();
+        larger.map_or([0.0; LANES], |(larger, _)| lanes(|k| larger[self.samples[k]]))
     }
 
     /// An entry of the diagonal of the mass matrix.

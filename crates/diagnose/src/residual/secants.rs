@@ -1,4 +1,4 @@
-//! Parameters whose derivative at their absence says nothing, and lags: what they change at a
+//! Parameters whose derivative at their absence says nothing, and lags and dead bands: what they change at a
 //! distance, by it.
 
 use sistership_dynamics::tape::{Direction, Lanes, Slots};
@@ -6,6 +6,7 @@ use sistership_model::effect::EffectParameter;
 use sistership_model::law::STATES;
 
 use super::ResidualSystem;
+use super::followed::Followed;
 use super::lanes::{LANES, lanes};
 use super::path::RecordedPath;
 use super::sample_block::SampleBlock;
@@ -22,8 +23,8 @@ struct Secant {
 /// What an input is moved to.
 #[derive(Clone, Copy)]
 enum Moved {
-    /// An input of the law, to what it is with a longer lag.
-    Delayed { input: usize },
+    /// An input of the law, to what it is with a longer lag or a wider band.
+    Followed { input: usize },
     /// A parameter of the tape, to a value.
     To { input: usize, value: f64 },
 }
@@ -31,7 +32,7 @@ enum Moved {
 impl Moved {
     fn input(self) -> usize {
         match self {
-            Self::Delayed { input } => STATES.len() + input,
+            Self::Followed { input } => STATES.len() + input,
             Self::To { input, .. } => input,
         }
     }
@@ -70,7 +71,7 @@ impl Secants {
             let input = secant.moved.input();
             self.inputs[input] = match secant.moved {
                 Moved::To { value, .. } => [value; LANES],
-                Moved::Delayed { .. } => block.delayed(secant.parameter),
+                Moved::Followed { .. } => block.followed(secant.parameter),
             };
             let tape = &block.system.motion.tape;
             tape.run_among(secant.direction.reached(), &self.inputs, &mut self.there);
@@ -94,8 +95,8 @@ fn wanted(
     at: f64,
     parameter: &EffectParameter,
 ) -> Option<(Moved, f64)> {
-    if let (Some((_, by)), Some(input)) = (&path.delayed[j], system.lagged[j]) {
-        return Some((Moved::Delayed { input }, *by));
+    if let (Some((_, by)), Some(Followed { input, .. })) = (&path.followed[j], system.followed[j]) {
+        return Some((Moved::Followed { input }, *by));
     }
     let says_nothing = at == parameter.absent && parameter.start != parameter.absent;
     let input = STATES.len() + system.inputs.len() + j;

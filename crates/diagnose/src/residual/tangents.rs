@@ -37,7 +37,7 @@ pub(super) fn tangents(
     });
     let first = STATES.len() + system.inputs.len();
     let column = |j: usize| (Place::Column(system.columns.nuisance.len() + j), first + j);
-    let parameters = (0..system.lagged.len()).filter(|&j| by_derivative(j)).map(column);
+    let parameters = (0..system.followed.len()).filter(|&j| by_derivative(j)).map(column);
     let tangent = |(place, input)| Tangent { place, direction: system.motion.tape.along(input) };
     states.filter(|_| detail == Detail::Whole).chain(parameters).map(tangent).collect()
 }

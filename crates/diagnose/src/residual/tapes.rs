@@ -1,6 +1,7 @@
 //! A model, the effects that may be missing and the coefficients that may move, on tapes.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use sistership_dynamics::equations::{Attitude, Coefficients, EquationsOfMotion, Lowering};
 use sistership_dynamics::instruments::{input_names, readings};
@@ -9,10 +10,12 @@ use sistership_dynamics::tape::Tape;
 use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
+use sistership_model::effect::Form;
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
+use super::followed::{Followed, Following};
 use super::{Columns, NuisanceKind, lacked_name};
 use sistership_estimate::refine::RefineError;
 
@@ -36,8 +39,8 @@ pub struct ResidualSystem {
     pub(super) instruments: Tape,
     /// What instruments say: place among the channels, by output.
     pub(super) says: Vec<usize>,
-    /// For each parameter of a candidate that acts through a lag: the input it delays.
-    pub(super) lagged: Vec<Option<usize>>,
+    /// For each parameter of a candidate that acts on how an input is followed: which, and how.
+    pub(super) followed: Vec<Option<Followed>>,
 }
 
 /// Forces, masses and kinematics; after states and inputs the tape takes the parameters of the
@@ -79,7 +82,7 @@ impl ResidualSystem {
         Ok(Self {
             motion: build.motion()?,
             regressors: build.regressors()?,
-            lagged: build.lagged(),
+            followed: build.followed(),
             inputs: equations.inputs(),
             columns,
             states,
@@ -168,22 +171,20 @@ impl SystemBuilder<'_> {
         Ok((lowering.finish(), says))
     }
 
-    /// A parameter acts through a lag where its form delays an input by a time constant that is
-    /// that parameter.
-    fn lagged(&self) -> Vec<Option<usize>> {
-        let mut lagged = Vec::new();
-        for candidate in &self.columns.candidates {
-            for name in candidate.form.parameters.keys() {
-                let input = candidate
-                    .form
-                    .lags
-                    .iter()
-                    .find(|(_, expr)| expr.names().contains(name.as_str()));
-                lagged.push(
-                    input.and_then(|(input, _)| self.equations.law().inputs.get_index_of(input)),
-                );
-            }
-        }
-        lagged
+    /// A parameter acts on how the ship follows an input where its form has a time constant or a
+    /// band of it that is that parameter.
+    fn followed(&self) -> Vec<Option<Followed>> {
+        let candidates = self.columns.candidates.iter();
+        let names = candidates.flat_map(|c| c.form.parameters.keys().map(|name| (&c.form, name)));
+        let of = |(form, name): (&Arc<Form>, &String)| {
+            let ways = [(Following::Late, &form.lags), (Following::WithinBand, &form.bands)];
+            ways.into_iter().find_map(|(way, figures)| {
+                let has = |(_, expr): &(&String, &Expr)| expr.names().contains(name.as_str());
+                let (input, _) = figures.iter().find(has)?;
+                let input = self.equations.law().inputs.get_index_of(input)?;
+                Some(Followed { input, way })
+            })
+        };
+        names.map(of).collect()
     }
 }

@@ -47,6 +47,13 @@ pub(super) struct ResidualThresholds {
     pub lag_share: f64,
     /// `h_0`: and by how much at least, s. Source: as [`Self::lag_share`].
     pub lag_step_s: f64,
+    /// `h_b`: by how much half of a dead band is wider at least, in the unit of the input. Source:
+    /// derived: a sixteenth of a degree, what a rudder's reading shows.
+    pub band_step: f64,
+    /// `n_b`: samples over which a record is taken in the mean before a play, a count. Source:
+    /// derived: white noise falls to a third, and a rudder that is recorded as often as usual moves
+    /// for longer.
+    pub band_mean: usize,
 }
 
 /// The values.
@@ -63,4 +70,6 @@ pub(super) const RESIDUAL: ResidualThresholds = ResidualThresholds {
     most_lost: 0.3,
     lag_share: 0.05,
     lag_step_s: 0.01,
+    band_step: 1e-3,
+    band_mean: 9,
 };

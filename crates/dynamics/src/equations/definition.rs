@@ -199,12 +199,13 @@ impl<'a> EquationsOfMotion<'a> {
         }
     }
 
-    /// Refuses what acts through a lag or on instruments, which some view does not know.
+    /// Refuses what acts through a lag or a dead band, or on instruments, which some view does not know.
     ///
     /// # Errors
     /// Names the model and the view.
     pub fn without_lags_or_instruments(&self, view: &'static str) -> Result<(), PlantError> {
-        if self.law.dressing.lags.is_empty() && self.law.dressing.measures.is_empty() {
+        let dressing = &self.law.dressing;
+        if dressing.lags.is_empty() && dressing.bands.is_empty() && dressing.measures.is_empty() {
             return Ok(());
         }
         Err(PlantError::Unsupported { model: self.model.name.clone(), view })

@@ -25,7 +25,7 @@ pub enum PlantError {
     #[error("masses of law `{0}` change with the motion: no sensitivities")]
     MovingMass(String),
     /// Some view knows neither lags nor instruments.
-    #[error("`{model}` carries a lag or an effect on instruments: no {view}")]
+    #[error("`{model}` carries a lag, a dead band or an effect on instruments: no {view}")]
     Unsupported {
         /// The model.
         model: String,

@@ -3,7 +3,7 @@
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
 
-use crate::interpolate::{MonotoneCubic, lagged};
+use crate::interpolate::{MonotoneCubic, lagged, within_band};
 use crate::plant::{Inputs, MAX_INPUTS};
 use crate::ship::Ship;
 use crate::state::{RECORDED, StateVector, at};
@@ -44,12 +44,13 @@ impl<'a> Record<'a> {
             .iter()
             .filter_map(|&(channel, index)| Some((index, trial.channel(channel)?)))
             .collect();
-        let lag_s = |place: usize| {
-            ship.lags_s().iter().find(|(of, _)| *of == place).map(|&(_, lag_s)| lag_s)
+        let of = |figures: &[(usize, f64)], place: usize| {
+            figures.iter().find(|(of, _)| *of == place).map_or(0.0, |&(_, figure)| figure)
         };
+        let follows = |place: usize| (of(ship.lags_s(), place), of(ship.bands(), place));
         let inputs = ship.law_inputs().enumerate();
         let inputs = inputs
-            .map(|(place, (name, default))| input(trial, name, default, lag_s(place)))
+            .map(|(place, (name, default))| input(trial, name, default, follows(place)))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             trial,
@@ -83,7 +84,7 @@ fn input<'a>(
     trial: &'a Trial,
     name: &str,
     default: Option<f64>,
-    lag_s: Option<f64>,
+    (lag_s, band): (f64, f64),
 ) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
     if name == TIME {
         let start = trial.t_s.first().copied().unwrap_or_default();
@@ -94,11 +95,11 @@ fn input<'a>(
     }
     let channel = input_channel(name);
     if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
-        return Ok(Ok(match lag_s {
-            Some(lag_s) if lag_s > 0.0 => {
-                MonotoneCubic::new(&trial.t_s, lagged(&trial.t_s, column, lag_s))
-            }
-            _ => MonotoneCubic::new(&trial.t_s, column),
+        let late = (lag_s > 0.0).then(|| lagged(&trial.t_s, column, lag_s));
+        let held = (band > 0.0).then(|| within_band(late.as_deref().unwrap_or(column), band));
+        return Ok(Ok(match held.or(late) {
+            Some(followed) => MonotoneCubic::new(&trial.t_s, followed),
+            None => MonotoneCubic::new(&trial.t_s, column),
         }));
     }
     let constant =

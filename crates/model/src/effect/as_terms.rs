@@ -37,8 +37,9 @@ impl AsTerms {
     /// As [`Law::with_effects`].
     pub fn new(model: &Model, law: &Law) -> Result<Option<Self>, (String, String)> {
         let dressed = law.with_effects(model)?;
-        let Dressing { accelerations, lags, measures, .. } = &dressed.dressing;
-        if !(accelerations.is_empty() && lags.is_empty() && measures.is_empty()) {
+        let Dressing { accelerations, lags, bands, measures, .. } = &dressed.dressing;
+        if !(accelerations.is_empty() && lags.is_empty() && bands.is_empty() && measures.is_empty())
+        {
             return Ok(None);
         }
         let bare = Model { effects: Vec::new(), ..model.clone() };

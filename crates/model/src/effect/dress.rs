@@ -82,6 +82,9 @@ impl Dresser<'_> {
             .lags
             .extend(self.form.lags.iter().map(|(name, e)| (name.clone(), self.expr(e))));
         law.dressing
+            .bands
+            .extend(self.form.bands.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+        law.dressing
             .measures
             .extend(self.form.measures.iter().map(|(channel, e)| (*channel, self.expr(e))));
     }

@@ -127,6 +127,11 @@ pub struct FormFile {
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub lags: IndexMap<String, String>,
+    /// Inputs that the ship follows only where they leave a band about what it has, with half of
+    /// the band's width in the unit of the input.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, String>")]
+    pub bands: IndexMap<String, String>,
     /// Forces in N and moments in N m that are added.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub forces: BTreeMap<Axis, String>,

@@ -32,6 +32,8 @@ pub struct Form {
     pub coefficients: IndexMap<String, Expr>,
     /// Time constants of inputs that reach the ship through a lag, s.
     pub lags: IndexMap<String, Expr>,
+    /// Half widths of the bands that inputs must leave before the ship follows them.
+    pub bands: IndexMap<String, Expr>,
     /// Forces and moments that are added.
     pub forces: BTreeMap<Axis, Expr>,
     /// What instruments say of the true state.
@@ -74,7 +76,8 @@ impl Form {
             .values()
             .chain(self.sees.values())
             .chain(self.coefficients.values())
-            .chain(self.lags.values());
+            .chain(self.lags.values())
+            .chain(self.bands.values());
         named
             .chain(self.accelerates.values())
             .chain(self.forces.values())

@@ -61,6 +61,7 @@ impl Form {
                 false,
             )?,
             lags: scope.formulas("lags", &file.lags, &|name| lagged(name), false)?,
+            bands: scope.formulas("bands", &file.bands, &|name| banded(name), false)?,
             forces: scope.formulas(
                 "forces",
                 &file.forces,
@@ -103,6 +104,7 @@ fn check_counts(file: &FormFile) -> Result<(), Refusal> {
         ("sees", file.sees.len()),
         ("coefficients", file.coefficients.len()),
         ("lags", file.lags.len()),
+        ("bands", file.bands.len()),
     ];
     let all = sections.into_iter().chain(acting).chain([("reports", file.reports.len())]);
     all.into_iter().try_for_each(|(section, count)| most(section, count, MAX_NAMES))
@@ -129,6 +131,7 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
         ("accelerates", ActsOn::Inflow, file.accelerates.len()),
         ("coefficients", ActsOn::Inflow, file.coefficients.len()),
         ("lags", ActsOn::Inflow, file.lags.len()),
+        ("bands", ActsOn::Inflow, file.bands.len()),
         ("forces", ActsOn::Force, file.forces.len()),
         ("measures", ActsOn::Measurement, file.measures.len()),
     ];
@@ -152,7 +155,7 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
 fn word(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "`force` (`forces`)",
-        ActsOn::Inflow => "`inflow` (`sees`, `accelerates`, `coefficients`, `lags`)",
+        ActsOn::Inflow => "`inflow` (`sees`, `accelerates`, `coefficients`, `lags`, `bands`)",
         ActsOn::Measurement => "`measurement` (`measures`)",
     }
 }
@@ -234,6 +237,10 @@ fn lagged(name: &str) -> Result<Dimension, String> {
     names::input(name)
         .map(|_| Dimension::TIME)
         .ok_or_else(|| "only an input such as delta or n can lag".into())
+}
+
+fn banded(name: &str) -> Result<Dimension, String> {
+    names::input(name).ok_or_else(|| "only an input such as delta or n can have a dead band".into())
 }
 
 fn factor(name: &str) -> Result<Dimension, String> {

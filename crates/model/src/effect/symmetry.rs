@@ -50,7 +50,9 @@ fn actions(form: &Form) -> Vec<Action<'_>> {
     form.coefficients
         .iter()
         .for_each(|(name, e)| add("coefficients", name, e, false, Expr::Number(1.0)));
-    form.lags.iter().for_each(|(name, e)| add("lags", name, e, false, Expr::Number(0.0)));
+    for (section, widths) in [("lags", &form.lags), ("bands", &form.bands)] {
+        widths.iter().for_each(|(name, e)| add(section, name, e, false, Expr::Number(0.0)));
+    }
     actions
 }
 

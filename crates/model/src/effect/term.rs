@@ -83,6 +83,7 @@ impl Term<'_> {
             accelerates: BTreeMap::new(),
             coefficients: IndexMap::new(),
             lags: IndexMap::new(),
+            bands: IndexMap::new(),
             forces: BTreeMap::from([(axis, force)]),
             measures: BTreeMap::new(),
         }

@@ -17,6 +17,8 @@ pub struct Dressing {
     pub coefficients: Vec<(String, Expr)>,
     /// Inputs behind a lag, with its time constant, s.
     pub lags: Vec<(String, Expr)>,
+    /// Inputs with a dead band, with half of its width.
+    pub bands: Vec<(String, Expr)>,
     /// What instruments say, by channel; several effects on one channel follow each other.
     pub measures: Vec<(Channel, Expr)>,
 }
@@ -24,7 +26,8 @@ pub struct Dressing {
 impl Dressing {
     /// Its formulas.
     pub(crate) fn formulas(&self) -> impl Iterator<Item = &Expr> {
-        let named = self.coefficients.iter().chain(&self.lags).map(|(_, expr)| expr);
+        let named =
+            self.coefficients.iter().chain(&self.lags).chain(&self.bands).map(|(_, expr)| expr);
         let of_axes = self.accelerations.iter().map(|(_, expr)| expr);
         named.chain(of_axes).chain(self.measures.iter().map(|(_, expr)| expr))
     }

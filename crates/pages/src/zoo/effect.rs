@@ -79,14 +79,21 @@ fn rows(form: &FormFile) -> FormRows {
     let coefficients =
         form.coefficients.iter().map(|(name, formula)| (format!("{name} becomes"), formula));
     let lags = form.lags.iter().map(|(name, formula)| (format!("{name} lags by"), formula));
+    let bands =
+        form.bands.iter().map(|(name, formula)| (format!("{name} is left for within"), formula));
     let measures =
         form.measures.iter().map(|(channel, formula)| (format!("{channel} is read as"), formula));
-    let all = values.chain(sees).chain(forces).chain(accelerates).chain(coefficients).chain(lags);
+    let all = values.chain(sees).chain(forces).chain(accelerates).chain(coefficients);
     FormRows {
         name: form.name.clone(),
         meaning: form.meaning.clone(),
         needs: form.needs.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
         parameters: parameters.collect(),
-        formulas: all.chain(measures).map(|(what, formula)| (what, mathml(formula))).collect(),
+        formulas: all
+            .chain(lags)
+            .chain(bands)
+            .chain(measures)
+            .map(|(what, formula)| (what, mathml(formula)))
+            .collect(),
     }
 }
