@@ -75,6 +75,7 @@ fn searched_by(settings: &Settings, fitted: usize) -> Settings {
         recorded_terms: true,
         posterior_by_folds: true,
         folds_pooled: true,
+        economical: true,
         calibration_samples: settings.calibration_samples.or(Some(SEARCH.calibration)),
         bands: Sampling { within_steps: true, figures_only: true, ..settings.bands },
         ..settings.clone()

@@ -43,8 +43,8 @@ pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
 }
 
 fn median(values: &mut [f64]) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// A source model on the target's particulars. What the law needs and the target does not state is

@@ -56,8 +56,8 @@ pub fn by(
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let uncertainty =
-        calibrate(&model, law, &library(), trials, None).unwrap_or_else(|error| panic!("{error}"));
+    let uncertainty = calibrate(&model, law, &library(), trials, (None, false))
+        .unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }

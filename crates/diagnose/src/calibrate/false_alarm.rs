@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use sistership_model::uncertainty::FalseAlarmLevel;
 
+use super::super::coefficient_prior::CoefficientPrior;
 use super::super::evidence::{MarginalInformation, NormalPrior};
 use super::super::hypothesis::priors;
 use super::super::linearised_trials::LinearisedTrials;
@@ -19,7 +20,7 @@ use crate::residual::EffectCandidate;
 /// By `effect/form`.
 pub(super) fn levels(
     workspace: &LinearisedTrials<'_>,
-    known: &TrialInformation<'_>,
+    (known, but_one): (&TrialInformation<'_>, &[CoefficientPrior]),
     candidates: &[EffectCandidate],
 ) -> BTreeMap<String, FalseAlarmLevel> {
     let size = known.fixed.weighted_mean.len();
@@ -27,7 +28,7 @@ pub(super) fn levels(
         candidates.iter().flat_map(|candidate| workspace.columns().showing(candidate)).collect();
     let places: Vec<usize> = (0..size).chain(columns).collect();
     let alone = |trial: usize| {
-        MarginalInformation::new(&known.grams[trial].select(&places), &known.by(&|t| t != trial))
+        MarginalInformation::new(&known.grams[trial].select(&places), &but_one[trial])
     };
     let single: Vec<MarginalInformation> =
         (0..known.grams.len()).into_par_iter().filter_map(alone).collect();

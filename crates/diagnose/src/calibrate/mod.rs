@@ -17,13 +17,13 @@ use sistership_model::law::Law;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
 use sistership_model::{Effect, Model, Trial};
-use trial_information::TrialInformation;
+use trial_information::{TrialInformation, shift};
 
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::not_positive;
 use super::linearised_trials::LinearisedTrials;
-use super::nuisance::{Terms, lacked, learned, prior, regressor};
+use super::nuisance::{lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
 use super::thresholds::THRESHOLDS;
@@ -38,12 +38,17 @@ struct Calibration<'a> {
     trials: &'a [&'a Trial],
     /// Those on which the noise model is learned.
     noise: &'a [&'a Trial],
+    /// Whether no more is computed than needed.
+    economical: bool,
 }
 
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
 /// library's grammar that the model lacks are learned too, as far as those trials show them; and
 /// what effects would explain of these trials, which do not have them, is kept to judge them by
 /// later.
+///
+/// Where no more is to be computed than needed (`economical`), the noise model is searched in two
+/// rounds, and instruments among the errors that seem to be there.
 ///
 /// Given a number of samples, the noise model, which is asked for again and again, is learned on
 /// trials that have about so many between them and stand for all; each trial is then linearised
@@ -56,22 +61,23 @@ pub fn calibrate(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
-    samples: Option<usize>,
+    (samples, economical): (Option<usize>, bool),
 ) -> Result<Uncertainty, RefineError> {
     let places = representative(trials, samples.unwrap_or(usize::MAX));
     let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
-    let calibration = Calibration { law, effects, trials, noise: &noise };
+    let calibration = Calibration { law, effects, trials, noise: &noise, economical };
     let model = &Model { uncertainty: None, ..model.clone() };
-    let learned = calibration.learn(model)?;
+    let learned = calibration.learn(model, None)?;
     let first = calibration.left_open(&learned)?;
-    let systematic_errors = systematic_errors::of(model, &first, law, effects, &noise)?;
+    let systematic_errors =
+        systematic_errors::of(model, &first, law, effects, (&noise, economical))?;
     if systematic_errors.is_empty() {
         return calibration.judged(&learned);
     }
-    drop(learned);
+    let found = economical.then_some(learned.found);
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
     let erring = Model { uncertainty: Some(erring), ..model.clone() };
-    calibration.judged(&calibration.learn(&erring)?)
+    calibration.judged(&calibration.learn(&erring, found)?)
 }
 
 /// What is learned before it is asked what the trials leave open.
@@ -90,9 +96,10 @@ struct Learned<'a> {
 }
 
 impl<'a> Calibration<'a> {
-    /// Shift and noise where instruments err as the model's uncertainty says, or not at all.
-    fn learn(&self, model: &Model) -> Result<Learned<'a>, RefineError> {
-        let &Self { law, effects, trials, noise } = self;
+    /// Shift and noise where instruments err as the model's uncertainty says, or not at all; from
+    /// the noise where they were said not to, where that has been learned.
+    fn learn(&self, model: &Model, start: Option<NoiseModel>) -> Result<Learned<'a>, RefineError> {
+        let &Self { law, effects, trials, noise, economical } = self;
         let terms = learned(model, law, effects, trials);
         let extra: Vec<_> = terms
             .iter()
@@ -100,7 +107,9 @@ impl<'a> Calibration<'a> {
             .collect();
         let nuisance = Columns::nuisance(model, law, &extra);
         let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
-        let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, noise)?;
+        let as_it_is =
+            CalibratedModel::new(model, law, &terms, &nuisance, &vec![0.0; nuisance.len()])?;
+        let (shift, rough) = first_shift(&as_it_is, &nuisance, &prior, (noise, start, economical))?;
         let fixed = prior.from(&shift);
         let shifted = CalibratedModel::new(model, law, &terms, &nuisance, &shift)?;
         let all_at_once = noise.len() == trials.len();
@@ -111,7 +120,7 @@ impl<'a> Calibration<'a> {
         };
         let learned_on = LinearisedTrials::new(&shifted, columns, noise, None)?;
         let scatter = learned_on.noise.clone();
-        let found = noise_model::most_probable(&learned_on, &fixed, Some(rough))?;
+        let found = noise_model::most_probable(&learned_on, &fixed, (Some(rough), economical))?;
         let kept = all_at_once.then(|| -> Result<_, RefineError> {
             let kept = learned_on.under(&found.noise);
             let grams = kept.each(&found.discrepancies)?;
@@ -128,28 +137,23 @@ impl<'a> Calibration<'a> {
         Columns { nuisance: nuisance.to_vec(), candidates }
     }
 
-    /// All trials under what was learned; each is linearised when it is asked for.
-    fn one_at_a_time(
-        &self,
-        learned: &Learned<'_>,
-        columns: Columns,
-    ) -> Result<LinearisedTrials<'a>, RefineError> {
-        let all = LinearisedTrials::one_at_a_time(&learned.shifted, columns, self.trials, None)?;
-        Ok(all.under(&learned.found.noise))
-    }
-
     fn with_all_effects(&self, learned: &Learned<'_>) -> Result<LinearisedTrials<'a>, RefineError> {
-        self.one_at_a_time(learned, self.whole(&learned.model, &learned.nuisance))
+        learned.one_at_a_time(self.whole(&learned.model, &learned.nuisance), self.trials)
     }
 
     /// With the coefficients' columns alone, for what is rounded: the last digits are others than
     /// with effects, whose equations stand in the tape at their absence.
-    fn without_effects(&self, learned: &Learned<'_>) -> Result<LinearisedTrials<'a>, RefineError> {
+    fn without_effects(
+        &self,
+        learned: &Learned<'_>,
+        trials: &'a [&'a Trial],
+    ) -> Result<LinearisedTrials<'a>, RefineError> {
         let columns = Columns { nuisance: learned.nuisance.clone(), candidates: Vec::new() };
-        self.one_at_a_time(learned, columns)
+        learned.one_at_a_time(columns, trials)
     }
 
-    /// What the trials leave open of the coefficients.
+    /// What the trials leave open of the coefficients; where no more is computed than needed, those
+    /// of the noise model, on which alone instruments are asked.
     fn left_open(&self, learned: &Learned<'_>) -> Result<Uncertainty, RefineError> {
         let discrepancies = &learned.found.discrepancies;
         let of = |all: &LinearisedTrials<'_>, grams: &[Gram]| {
@@ -157,6 +161,10 @@ impl<'a> Calibration<'a> {
         };
         match &learned.kept {
             Some((all, grams)) => of(all, grams),
+            None if self.economical => {
+                let all = self.without_effects(learned, self.noise)?;
+                of(&all, &all.each(discrepancies)?)
+            }
             None => {
                 let all = self.with_all_effects(learned)?;
                 of(&all, &all.coefficients_under(&all.noise, discrepancies)?)
@@ -169,21 +177,24 @@ impl<'a> Calibration<'a> {
         let discrepancies = &learned.found.discrepancies;
         if let Some((all, grams)) = &learned.kept {
             let known = known(learned, grams);
-            let remainder = remainder(all, &known, discrepancies)?;
-            return self.judged_by(learned, all, &known, remainder);
+            let but_one = known.but_one();
+            let remainder = remainder(all, &but_one, discrepancies)?;
+            return self.judged_by(learned, all, (&known, &but_one), remainder);
         }
         let all = self.with_all_effects(learned)?;
         let grams = all.each(discrepancies)?;
         let known = known(learned, &grams);
-        let remainder = remainder(&self.without_effects(learned)?, &known, discrepancies)?;
-        self.judged_by(learned, &all, &known, remainder)
+        let but_one = known.but_one();
+        let remainder =
+            remainder(&self.without_effects(learned, self.trials)?, &but_one, discrepancies)?;
+        self.judged_by(learned, &all, (&known, &but_one), remainder)
     }
 
     fn judged_by(
         &self,
         learned: &Learned<'_>,
         all: &LinearisedTrials<'_>,
-        known: &TrialInformation<'_>,
+        (known, but_one): (&TrialInformation<'_>, &[CoefficientPrior]),
         remainder: BTreeMap<String, f64>,
     ) -> Result<Uncertainty, RefineError> {
         let model = &learned.model;
@@ -193,10 +204,22 @@ impl<'a> Calibration<'a> {
         let errs = model.uncertainty.as_ref().map(|known| known.systematic_errors.clone());
         Ok(Uncertainty {
             systematic_errors: errs.unwrap_or_default(),
-            false_alarm_levels: false_alarm::levels(all, known, &candidates),
+            false_alarm_levels: false_alarm::levels(all, (known, but_one), &candidates),
             remainder,
             ..uncertainty(all, known, learned)?
         })
+    }
+}
+
+impl Learned<'_> {
+    /// Trials under what was learned; each is linearised when it is asked for.
+    fn one_at_a_time<'a>(
+        &self,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+    ) -> Result<LinearisedTrials<'a>, RefineError> {
+        let all = LinearisedTrials::one_at_a_time(&self.shifted, columns, trials, None)?;
+        Ok(all.under(&self.found.noise))
     }
 }
 
@@ -209,21 +232,18 @@ fn known<'g>(learned: &'g Learned<'_>, grams: &'g [Gram]) -> TrialInformation<'g
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by
 /// that.
 fn first_shift(
-    model: &Model,
-    law: &Law,
-    terms: &Terms,
+    as_it_is: &CalibratedModel,
     nuisance: &[Nuisance],
     prior: &CoefficientPrior,
-    trials: &[&Trial],
+    (trials, start, economical): (&[&Trial], Option<NoiseModel>, bool),
 ) -> Result<(Vec<f64>, NoiseModel), RefineError> {
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
-    let as_it_is = CalibratedModel::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
-    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, None)?;
-    let scatter = noise_model::most_probable(&workspace, prior, None)?;
+    let mut workspace = LinearisedTrials::new(as_it_is, columns, trials, None)?;
+    let scatter = noise_model::most_probable(&workspace, prior, (start, economical))?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies)?;
     let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }
-        .by(&|_| true)
+        .all()
         .expected_shift(nuisance);
     Ok((shift.ok_or_else(not_positive)?, scatter))
 }
@@ -240,11 +260,11 @@ fn instruments(fitted: &Noise, scatter: &Noise) -> BTreeMap<String, InstrumentFi
 /// The largest remainder by channel, each trial under coefficients fitted on the others.
 fn remainder(
     workspace: &LinearisedTrials<'_>,
-    known: &TrialInformation<'_>,
+    but_one: &[CoefficientPrior],
     discrepancies: &Discrepancies,
 ) -> Result<BTreeMap<String, f64>, RefineError> {
     let sizes = |trial: usize| {
-        let Some(shift) = known.shift(trial, workspace.columns().len()) else {
+        let Some(shift) = shift(&but_one[trial], workspace.columns().len()) else {
             return Ok(Vec::new());
         };
         Ok(largest(workspace, &workspace.parts(trial)?, discrepancies, &shift))
@@ -269,7 +289,7 @@ fn uncertainty(
 ) -> Result<Uncertainty, RefineError> {
     // From the model as it is, not as the trials have shifted it.
     let back: Vec<f64> = learned.shift.iter().map(|shift| -shift).collect();
-    let all = known.by(&|_| true).from(&back);
+    let all = known.all().from(&back);
     let size = all.weighted_mean.len();
     let scales: Vec<f64> =
         (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();

@@ -1,6 +1,5 @@
 //! The discrepancies and instruments under which trials are most probable.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 use sistership_model::trial::Channel;
 
@@ -8,7 +7,7 @@ use super::super::coefficient_prior::CoefficientPrior;
 use super::super::evidence::not_positive;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
-use super::trial_information::TrialInformation;
+use super::trial_information::{TrialInformation, shift};
 use crate::residual::{Discrepancies, Linearised, Noise, deviances};
 use sistership_estimate::refine::RefineError;
 
@@ -75,11 +74,15 @@ impl NoiseModel {
 pub(super) fn most_probable(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
-    start: Option<NoiseModel>,
+    (start, economical): (Option<NoiseModel>, bool),
 ) -> Result<NoiseModel, RefineError> {
-    let first = if start.is_some() { THRESHOLDS.calibration.factors.len() - 1 } else { 0 };
+    let rounds: &[[f64; 2]] = match economical {
+        true => &THRESHOLDS.calibration.factors_economical,
+        false => &THRESHOLDS.calibration.factors,
+    };
+    let first = if start.is_some() { rounds.len() - 1 } else { 0 };
     let mut best = start.or_else(|| coarse(workspace)).ok_or_else(not_positive)?;
-    for factors in &THRESHOLDS.calibration.factors[first..] {
+    for factors in &rounds[first..] {
         let coefficients = coefficients(workspace, fixed, &best)?.ok_or_else(not_positive)?;
         best = refined(workspace, best, &coefficients, factors);
     }
@@ -111,13 +114,8 @@ fn coefficients(
 ) -> Result<Option<Vec<Vec<f64>>>, RefineError> {
     let grams = workspace.coefficients_under(&scatter.noise, &scatter.discrepancies)?;
     let known = TrialInformation { fixed, grams: &grams, scatter: 1.0 };
-    let of = |trial: usize| -> Option<Vec<f64>> {
-        let mean: DVector<f64> = known.by(&|other| other != trial || grams.len() == 1).mean()?;
-        let mut mean = mean.as_slice().to_vec();
-        mean.resize(workspace.columns().len(), 0.0);
-        Some(mean)
-    };
-    Ok((0..grams.len()).map(of).collect())
+    let others = if grams.len() == 1 { vec![known.all()] } else { known.but_one() };
+    Ok(others.iter().map(|others| shift(others, workspace.columns().len())).collect())
 }
 
 /// Parts of trials with all columns in one.

@@ -15,6 +15,7 @@ use super::super::setup::search;
 use super::super::thresholds::THRESHOLDS;
 use super::super::values::{acts_on, model_with};
 use super::super::{Request, Settings};
+use crate::residual::EffectCandidate;
 use sistership_estimate::refine::RefineError;
 
 /// Errors of instruments that have one size on all trials; none where the instruments agree.
@@ -23,7 +24,7 @@ pub(super) fn of(
     known: &Uncertainty,
     law: &Law,
     effects: &[Arc<Effect>],
-    trials: &[&Trial],
+    (trials, economical): (&[&Trial], bool),
 ) -> Result<Vec<AppliedEffect>, RefineError> {
     // False-alarm levels are not yet to be asked: an effect may be there.
     let known = Uncertainty { false_alarm_levels: Default::default(), ..known.clone() };
@@ -38,8 +39,12 @@ pub(super) fn of(
     // What could not be shown here is nobody's question.
     search.states_odds = false;
     search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
-    if !may_err(&search)? {
+    let seeming = seeming(&search)?;
+    if seeming.is_empty() {
         return Ok(Vec::new());
+    }
+    if economical {
+        search.listed = seeming;
     }
     let choice = choose(&search, &settings)?;
     Ok(model_with(search.model, &choice.best().candidates, None)
@@ -47,15 +52,14 @@ pub(super) fn of(
         .split_off(model.effects.len()))
 }
 
-/// Whether any error seems to be there by one linearisation, at the discrepancy that the trials
-/// have: most instruments agree, and a search over sets and levels would find so at ten times the
-/// cost.
-fn may_err(search: &HypothesisSearch<'_>) -> Result<bool, RefineError> {
+/// Errors that seem to be there by one linearisation, at the discrepancy that the trials have: most
+/// instruments agree, and a search over sets and levels would find so at ten times the cost.
+fn seeming(search: &HypothesisSearch<'_>) -> Result<Vec<EffectCandidate>, RefineError> {
     // At the least level, that of the trials themselves, an error has the most evidence.
     let least_level = search.levels.iter().min_by(|a, b| a.factor.total_cmp(&b.factor)).copied();
     let base = search.base(&[], least_level.as_slice())?;
     let least =
         THRESHOLDS.calibration.seeming_share * THRESHOLDS.calibration.systematic_error_evidence;
-    let seeming = screen(search, &base).into_iter().map(|likely| likely.discounted);
-    Ok(seeming.fold(0.0, f64::max) >= least)
+    let seeming = screen(search, &base).into_iter().filter(|likely| likely.discounted >= least);
+    Ok(seeming.map(|likely| likely.candidate).collect())
 }

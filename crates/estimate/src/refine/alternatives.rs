@@ -47,7 +47,8 @@ pub fn alternatives(
         bands: Sampling { samples: 0, ..Sampling::default() },
         ..Settings::default()
     };
-    let settings = resolved(&settings, particulars::value(&model.particulars, "lpp_m"), trials);
+    let lpp_m = particulars::value(&model.particulars, "lpp_m");
+    let settings = resolved(&settings, law, lpp_m, trials);
     let problem = Problem::of_model(model, law, trials, settings);
     let estimator = estimator(problem.settings.method);
     let variants = variants(&problem, estimator.equations(&problem.settings))?;

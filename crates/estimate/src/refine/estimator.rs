@@ -7,12 +7,13 @@ use super::problem::Problem;
 use super::progress::Progress;
 use super::settings::Settings;
 use super::variant::Variant;
+use sistership_model::law::Law;
 
 /// A way from trials to candidates, each a fit with its errors on trials left out.
 pub(super) trait Estimator: Sync {
     /// Fills in what the settings leave open, so that a version records what was used. `length_s`
     /// is the time in which the ship sails its length, s.
-    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>);
+    fn resolve(&self, settings: &mut Settings, law: &Law, length_s: Option<f64>);
 
     /// How it makes rows of the equations of motion.
     fn equations(&self, settings: &Settings) -> Equations;

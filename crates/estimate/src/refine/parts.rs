@@ -82,7 +82,7 @@ mod tests {
         let zoo = Zoo::embedded().unwrap();
         let one = trial(1000);
         let settings = Settings { restart_s: Some(100.0), ..Settings::default() };
-        let windows = Equations::Windows(Windows { length_s: 20.0, hop_s: 2.0 });
+        let windows = Equations::Windows(Windows { length_s: 20.0, hop_s: 2.0, in_means: false });
         let count = |law: &str, trials: usize, equations| {
             parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len()
         };

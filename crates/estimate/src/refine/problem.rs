@@ -11,11 +11,9 @@ use sistership_model::{Model, particulars};
 
 use super::measure::PriorMeasure;
 use super::progress::{Iterate, Watch};
+use super::replayed_trials::ReplayedTrials;
 use super::ridge::Fitted;
 use super::settings::Settings;
-use super::thinned::thinned;
-use super::thresholds::SELECTION;
-use sistership_sources::transfer::approach_of;
 
 /// What does not change while candidates are compared.
 pub(super) struct Problem<'a> {
@@ -24,8 +22,8 @@ pub(super) struct Problem<'a> {
     pub source: &'a str,
     /// What is fitted and left out: the trials, or parts of them.
     pub training: Vec<&'a Trial>,
-    /// The same with no more samples than a simulation needs.
-    pub thinned: Vec<Trial>,
+    /// The same as simulations of them are compared.
+    pub replayed: ReplayedTrials,
     /// The trials of which that is.
     pub whole: Vec<&'a Trial>,
     pub judged: Vec<&'a Trial>,
@@ -48,13 +46,14 @@ impl<'a> Problem<'a> {
     ) -> Self {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
-        let thinned = for_simulation(particulars::value(&model.particulars, "lpp_m"), &training);
+        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.economical);
         let deviations = standard_deviations(&training);
         Self {
             law,
             source: &model.name,
             training,
-            thinned,
+            replayed,
             whole,
             judged,
             deviations,
@@ -103,12 +102,4 @@ impl<'a> Problem<'a> {
         }
         model
     }
-}
-
-/// Trials with samples as far apart as a thirtieth of the time in which the ship sails its length.
-pub(super) fn for_simulation(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
-    let step_s = lpp_m
-        .zip(approach_of(training))
-        .map(|(l, approach)| l / approach.speed_m_s / SELECTION.samples_a_length);
-    training.iter().map(|trial| thinned(trial, step_s)).collect()
 }

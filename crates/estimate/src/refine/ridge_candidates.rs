@@ -1,5 +1,6 @@
 //! Candidates that are ridges, from the source outwards.
 
+use rayon::prelude::*;
 use sistership_model::Model;
 
 use super::candidate::{CandidateFit, Solution, UnchangedSource};
@@ -72,7 +73,7 @@ pub(super) fn ridge_candidate(
 ) -> Result<CandidateFit, RefineError> {
     let step = (name, Some(lambda_min));
     let model = |fold: &Fold<'_>| Ok(problem.model_with(&variant.solve(fold, &choices)?));
-    let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, LimitError>>() {
+    let models: Vec<Model> = match folds.par_iter().map(model).collect::<Result<_, LimitError>>() {
         Ok(models) => models,
         Err(reason) => {
             let ridge = RidgeSolution { variant: index, choices };

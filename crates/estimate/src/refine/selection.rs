@@ -17,8 +17,9 @@ use super::measure::PriorMeasure;
 use super::mixture;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
-use super::problem::{Problem, for_simulation};
+use super::problem::Problem;
 use super::progress::{MonotoneProgress, Progress, Watch, step};
+use super::replayed_trials::ReplayedTrials;
 use super::ridge_candidates::source_candidate;
 use super::settings::{Prior, Settings};
 use super::thresholds::SELECTION;
@@ -124,7 +125,8 @@ fn with_candidates<T>(
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
-    let mut settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
+    let lpp_m = request.target.particular("lpp_m");
+    let mut settings = resolved(request.settings, request.law, lpp_m, &whole);
     if settings.prior == Prior::Mixture {
         let asked = settings.regressions_sha256.as_deref();
         settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
@@ -142,13 +144,13 @@ fn with_candidates<T>(
     }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
-    let thinned = for_simulation(request.target.particular("lpp_m"), &training);
+    let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.economical);
     let deviations = standard_deviations(&training);
     let problem = Problem {
         law,
         source,
         training,
-        thinned,
+        replayed,
         whole,
         judged,
         deviations,
@@ -236,10 +238,15 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
 
 /// The settings with the times that depend on the ship filled in, so that a version records what
 /// was used.
-pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Trial]) -> Settings {
+pub(super) fn resolved(
+    settings: &Settings,
+    law: &Law,
+    lpp_m: Option<f64>,
+    training: &[&Trial],
+) -> Settings {
     let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = settings.clone();
-    estimator(settings.method).resolve(&mut settings, length_s);
+    estimator(settings.method).resolve(&mut settings, law, length_s);
     settings.restart_s = settings.restart_s.or(length_s.map(|s| SELECTION.restart * s));
     settings
 }

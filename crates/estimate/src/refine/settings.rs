@@ -199,6 +199,11 @@ pub struct Settings {
     /// figures of all standard manoeuvres. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub folds_pooled: bool,
+    /// No more is computed than the numbers need: simulations step as far as the ship's motion
+    /// allows, the weak form takes neighbouring samples in the mean, and the noise model is searched
+    /// in two rounds. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub economical: bool,
     /// The noise model of what the trials leave open is learned on whole trials of about so many
     /// samples in all, those that differ most. Where absent, on all. The default search sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -244,6 +249,7 @@ impl Default for Settings {
             recorded_terms: false,
             posterior_by_folds: false,
             folds_pooled: false,
+            economical: false,
             calibration_samples: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),

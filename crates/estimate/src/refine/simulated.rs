@@ -49,7 +49,8 @@ pub(super) fn simulate_training(
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Simulated, RefineError> {
-    simulate_all(problem, &problem.thinned.iter().collect::<Vec<_>>(), models, model_of)
+    let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
+    simulate(problem, (&trials, problem.replayed.step_s), models, model_of)
 }
 
 /// Simulates trials, each with its model; the first divergence is the reason against the candidate.
@@ -59,6 +60,16 @@ pub(super) fn simulate_training(
 pub(super) fn simulate_all(
     problem: &Problem<'_>,
     trials: &[&Trial],
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Simulated, RefineError> {
+    simulate(problem, (trials, ReplaySettings::default().step_s), models, model_of)
+}
+
+/// Simulates trials by steps of at most so many seconds.
+fn simulate(
+    problem: &Problem<'_>,
+    (trials, step_s): (&[&Trial], f64),
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Simulated, RefineError> {
@@ -74,8 +85,8 @@ pub(super) fn simulate_all(
     let all: Vec<_> = numbered
         .map(|(k, trial)| Recorded { trial, coefficients: &coefficients[model_of(k)] })
         .collect();
-    let settings =
-        ReplaySettings { restart_s: problem.settings.restart_s, ..ReplaySettings::default() };
+    let restart_s = problem.settings.restart_s;
+    let settings = ReplaySettings { restart_s, step_s, ..ReplaySettings::default() };
     let together = |some: &[Recorded<'_>]| {
         replay_all(&ship, some, &settings)
             .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })

@@ -37,9 +37,14 @@ pub(super) struct SelectionThresholds {
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// decision 2.
     pub restart: f64,
-    /// `1/T_t`: samples that a simulation needs in `L/U`, a count. Source: chosen, the steps of the
-    /// trajectory form.
-    pub samples_a_length: f64,
+    /// `n_h`: steps of the classical Runge-Kutta method in `L/U`, and samples that a simulation
+    /// needs, a count. Source: derived: natural periods of roll are from half of `L/U` on, and a
+    /// step is then a fifteenth of one.
+    pub steps_a_length: f64,
+    /// The same where the ship does not roll and no more is computed than needed, a count. Source:
+    /// derived: sway and yaw settle in some 0.3 `L/U`, of which a step is a fifth; what such a step
+    /// neglects, `(h/T)^5/120`, is 2e-6 of a motion. `docs/evidence/plain.md` has half and double.
+    pub steps_a_length_economical: f64,
     /// `[lambda_0, lambda_1]`: range of roll's own strength, dimensionless. Source: chosen, from
     /// nothing to the common strength at which a source counts as much as all samples; the marginal
     /// likelihood decides within.
@@ -58,7 +63,8 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     samples_a_coefficient: 4.0,
     alternatives: [10.0, 1.0, 0.3, 0.1, 0.03, 0.01],
     restart: 10.0,
-    samples_a_length: 30.0,
+    steps_a_length: 30.0,
+    steps_a_length_economical: 18.0,
     roll_strengths: [1e-9, 1.0],
     roll_strength_count: 50,
 };

@@ -137,7 +137,7 @@ impl Variant {
                 .ok_or_else(nothing)?;
             Ok(Fold::new(&self.blocks, &self.model, &training, &left_out))
         };
-        (0..problem.fold_count()).map(one).collect()
+        (0..problem.fold_count()).into_par_iter().map(one).collect()
     }
 
     /// The same strength for every acceleration but roll's: of roll a source of the plane says

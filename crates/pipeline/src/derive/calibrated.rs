@@ -19,8 +19,8 @@ pub fn with_uncertainty(
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    let samples = refinement.settings.calibration_samples;
-    match calibrate(&refinement.model, law, effects, &fitted, samples) {
+    let extent = (refinement.settings.calibration_samples, refinement.settings.economical);
+    match calibrate(&refinement.model, law, effects, &fitted, extent) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks

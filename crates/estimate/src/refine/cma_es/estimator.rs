@@ -12,12 +12,13 @@ use super::super::variant::Variant;
 use super::super::weak;
 use super::candidates::search;
 use super::thresholds::OBJECTIVE;
+use sistership_model::law::Law;
 
 /// The search by covariance matrix adaptation; it alone is weighed against the source.
 pub(in super::super) struct CovarianceMatrixAdaptation;
 
 impl Estimator for CovarianceMatrixAdaptation {
-    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+    fn resolve(&self, settings: &mut Settings, _: &Law, length_s: Option<f64>) {
         // It is too dear to be repeated for families that nobody asked for.
         weak::resolve(settings, length_s, &[Family::Own]);
         settings.cma_es.get_or_insert_default();

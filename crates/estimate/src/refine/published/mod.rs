@@ -12,6 +12,7 @@ use super::ridge::{Fold, tune};
 use super::ridge_candidates::{each_variant, ridge_candidate};
 use super::settings::Settings;
 use super::variant::Variant;
+use sistership_model::law::Law;
 
 /// `T_d`: time over which accelerations are differenced, by that in which the ship sails its
 /// length, dimensionless. Source: decision 2, with the table of how errors move from one sample to
@@ -22,7 +23,7 @@ const DIFFERENCE: f64 = 0.1;
 pub(super) struct Published;
 
 impl Estimator for Published {
-    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+    fn resolve(&self, settings: &mut Settings, _: &Law, length_s: Option<f64>) {
         settings.difference_s = settings.difference_s.or(length_s.map(|s| DIFFERENCE * s));
     }
 

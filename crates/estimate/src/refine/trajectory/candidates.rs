@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
+use rayon::prelude::*;
 use sistership_dynamics::sensitivity::SensitiveSystem;
 use sistership_model::Model;
 
@@ -119,6 +120,7 @@ impl TrajectoryDescent<'_> {
         let prior = self.prior(&|_| true)?;
         self.passing.thresholds = self.thresholds(&prior.weak)?;
         let priors: Vec<WeakFormPrior> = (0..self.problem.fold_count())
+            .into_par_iter()
             .map(|fold| self.prior(&|t| self.problem.is_fitted(t, fold)))
             .collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
@@ -129,7 +131,7 @@ impl TrajectoryDescent<'_> {
             reached = self.descend(&prior, pull, reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
             let models: Vec<Model> = priors
-                .iter()
+                .par_iter()
                 .enumerate()
                 .map(|(fold, prior)| self.left_out(fold, prior, pull, &reached))
                 .collect();
@@ -295,8 +297,11 @@ fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
 
 /// Huber's threshold from absolute residuals: their median, as that of a normal distribution.
 fn threshold(mut sizes: Vec<f64>) -> f64 {
-    sizes.sort_by(f64::total_cmp);
-    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() {
+        return f64::INFINITY;
+    }
+    let (_, &mut median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
     if median > 0.0 { TRAJECTORY.huber * 1.4826 * median } else { f64::INFINITY }
 }
 

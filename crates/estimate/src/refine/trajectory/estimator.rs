@@ -8,21 +8,27 @@ use super::super::outcome::RefineError;
 use super::super::problem::Problem;
 use super::super::progress::Progress;
 use super::super::settings::Settings;
+use super::super::steps::step_s;
 use super::super::variant::Variant;
 use super::super::weak::{self, WeakForm};
 use super::candidates::from_weak_form;
 use super::thresholds::TRAJECTORY;
+use sistership_model::law::Law;
 
 /// The trajectory form, after the weak form.
 pub(in super::super) struct TrajectoryForm;
 
 impl Estimator for TrajectoryForm {
-    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+    fn resolve(&self, settings: &mut Settings, law: &Law, length_s: Option<f64>) {
         weak::resolve(settings, length_s, &Family::ALL);
-        settings.step_s = settings.step_s.or(length_s.map(|s| s / TRAJECTORY.steps_a_length));
+        let economical = settings.economical;
+        settings.step_s = settings.step_s.or(length_s.map(|s| step_s(law, s, economical)));
         settings.segment_s = settings.segment_s.or(length_s.map(|s| TRAJECTORY.segment * s));
-        settings.residual_s =
-            settings.residual_s.or(length_s.map(|s| s / TRAJECTORY.residuals_a_length));
+        let residuals_a_length = match economical {
+            true => TRAJECTORY.residuals_a_length_economical,
+            false => TRAJECTORY.residuals_a_length,
+        };
+        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / residuals_a_length));
     }
 
     fn equations(&self, settings: &Settings) -> Equations {

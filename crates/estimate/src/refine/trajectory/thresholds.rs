@@ -7,12 +7,12 @@
 /// How trajectories are cut, fitted and held.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrajectoryThresholds {
-    /// `n_h`: integration steps in `L/U`, a count. Source: chosen; the error of a Runge-Kutta step
-    /// is of fifth order in it.
-    pub steps_a_length: f64,
     /// `n_r`: residuals in `L/U`, a count. Source: chosen, every fourth step; neighbours say the
     /// same.
     pub residuals_a_length: f64,
+    /// The same where no more is computed than needed, a count. Source: chosen, every third step,
+    /// or fifth where the ship rolls.
+    pub residuals_a_length_economical: f64,
     /// `T_s`: length of a segment by `L/U`, dimensionless. Source: chosen, long enough to turn by a
     /// manoeuvre's angles and short enough for a wrong model to stay in range.
     pub segment: f64,
@@ -79,8 +79,8 @@ pub(super) struct TrajectoryThresholds {
 
 /// The values.
 pub(super) const TRAJECTORY: TrajectoryThresholds = TrajectoryThresholds {
-    steps_a_length: 30.0,
     residuals_a_length: 7.5,
+    residuals_a_length_economical: 6.0,
     segment: 5.0,
     fallback_steps: 120.0,
     fallback_stride: 4.0,

@@ -13,6 +13,8 @@ pub struct Windows {
     pub length_s: f64,
     /// From one window's start to the next, s; at least a sampling interval.
     pub hop_s: f64,
+    /// Whether neighbouring samples are taken in the mean where a window has many.
+    pub in_means: bool,
 }
 
 impl Windows {

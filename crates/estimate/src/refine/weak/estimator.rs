@@ -13,12 +13,13 @@ use super::super::settings::Settings;
 use super::super::variant::Variant;
 use super::Windows;
 use super::thresholds::WEAK;
+use sistership_model::law::Law;
 
 /// The weak form.
 pub(in super::super) struct WeakForm;
 
 impl Estimator for WeakForm {
-    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+    fn resolve(&self, settings: &mut Settings, _: &Law, length_s: Option<f64>) {
         resolve(settings, length_s, &Family::ALL);
     }
 
@@ -55,7 +56,8 @@ pub(in super::super) fn resolve(
 /// Rows by windows.
 pub(in super::super) fn equations(settings: &Settings) -> Equations {
     let length_s = settings.window_s.unwrap_or(0.0);
-    Equations::Windows(Windows { length_s, hop_s: settings.hop_s.unwrap_or(WEAK.hop * length_s) })
+    let hop_s = settings.hop_s.unwrap_or(WEAK.hop * length_s);
+    Equations::Windows(Windows { length_s, hop_s, in_means: settings.economical })
 }
 
 /// One candidate for each strength of the prior, from the source outwards.

@@ -6,6 +6,7 @@
 //! phi_i + rest` becomes `-int v d(b M)/dt dt = sum c_i int b phi_i dt + int b rest dt`: a linear
 //! regression with one row a window.
 
+mod averaged;
 mod bump;
 mod estimator;
 mod samples;
@@ -19,6 +20,7 @@ pub(super) use estimator::{WeakForm, equations, resolve};
 use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use super::rows::Table;
+use averaged::averaged;
 use bump::BumpFunction;
 use samples::{SampledRegression, columns};
 use sistership_regression::Moments;
@@ -50,6 +52,8 @@ pub fn weak_tables(
     trial: &Trial,
     windows: Windows,
 ) -> Result<Vec<Table>, RefineError> {
+    let averaged = windows.in_means.then(|| averaged(trial, windows.length_s)).flatten();
+    let trial = averaged.as_ref().unwrap_or(trial);
     let sampled = columns(blocks, trial)?;
     let mut tables: Vec<Table> =
         blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();

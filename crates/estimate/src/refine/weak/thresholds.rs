@@ -17,6 +17,10 @@ pub(super) struct WeakThresholds {
     /// Least intervals in a window, a count. Source: chosen: fewer cannot tell the bump from a
     /// spike.
     pub least_intervals: f64,
+    /// `n_w`: intervals of a window beyond which neighbouring samples are taken in the mean, a
+    /// count. Source: derived: the mean over a sixtieth of a window takes `(pi/60)^2/6`, less than
+    /// a thousandth, from what goes to and fro within the window.
+    pub most_intervals: f64,
     /// `(int b)^2 / int b^2` by the length of a window for `b = (1 - s^2)^3`, dimensionless: a bump
     /// weighs its window as if it were this share of it. Source: derived: `(32/35)^2 / (2 *
     /// 2048/3003)`.
@@ -28,5 +32,6 @@ pub(super) const WEAK: WeakThresholds = WeakThresholds {
     hop: 0.1,
     strengths_of_one_trial: 3,
     least_intervals: 8.0,
+    most_intervals: 60.0,
     equivalent: 0.612_9,
 };
