@@ -43,11 +43,6 @@ impl Gear {
         self.rate_rad_s
     }
 
-    /// Half of the band within which an order is not followed, rad.
-    pub fn band_rad(&self) -> f64 {
-        self.band_rad
-    }
-
     /// Time constant, s.
     pub fn time_constant_s(&self) -> f64 {
         self.time_constant_s
@@ -57,7 +52,11 @@ impl Gear {
     /// what it covers in one step of `step_s` it goes straight there.
     pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         let order = order_rad.clamp(-self.limit_rad, self.limit_rad);
-        let order = angle_rad.clamp(order - self.band_rad, order + self.band_rad);
+        // Not `clamp`, which panics where an order is no number.
+        let order = match self.band_rad > 0.0 {
+            true => angle_rad.max(order - self.band_rad).min(order + self.band_rad),
+            false => order,
+        };
         let time = self.time_constant_s.max(step_s);
         ((order - angle_rad) / time).clamp(-self.rate_rad_s, self.rate_rad_s)
     }

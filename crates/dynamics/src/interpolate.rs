@@ -70,7 +70,7 @@ pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
 pub fn within_band(values: &[f64], half: f64) -> Vec<f64> {
     let mut out = values.to_vec();
     for k in 1..values.len() {
-        out[k] = out[k - 1].clamp(values[k] - half, values[k] + half);
+        out[k] = out[k - 1].max(values[k] - half).min(values[k] + half);
     }
     out
 }

@@ -1,5 +1,5 @@
-//! Parameters whose derivative at their absence says nothing, and lags and dead bands: what they change at a
-//! distance, by it.
+//! Parameters whose derivative at their absence says nothing, and lags and dead bands: what they
+//! change at a distance, by it.
 
 use sistership_dynamics::tape::{Direction, Lanes, Slots};
 use sistership_model::effect::EffectParameter;

@@ -199,7 +199,8 @@ impl<'a> EquationsOfMotion<'a> {
         }
     }
 
-    /// Refuses what acts through a lag or a dead band, or on instruments, which some view does not know.
+    /// Refuses what acts through a lag or a dead band, or on instruments, which some view does not
+    /// know.
     ///
     /// # Errors
     /// Names the model and the view.
