@@ -2,6 +2,7 @@
 //! Figures are printed; `--nocapture` shows them. The whole table is `--example hidden_effects`.
 #![allow(clippy::unwrap_used)]
 
+mod changes;
 mod confusion;
 mod esso_osaka;
 mod examples;

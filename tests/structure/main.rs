@@ -24,11 +24,21 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("sources", &["formula", "model", "dynamics"]),
     ("estimate", &["formula", "model", "dynamics", "bands", "regression", "empirical", "sources"]),
     ("choice", &["model", "bands", "sources", "estimate"]),
+    ("residual", &["formula", "model", "dynamics", "estimate"]),
     (
         "diagnose",
-        &["formula", "model", "dynamics", "branches", "regression", "sources", "estimate"],
+        &[
+            "formula",
+            "model",
+            "dynamics",
+            "branches",
+            "regression",
+            "sources",
+            "estimate",
+            "residual",
+        ],
     ),
-    ("plan", &["model", "dynamics", "bands", "estimate", "diagnose"]),
+    ("plan", &["model", "dynamics", "bands", "estimate", "residual", "diagnose"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
     ("access", &[]),
@@ -201,7 +211,7 @@ const FORBIDDEN: [(&str, &str); 7] = [
 
 #[test]
 fn the_fields_own_words_are_used() {
-    let numerics = ["model", "dynamics", "regression", "estimate", "diagnose"];
+    let numerics = ["model", "dynamics", "regression", "estimate", "residual", "diagnose"];
     let mut found = Vec::new();
     for (path, text) in numerics.iter().flat_map(|name| modules::texts(&folder(name).join("src"))) {
         for (number, line) in

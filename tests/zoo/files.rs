@@ -73,7 +73,7 @@ fn coefficients_of_prime_laws_have_no_dimension() {
 fn every_effect_reads_and_has_a_source() {
     let zoo = zoo();
     let names: Vec<&str> = zoo.effects().map(|effect| effect.name.as_str()).collect();
-    assert_eq!(names.len(), 15, "{names:?}");
+    assert_eq!(names.len(), 17, "{names:?}");
     for effect in zoo.effects() {
         assert!(!effect.sources.is_empty(), "{} has no source", effect.name);
         assert!(

@@ -8,8 +8,8 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 
 use super::nuisance::{Terms, regressor};
-use crate::residual::{Nuisance, NuisanceKind, lacked_name};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{Nuisance, NuisanceKind, lacked_name};
 
 /// A model that has learned, with its law in the dress of the effects that the model carries.
 #[derive(Debug, Clone)]

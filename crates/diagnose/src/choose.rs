@@ -10,15 +10,15 @@ use super::evidence::DiscrepancyFactor;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::limits::limits;
-use super::misfit::misfit;
+use super::misfit::shadow_share;
 use super::outcome::DetectionLimit;
 use super::placebo::is_placebo;
 use super::screening::{ScreenedEffect, screen};
 use super::search::HypothesisSearch;
 use super::settings::Settings;
 use super::thresholds::THRESHOLDS;
-use crate::residual::EffectCandidate;
 use sistership_estimate::refine::RefineError;
+use sistership_residual::EffectCandidate;
 
 /// Every hypothesis that was judged.
 pub(super) struct EffectChoice {
@@ -205,7 +205,28 @@ impl EffectChoice {
         search: &HypothesisSearch<'a>,
         request: &Request<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        let (mut search, mut best) = (search.clone(), self.best().clone());
+        self.settled_from(self.best().clone(), search, request)
+    }
+
+    /// The model alone, its coefficients fitted until they stay.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub(super) fn alone_settled<'a>(
+        &self,
+        search: &HypothesisSearch<'a>,
+        request: &Request<'_>,
+    ) -> Result<ConvergedChoice<'a>, RefineError> {
+        self.settled_from(self.alone.clone(), search, request)
+    }
+
+    fn settled_from<'a>(
+        &self,
+        mut best: JudgedHypothesis,
+        search: &HypothesisSearch<'a>,
+        request: &Request<'_>,
+    ) -> Result<ConvergedChoice<'a>, RefineError> {
+        let mut search = search.clone();
         let mut rounds = THRESHOLDS.search.joint_rounds;
         loop {
             search = search.calibrated_by(request, &best)?;
@@ -337,11 +358,9 @@ fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec
     (0..judged.candidates.len()).map(evidence).collect()
 }
 
-/// What the others leave unexplained where their forms are another author's than nature's. Half the
-/// square of a response is the evidence for it, so that of the misfit the evidence is the misfit
-/// squared of that; an effect beside them that explains no more may be that.
+/// What the others leave unexplained where their forms are another author's than nature's: an
+/// effect beside them that explains no more may be that.
 fn shadow(judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
-    let share = |other: usize| THRESHOLDS.effect.misfits * misfit(&judged.candidates[other]);
-    let of = |other: usize| share(other).powi(2) * evidence[other].max(0.0);
+    let of = |other: usize| shadow_share(&judged.candidates[other]) * evidence[other].max(0.0);
     (0..evidence.len()).filter(|other| *other != place).map(of).sum()
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::residual::{Nuisance, NuisanceKind};
+use sistership_residual::{Nuisance, NuisanceKind};
 
 /// What is known of the coefficients before these trials: `information`, and `information * mean`,
 /// by column.

@@ -10,7 +10,7 @@ use super::hypothesis::JudgedHypothesis;
 use super::outcome::Confounded;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{EffectCandidate, Gram};
+use sistership_residual::{EffectCandidate, Gram};
 
 /// Responses of the effects found and of all others, with the coefficients integrated out.
 pub(super) struct Responses<'a> {

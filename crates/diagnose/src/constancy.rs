@@ -12,8 +12,8 @@ use super::hypothesis::{JudgedHypothesis, priors};
 use super::placebo::follow_records;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use crate::residual::Gram;
 use sistership_estimate::refine::RefineError;
+use sistership_residual::Gram;
 
 /// The effects that are not. One that follows a record from outside may vary where records of other
 /// times explain the trials less ([`follow_records`]): what is unknown does not follow that record.

@@ -7,7 +7,7 @@ use super::hypothesis::{JudgedHypothesis, priors};
 use super::misfit::of_size;
 use super::thresholds::THRESHOLDS;
 use super::values::own_covariance;
-use crate::residual::{Gram, Nuisance, NuisanceKind};
+use sistership_residual::{Gram, Nuisance, NuisanceKind};
 
 /// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its
 /// own law is uncertain by, and what the virtual masses leave open. `discount` is what the

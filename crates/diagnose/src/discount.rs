@@ -5,7 +5,7 @@ use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{FalseAlarmLevel, Uncertainty};
 
 use super::thresholds::THRESHOLDS;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// The factor by which the information on an effect is divided.
 pub(super) fn discount(

@@ -9,8 +9,8 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::coefficient_prior::CoefficientPrior;
-use crate::residual::Gram;
 use sistership_estimate::refine::RefineError;
+use sistership_residual::Gram;
 
 /// The columns of effects with the coefficients integrated out.
 #[derive(Debug, Clone)]
@@ -120,6 +120,26 @@ impl MarginalInformation {
         self.information /= by;
         self.right /= by;
         self
+    }
+
+    /// The columns that are sums of these by a matrix, these by those.
+    pub fn through(&self, sums: &DMatrix<f64>) -> Self {
+        Self {
+            information: sums.tr_mul(&(&self.information * sums)),
+            right: sums.tr_mul(&self.right),
+            ..self.clone()
+        }
+    }
+
+    /// Some of the columns alone.
+    pub fn of_columns(&self, columns: &[usize]) -> Self {
+        let size = columns.len();
+        let one = |i: usize, j: usize| self.information[(columns[i], columns[j])];
+        Self {
+            information: DMatrix::from_fn(size, size, one),
+            right: DVector::from_fn(size, |i, _| self.right[columns[i]]),
+            ..self.clone()
+        }
     }
 
     /// What some columns explain (in squared deviations), and what chance lets them explain: of a

@@ -20,7 +20,7 @@ use super::evidence::not_positive;
 use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, columns, learned, learned_prior, prior};
 use super::setup::listed;
-use crate::residual::{
+use sistership_residual::{
     Columns, Discrepancies, EffectCandidate, Gram, Instrument, Noise, Nuisance, NuisanceKind,
     filter,
 };

@@ -12,11 +12,11 @@ use sistership_model::manifest::VelocityFrame;
 use super::calibrated_model::CalibratedModel;
 use super::evidence::DiscrepancyFactor;
 use super::linearised_trials::LinearisedTrials;
-use crate::residual::{
+use sistership_estimate::refine::RefineError;
+use sistership_residual::{
     Columns, Detail, Discrepancies, EffectCandidate, Gram, Linearised, ResidualSystem, linearise,
     whitened,
 };
-use sistership_estimate::refine::RefineError;
 
 /// Effects that are taken, and all that is there when others are judged beside them.
 pub(super) struct FilteredBase<'a> {

@@ -5,7 +5,7 @@ use sistership_model::effect::EffectParameter;
 
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior};
-use crate::residual::{EffectCandidate, Gram};
+use sistership_residual::{EffectCandidate, Gram};
 
 /// A hypothesis where it is most probable.
 #[derive(Debug, Clone)]

@@ -3,6 +3,7 @@
 mod as_recorded;
 mod calibrate;
 mod calibrated_model;
+mod changes;
 mod choose;
 mod coefficient_prior;
 mod confounded;
@@ -26,11 +27,11 @@ mod outcome;
 mod placebo;
 mod refit;
 mod remainder;
-pub mod residual;
 mod run;
 mod said;
 mod screening;
 mod search;
+mod select;
 mod series;
 mod settings;
 mod setup;
@@ -43,9 +44,9 @@ pub use as_recorded::as_recorded;
 pub use calibrate::calibrate;
 pub use expected::{ExpectedInformation, Unknowns, forms_of};
 pub use outcome::{
-    Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
-    NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained,
-    Value, VariableDependence, Verdict,
+    Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,
+    Hypothesis, LimitedBy, NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre,
+    TrialErrors, Unexplained, Value, VariableDependence, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;

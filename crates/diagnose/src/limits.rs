@@ -18,7 +18,7 @@ use super::outcome::{DetectionLimit, LimitedBy};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::acts_on;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// Of every listed effect and of each of its parameters whose absence is zero, from a base without
 /// effects at one of its levels; none where the information is not positive.

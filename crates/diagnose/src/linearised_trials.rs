@@ -11,11 +11,11 @@ use sistership_model::{Trial, particulars};
 
 use super::calibrated_model::CalibratedModel;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{
+use sistership_estimate::refine::RefineError;
+use sistership_residual::{
     Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
     TrialReadings, filter_first, floor, linearise, scatter, sparseness,
 };
-use sistership_estimate::refine::RefineError;
 use sistership_sources::transfer::approach_of;
 
 /// Everything that does not change with the discrepancy.

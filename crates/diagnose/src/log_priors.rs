@@ -6,7 +6,7 @@ use sistership_model::Effect;
 
 use super::Request;
 use super::discount::is_from_outside;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// Logarithm of the odds of each form against the model alone, by its key: those of the settings,
 /// or of the library, shared by the forms of the effect that can be tried. Without any, every
@@ -15,16 +15,18 @@ pub(super) fn log_priors(
     request: &Request<'_>,
     listed: &[EffectCandidate],
     freed: &[EffectCandidate],
+    changing: &[EffectCandidate],
 ) -> BTreeMap<String, f64> {
     let mut forms: BTreeMap<&str, f64> = BTreeMap::new();
     let all = || listed.iter().chain(freed);
     all().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
     let equal = (forms.len() as f64).recip();
+    changing.iter().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
     let log = |candidate: &EffectCandidate| {
         let odds = odds(request, candidate).unwrap_or(equal);
         (candidate.key(), (odds / forms[candidate.effect.as_str()]).ln())
     };
-    all().map(log).collect()
+    all().chain(changing).map(log).collect()
 }
 
 /// Whether the settings or the library state the odds of any effect.

@@ -4,7 +4,7 @@ use sistership_model::effect::ActsOn;
 
 use super::thresholds::THRESHOLDS;
 use super::values::acts_on;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// By how much a form differs from what nature has in its place, a share of its response: what the
 /// library states, or the least that is assumed of any law.
@@ -21,4 +21,11 @@ pub(super) fn of_size(candidate: &EffectCandidate) -> f64 {
 /// What may remain of its response where it is at its best size.
 pub(super) fn of_shape(candidate: &EffectCandidate) -> f64 {
     candidate.form.file.misfit.unwrap_or(THRESHOLDS.effect.shape)
+}
+
+/// The share of the evidence for an effect that its misfit may be worth: half the square of a
+/// response is the evidence for it, so that of the misfit the evidence is the misfit squared of
+/// that.
+pub(super) fn shadow_share(candidate: &EffectCandidate) -> f64 {
+    (THRESHOLDS.effect.misfits * misfit(candidate)).powi(2)
 }

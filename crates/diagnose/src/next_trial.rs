@@ -15,7 +15,7 @@ use super::outcome::{Found, NextTrial};
 use super::search::HypothesisSearch;
 use super::thresholds::{PlannedHelm, THRESHOLDS};
 use super::values::model_with;
-use crate::residual::{Gram, filter};
+use sistership_residual::{Gram, filter};
 
 /// One that could be sailed.
 #[derive(Clone, Copy)]

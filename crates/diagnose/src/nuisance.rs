@@ -14,8 +14,8 @@ use sistership_model::{Effect, Model, Trial};
 
 use super::coefficient_prior::CoefficientPrior;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Columns, Nuisance, NuisanceKind};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{Columns, Nuisance, NuisanceKind};
 
 /// Terms that a grammar spells and a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;

@@ -32,6 +32,10 @@ pub struct Diagnosis {
     pub effects: Vec<Found>,
     /// What no effect explains.
     pub unexplained: Vec<Unexplained>,
+    /// Changes in time that explain what remains of a trial, the most evident first: they are of a
+    /// day, and no model carries them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<Change>,
     /// On what depends what is left there, by acceleration.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub depends_on: Vec<RemainderDependence>,
@@ -165,6 +169,51 @@ pub struct Unexplained {
     pub from_s: f64,
     /// Until when, s of the trial.
     pub to_s: f64,
+}
+
+/// An effect that changes within a trial, or that one trial alone has, and with which nothing of
+/// that trial remains unexplained.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// Its name in the library.
+    pub effect: String,
+    /// In which form.
+    pub form: String,
+    /// One line for people.
+    pub meaning: String,
+    /// The trial.
+    pub trial: String,
+    /// How it goes.
+    pub course: ChangeCourse,
+    /// When it begins or ends, s of the trial; absent where it does neither.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_s: Option<f64>,
+    /// Between which times that is with a probability of 95 %, s of the trial.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_s: Option<[f64; 2]>,
+    /// Its parameters and what follows from them, beside what is there otherwise; of a drift at the
+    /// end of the trial.
+    pub parameters: BTreeMap<String, Value>,
+    /// Natural logarithm of how much more probable the trial is with it than without, after what
+    /// the number of times that were tried costs.
+    pub evidence: f64,
+    /// Effects whose changes are nearly as evident.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub or: Vec<String>,
+}
+
+/// How a change goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ChangeCourse {
+    /// It begins within the trial.
+    Begins,
+    /// It ends within the trial.
+    Ends,
+    /// It grows steadily from the beginning of the trial.
+    Drifts,
+    /// It is there throughout this trial, and not in all others.
+    Throughout,
 }
 
 /// On what depends what is left of an acceleration in which something is unexplained, or in yaw

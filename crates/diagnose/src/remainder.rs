@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use sistership_model::trial::Channel;
+use sistership_model::trial::{Channel, Trial};
 
 use super::linearised_trials::LinearisedTrials;
 use super::outcome::Unexplained;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Discrepancies, Linearised, errors, responses};
+use sistership_residual::{Discrepancies, Linearised, errors, responses};
 
 /// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is
 /// expected; the largest first. `effects` are the parts of the parameters that the laws of the
@@ -20,19 +20,32 @@ pub(super) fn unexplained(
     effects: &[f64],
     clean: Option<&BTreeMap<String, f64>>,
 ) -> Vec<Unexplained> {
+    let of_trial = |(place, trial): (usize, &&Trial)| {
+        let parts = &workspace.linear()[place];
+        in_trial((workspace, &trial.name), parts, discrepancies, (parameters, effects), clean)
+    };
+    let mut found: Vec<Unexplained> =
+        workspace.trials.iter().enumerate().flat_map(of_trial).collect();
+    found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
+    found
+}
+
+/// The same of the parts of one trial.
+pub(super) fn in_trial(
+    (workspace, trial): (&LinearisedTrials<'_>, &str),
+    parts: &[Linearised],
+    discrepancies: &Discrepancies,
+    (parameters, effects): (&[f64], &[f64]),
+    clean: Option<&BTreeMap<String, f64>>,
+) -> Vec<Unexplained> {
     let limit = |channel: Channel| {
         let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
         THRESHOLDS.remainder.limit.max(THRESHOLDS.remainder.margin * seen)
     };
-    let mut found = Vec::new();
-    for (place, trial) in workspace.trials.iter().enumerate() {
-        let parts = &workspace.linear()[place];
-        for (channel, sums) in sums(workspace, parts, discrepancies, (parameters, Some(effects))) {
-            found.extend(sums.stretches(&trial.name, channel, limit(channel)));
-        }
-    }
-    found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
-    found
+    let sums = sums(workspace, parts, discrepancies, (parameters, Some(effects)));
+    let of =
+        |(channel, sums): (Channel, BlockSums<'_>)| sums.stretches(trial, channel, limit(channel));
+    sums.into_iter().flat_map(of).collect()
 }
 
 /// The largest that any stretch of a trial leaves, by channel.

@@ -4,25 +4,22 @@ use std::collections::BTreeMap;
 
 use super::Request;
 use super::choose::{ConvergedChoice, EffectChoice, choose};
-use super::constancy::inconstant;
 use super::dependence::of_remainder;
-use super::hypothesis::JudgedHypothesis;
 use super::judge::{SimulatedErrors, errors};
 use super::limits::{but, cannot_tell};
 use super::linearised_trials::LinearisedTrials;
-use super::misfit::of_shape;
 use super::outcome::{Diagnosis, Found, NextTrial, Unexplained, Verdict};
 use super::refit::{Refit, refits};
-use super::remainder::unexplained;
 use super::said::{apart, how, hypotheses, in_model, remarks};
 use super::search::HypothesisSearch;
+use super::select::{SelectedEffects, selected};
 use super::series::{levels, residuals};
 use super::setup::search;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{EffectCandidate, Instrument};
 use sistership_estimate::refine::{Progress, RefineError};
 use sistership_model::Model;
 use sistership_model::trial::Channel;
+use sistership_residual::Instrument;
 
 /// Diagnoses a model on trials.
 ///
@@ -51,7 +48,7 @@ fn answer(
     choice: EffectChoice,
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
-    let selected = believed(request, first, choice, progress)?;
+    let selected = selected(request, first, choice, progress)?;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
     let fitted = fitted(request, &selected.settled);
     step(progress, 0.95, "what these trials cannot tell apart")?;
@@ -116,7 +113,7 @@ fn written(
     selected: SelectedEffects<'_>,
     (fitted, named): (FittedModel, NamedEffects),
 ) -> Result<Diagnosis, RefineError> {
-    let SelectedEffects { choice, settled, remaining, .. } = selected;
+    let SelectedEffects { choice, settled, remaining, changes, .. } = selected;
     let ConvergedChoice { search, base, best } = &settled;
     let names: Vec<String> = named.found.iter().map(|found| found.name.clone()).collect();
     let limits = but(choice.limits.clone(), &names);
@@ -124,6 +121,7 @@ fn written(
     let residuals = residuals(first, search, best)?;
     Ok(Diagnosis {
         verdict: verdict(&remaining, &named.found),
+        changes,
         depends_on: of_remainder(first.trials, &residuals, &remaining),
         effects: named.found,
         unexplained: remaining,
@@ -153,73 +151,4 @@ fn deviations(workspace: &LinearisedTrials<'_>) -> BTreeMap<String, f64> {
         (channel.name().to_owned(), instrument.deviation)
     };
     workspace.noise.iter().map(one).collect()
-}
-
-/// What is taken in the end.
-struct SelectedEffects<'a> {
-    choice: EffectChoice,
-    settled: ConvergedChoice<'a>,
-    remaining: Vec<Unexplained>,
-    /// Names of effects that are not the same at all times.
-    refused: Vec<String>,
-}
-
-/// The effects taken, as far as each is the same at all times where something remains unexplained.
-/// Where one is not, the choice is made again without it: it may have stood before another.
-fn believed<'a>(
-    request: &Request<'_>,
-    search: &HypothesisSearch<'a>,
-    choice: EffectChoice,
-    progress: Progress<'_>,
-) -> Result<SelectedEffects<'a>, RefineError> {
-    let (mut search, mut choice, mut refused) = (search.clone(), choice, Vec::new());
-    loop {
-        let settled = choice.settled(&search, request)?;
-        let remaining = remaining(&settled.search, &settled.best, &settled.base.workspace)?;
-        let margin = request.settings.least_evidence;
-        let varying = match remaining.is_empty() {
-            true => Vec::new(),
-            false => inconstant(&settled.search, &settled.base, &settled.best, margin)?,
-        };
-        if varying.is_empty() {
-            return Ok(SelectedEffects { choice, settled, remaining, refused });
-        }
-        let names = varying.into_iter().map(|place| settled.best.candidates[place].effect.clone());
-        refused.extend(names.inspect(|name| search.forget(name)));
-        step(progress, 0.8, "effects without those that only resemble what is missing")?;
-        choice = choose(&search, request.settings)?.after(choice);
-    }
-}
-
-fn remaining(
-    search: &HypothesisSearch<'_>,
-    best: &JudgedHypothesis,
-    workspace: &LinearisedTrials<'_>,
-) -> Result<Vec<Unexplained>, RefineError> {
-    let expected = match search.model.uncertainty {
-        Some(_) => &search.expected,
-        None => &workspace.scales().discrepancies(THRESHOLDS.discrepancy.remainder_level),
-    };
-    let parameters: Vec<f64> = best.shift.iter().copied().chain(best.moved()).collect();
-    let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
-    let open = |candidate: &EffectCandidate| {
-        let share = of_shape(candidate);
-        candidate.change().into_iter().map(move |change| share * change)
-    };
-    let changes: Vec<f64> = best.candidates.iter().flat_map(open).collect();
-    let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
-    let found = unexplained(workspace, expected, &parameters, &effects, clean);
-    if clean.is_none() || found.is_empty() {
-        return Ok(found);
-    }
-    // Coefficients that gave way to what is missing have spread it over the trial: it is dated by
-    // those of clean trials.
-    let given_way = search.given_way().into_iter().map(|change| -change);
-    let as_calibrated: Vec<f64> =
-        given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
-    let dated = unexplained(workspace, expected, &as_calibrated, &effects, clean);
-    let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
-    let dated: Vec<Unexplained> =
-        dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
-    Ok(if dated.is_empty() { found } else { dated })
 }

@@ -89,7 +89,7 @@ pub(super) fn hypotheses(
 ) -> Vec<Hypothesis> {
     let alone = choice.alone.held_out(&search.fixed);
     let one = |(place, judged): (usize, &JudgedHypothesis)| Hypothesis {
-        effects: judged.candidates.iter().map(crate::residual::EffectCandidate::key).collect(),
+        effects: judged.candidates.iter().map(sistership_residual::EffectCandidate::key).collect(),
         evidence: judged.log_evidence - choice.alone.log_evidence,
         held_out: judged.held_out(&search.fixed).zip(alone).map(|(with, without)| with - without),
         parameters: parameters(request, judged),

@@ -6,7 +6,7 @@ use super::evidence::{MarginalInformation, NormalPrior};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::priors;
 use super::search::HypothesisSearch;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// An effect that may be missing, by one linearisation.
 #[derive(Clone)]

@@ -16,8 +16,8 @@ use super::hypothesis::{JudgedHypothesis, halfway, placed, priors};
 use super::linearised_trials::LinearisedTrials;
 use super::nuisance::Terms;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Columns, Discrepancies, EffectCandidate, Gram, Nuisance};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{Columns, Discrepancies, EffectCandidate, Gram, Nuisance};
 
 /// What stays the same while hypotheses change.
 #[derive(Clone)]
@@ -42,6 +42,8 @@ pub(super) struct HypothesisSearch<'a> {
     pub listed: Vec<EffectCandidate>,
     /// Terms that the model lacks.
     pub freed: Vec<EffectCandidate>,
+    /// Forms that are tried as a change within a trial only.
+    pub changing: Vec<EffectCandidate>,
     /// Logarithm of the prior probability of each form among all.
     pub log_priors: BTreeMap<String, f64>,
     /// Whether anybody states odds. A library that does not is of before limits were told: its

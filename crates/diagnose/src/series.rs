@@ -9,8 +9,8 @@ use super::linearised_trials::LinearisedTrials;
 use super::outcome::{DiscrepancyLevel, ResidualSeries};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Columns, Smoothed, smoothed};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{Columns, Smoothed, smoothed};
 
 /// The residuals of every trial: of the model as it is, and with the effects found.
 ///

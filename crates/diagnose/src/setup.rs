@@ -15,8 +15,8 @@ use super::log_priors::{log_priors, states_odds};
 use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Columns, Discrepancies, EffectCandidate};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{Columns, Discrepancies, EffectCandidate};
 
 /// The forms that can be tried on trials: those whose channels every trial has, of effects that the
 /// model does not carry, but for what its instruments are known to do.
@@ -41,9 +41,21 @@ pub(super) fn listed(
         };
         let forms =
             effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
+        let forms = forms.filter(|form| !form.file.only_as_change);
         forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
     };
     effects.iter().filter(carried).flat_map(of).collect()
+}
+
+/// The forms that are tried as a change within a trial only.
+fn changing(request: &Request<'_>) -> Vec<EffectCandidate> {
+    let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
+        let can =
+            |form: &&Arc<Form>| form.file.only_as_change && fits(form, request.law, request.trials);
+        let forms = effect.forms.iter().filter(can);
+        forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
+    };
+    request.effects.iter().flat_map(of).collect()
 }
 
 /// The terms that the library's grammars spell.
@@ -65,7 +77,7 @@ fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
 /// Names what the model or a trial lacks.
 pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, RefineError> {
     let listed = listed(request.model, request.law, request.effects, request.trials);
-    let freed = freed(request);
+    let (freed, changing) = (freed(request), changing(request));
     let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
     let nuisance = columns(request.model, request.law);
     let (fixed, levels) = match &request.model.uncertainty {
@@ -99,10 +111,11 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
         expected: Vec::new(),
         levels,
         least_step_s: request.settings.least_step_s,
-        log_priors: log_priors(request, &listed, &freed),
+        log_priors: log_priors(request, &listed, &freed, &changing),
         states_odds: states_odds(request),
         listed,
         freed,
+        changing,
     };
     search.expected = expected(request, &search)?;
     Ok(search)

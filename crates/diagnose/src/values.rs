@@ -9,7 +9,7 @@ use sistership_model::{Model, particulars};
 
 use super::outcome::Value;
 use super::thresholds::THRESHOLDS;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// The parameters of a candidate and what follows from them, by the delta method; `covariance` is
 /// of its parameters.

@@ -42,6 +42,7 @@ pub struct Start {
 impl Start {
     /// As a person named it.
     pub fn at(source: Version, law: Option<String>, settings: Settings) -> Self {
+        let settings = settings.as_ordered();
         Self { source: Some(source), law, settings, similarity: None, ladder: None }
     }
 

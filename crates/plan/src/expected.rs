@@ -1,9 +1,9 @@
 //! What the candidates are expected to tell.
 
 use nalgebra::DMatrix;
-use sistership_diagnose::residual::Noise;
 use sistership_diagnose::{ExpectedInformation, Unknowns as Asked, as_recorded};
 use sistership_model::{Model, Trial};
+use sistership_residual::Noise;
 
 use crate::course::Course;
 use crate::design::Design;

@@ -1,8 +1,8 @@
 //! The instruments by which planned trials are read.
 
 use serde::{Deserialize, Serialize};
-use sistership_diagnose::residual::{Instrument, Noise};
 use sistership_model::trial::Channel;
+use sistership_residual::{Instrument, Noise};
 
 /// Standard deviations of the noise of readings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -2,11 +2,11 @@
 //! to tell apart.
 
 use sistership_diagnose::forms_of;
-use sistership_diagnose::residual::EffectCandidate;
 use sistership_dynamics::Ship;
 use sistership_dynamics::state::RECORDED;
 use sistership_model::trial::Channel;
 use sistership_model::{Model, Trial};
+use sistership_residual::EffectCandidate;
 
 use crate::error::PlanError;
 use crate::request::PlanRequest;

@@ -87,7 +87,7 @@ fn of_effects(unknowns: &Unknowns) -> Vec<Target> {
         effect.form.parameters.keys().zip(&effect.at).map(move |(name, at)| (effect, name, *at))
     });
     let one = |(k, (effect, name, value)): (usize, (&_, &String, f64))| {
-        let effect: &sistership_diagnose::residual::EffectCandidate = effect;
+        let effect: &sistership_residual::EffectCandidate = effect;
         let mut gradient = DVector::zeros(size);
         gradient[first + k] = unknowns.root[(first + k, first + k)];
         Target { name: format!("{}: {name}", effect.key()), unit: "", value, gradient }

@@ -2,8 +2,8 @@
 //! library's priors, all in deviations that are independent before any new trial.
 
 use nalgebra::DMatrix;
-use sistership_diagnose::residual::EffectCandidate;
 use sistership_model::Model;
+use sistership_residual::EffectCandidate;
 
 use crate::error::PlanError;
 use crate::thresholds::THRESHOLDS;

@@ -61,7 +61,7 @@ fn row(zoo: &Zoo, library: &Library, stranger: &Sailed, count: usize) -> Option<
     let estimated = estimate(library, &stranger.vessel, zoo.law(LAW)?, speed).ok()?;
     let errors = |source: &Model, prior| errors(zoo, stranger, source, prior, &trials);
     let sources = (0..MEASURES.len()).map(|measure| {
-        let source = chosen(zoo, stranger, measure)?;
+        let source = chosen(zoo, stranger, measure).filter(|_| SHOWN.contains(&measure))?;
         Some([errors(&source, Prior::Source), errors(&source, Prior::Mixture)])
     });
     Some(Row {
@@ -108,6 +108,7 @@ fn refined(
         recorded_terms: true,
         ..Settings::default()
     };
+    let settings = settings.as_ordered();
     let request = Request {
         target: &stranger.vessel,
         source,

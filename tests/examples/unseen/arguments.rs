@@ -24,6 +24,8 @@ pub struct Arguments {
     pub limits: Vec<f64>,
     /// Speeds of a steady wind with an anemometer, m/s, that are hidden instead.
     pub winds: Vec<f64>,
+    /// What begins within trials or between them is hidden instead.
+    pub changes: bool,
     /// Numbers that draw ships, which take the place of those of the half.
     pub drawn: Vec<u64>,
     /// The program that is judged; this tree's where absent.
@@ -62,6 +64,7 @@ impl Arguments {
             sizes: vec![1.0],
             limits: Vec::new(),
             winds: Vec::new(),
+            changes: false,
             drawn: Vec::new(),
             program: None,
             models: None,
@@ -80,6 +83,7 @@ impl Arguments {
             "--sizes" => self.sizes = shares(),
             "--limits" => self.limits = shares(),
             "--winds" => self.winds = shares(),
+            "--changes" => self.changes = value == "true",
             "--drawn" => {
                 let number = |text: &String| text.parse().expect("a number that draws a ship");
                 self.drawn = listed().iter().map(number).collect();

@@ -4,6 +4,7 @@ use sistership_tests::truth::causes::{Course, Hidden};
 use sistership_tests::truth::manoeuvre::Manoeuvre;
 
 use crate::arguments::Arguments;
+use crate::changing::changes;
 use crate::listed::{pairs, singles, steady_winds, unlisted};
 use crate::ships::TrueShip;
 
@@ -16,6 +17,9 @@ pub enum Kind {
     Pair,
     /// No name, but this channel from this share of the trial on.
     Unlisted(&'static str, f64),
+    /// One of these effects as a change, from this share of the trial on; in whole trials where
+    /// there is none.
+    Change(Option<f64>),
     Clean,
 }
 
@@ -45,6 +49,10 @@ pub fn cases(ship: &TrueShip, arguments: &Arguments) -> Vec<Case> {
             all.extend(of_winds(ship, &arguments.winds, 50 * seed));
             continue;
         }
+        if arguments.changes {
+            all.extend(of_changes(ship, 50 * seed));
+            continue;
+        }
         for share in &arguments.sizes {
             all.extend(of_ship(ship, *share, 50 * seed));
         }
@@ -72,6 +80,13 @@ fn of_ship(ship: &TrueShip, share: f64, first: u64) -> Vec<Case> {
 fn of_winds(ship: &TrueShip, speeds_m_s: &[f64], first: u64) -> Vec<Case> {
     let mut all: Vec<Case> =
         speeds_m_s.iter().flat_map(|speed| steady_winds(ship.truth.dimensions(), *speed)).collect();
+    all.iter_mut().enumerate().for_each(|(place, case)| case.seed = first + place as u64);
+    all
+}
+
+/// What begins within trials, or between them.
+fn of_changes(ship: &TrueShip, first: u64) -> Vec<Case> {
+    let mut all = changes(ship.truth.dimensions());
     all.iter_mut().enumerate().for_each(|(place, case)| case.seed = first + place as u64);
     all
 }

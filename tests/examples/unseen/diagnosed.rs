@@ -1,5 +1,7 @@
 //! One case: trials sailed, written, and given to `sistership diagnose`.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 use sistership_model::Trial;
 use sistership_tests::truth::causes::trials;
@@ -15,13 +17,16 @@ use crate::ships::{Refined, TrueShip};
 /// # Panics
 /// The program refuses.
 pub fn run(program: &Program, ship: &TrueShip, model: &Refined, case: Case) -> Outcome {
-    let (answer, duration_s, wall_s) = answer(program, ship, model, &case);
-    let outcome = Outcome::new(ship.name(), case, &answer, duration_s, wall_s);
+    let (answer, durations_s, wall_s) = answer(program, ship, model, &case);
+    let outcome = Outcome::new(ship.name(), case, &answer, &durations_s, wall_s);
     println!("{}", outcome.line());
     outcome
 }
 
-/// The document of a case, the duration of its longest trial and how long the call took, s.
+/// Durations of trials by name, s.
+pub type Durations = BTreeMap<String, f64>;
+
+/// The document of a case, the durations of its trials and how long the call took, s.
 ///
 /// # Panics
 /// The program refuses.
@@ -30,7 +35,7 @@ pub fn answer(
     ship: &TrueShip,
     model: &Refined,
     case: &Case,
-) -> (Value, f64, f64) {
+) -> (Value, Durations, f64) {
     let sailed = trials(&*ship.truth, &case.hidden, &programme(), &ship.instruments(), case.seed);
     let folder = tempfile::tempdir().expect("a folder");
     let files = write_trials(folder.path(), &ship.name(), &sailed.iter().collect::<Vec<&Trial>>());
@@ -38,6 +43,6 @@ pub fn answer(
     let (answer, wall_s) =
         program.asked(&["diagnose", "--model", &words[0], "--trials", &words[1]]);
     let answer = answer.unwrap_or_else(|error| panic!("{}, {}: {error}", ship.name(), case.label));
-    let duration_s = sailed.iter().flat_map(|trial| trial.t_s.last().copied()).fold(0.0, f64::max);
-    (answer, duration_s, wall_s)
+    let duration = |trial: &Trial| Some((trial.name.clone(), *trial.t_s.last()?));
+    (answer, sailed.iter().filter_map(duration).collect(), wall_s)
 }

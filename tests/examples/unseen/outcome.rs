@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::cases::{Case, Kind};
+use crate::diagnosed::Durations;
 use crate::limits;
 
 /// A size that was found beside the true one.
@@ -21,7 +22,9 @@ pub struct Outcome {
     pub named: Vec<String>,
     pub verdict: String,
     pub estimates: Vec<Estimate>,
-    /// The strongest stretch that nothing explains: channel, from, to by the longest trial.
+    /// Changes: effect, and at which share of the trial where they begin or end within it.
+    pub changes: Vec<(String, Option<f64>)>,
+    /// The strongest stretch that nothing explains: channel, from, to by its trial.
     pub open: Option<(String, f64, f64)>,
     /// Whether the smallest size that would have been shown is above what was hidden.
     pub below_limit: bool,
@@ -30,7 +33,13 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    pub fn new(ship: String, case: Case, answer: &Value, duration_s: f64, wall_s: f64) -> Self {
+    pub fn new(
+        ship: String,
+        case: Case,
+        answer: &Value,
+        durations_s: &Durations,
+        wall_s: f64,
+    ) -> Self {
         let effects = answer["effects"].as_array().cloned().unwrap_or_default();
         let name = |effect: &Value| effect["name"].as_str().unwrap_or_default().to_owned();
         let evidence = |effect: &Value| {
@@ -41,7 +50,8 @@ impl Outcome {
             named: effects.iter().map(name).collect(),
             verdict: answer["verdict"].as_str().unwrap_or_default().to_owned(),
             estimates: right.flat_map(|effect| estimates(effect, &case)).collect(),
-            open: strongest(&answer["unexplained"], duration_s),
+            changes: changes(&answer["changes"], durations_s),
+            open: strongest(&answer["unexplained"], durations_s),
             below_limit: limits::is_below(&answer["limits"], &case),
             evidence: effects.iter().map(evidence).collect(),
             ship,
@@ -82,11 +92,24 @@ impl Outcome {
         self.is_unexplained() && self.open.as_ref().is_some_and(holds)
     }
 
+    /// Whether every change has a right name and, where it begins within trials, the right time.
+    pub fn is_right_change(&self) -> bool {
+        let Kind::Change(from) = self.case.kind else { return false };
+        let is_right = |(name, at): &(String, Option<f64>)| {
+            let near = |(at, from): (&f64, f64)| (at - from).abs() <= 0.05;
+            self.case.names.contains(&name.as_str())
+                && at.is_some() == from.is_some()
+                && at.as_ref().zip(from).is_none_or(near)
+        };
+        !self.changes.is_empty() && self.changes.iter().all(is_right)
+    }
+
     fn is_right(&self) -> bool {
         match self.case.kind {
             Kind::Single | Kind::Pair => self.is_exact(),
             Kind::AtLimit(share) => self.is_first() == (share > 1.0),
             Kind::Unlisted(..) => self.is_right_place(),
+            Kind::Change(_) => self.is_right_change(),
             Kind::Clean => self.named.is_empty() && !self.is_unexplained(),
         }
     }
@@ -97,8 +120,14 @@ impl Outcome {
         let open = self.open.as_ref().map(|(channel, from, to)| {
             format!(" open {channel} {:.0}-{:.0} %", 100.0 * from, 100.0 * to)
         });
+        let at = |(name, at): &(String, Option<f64>)| match at {
+            Some(at) => format!("{name} at {:.0} %", 100.0 * at),
+            None => format!("{name} in one trial"),
+        };
+        let changes: Vec<String> = self.changes.iter().map(at).collect();
+        let changes = if changes.is_empty() { String::new() } else { changes.join(", ") + "; " };
         format!(
-            "{} {:22} {:28} {}: [{}]{} {}{} {:.1} s",
+            "{} {:22} {:28} {}: [{}]{} {changes}{}{} {:.1} s",
             if self.is_right() { " " } else { "X" },
             self.ship,
             self.case.label,
@@ -121,8 +150,21 @@ fn estimates(effect: &Value, case: &Case) -> Vec<Estimate> {
     case.sizes.iter().filter_map(one).collect()
 }
 
-fn strongest(unexplained: &Value, duration_s: f64) -> Option<(String, f64, f64)> {
+fn changes(changes: &Value, durations_s: &Durations) -> Vec<(String, Option<f64>)> {
+    let one = |change: &Value| {
+        let name = change["effect"].as_str().unwrap_or_default().to_owned();
+        (name, change["at_s"].as_f64().and_then(|at_s| share(change, at_s, durations_s)))
+    };
+    changes.as_array().into_iter().flatten().map(one).collect()
+}
+
+/// A time of a trial, by how long it is.
+fn share(told: &Value, t_s: f64, durations_s: &Durations) -> Option<f64> {
+    Some(t_s / durations_s.get(told["trial"].as_str()?)?)
+}
+
+fn strongest(unexplained: &Value, durations_s: &Durations) -> Option<(String, f64, f64)> {
     let first = unexplained.as_array()?.first()?;
-    let share = |name: &str| Some(first[name].as_f64()? / duration_s);
+    let share = |name: &str| share(first, first[name].as_f64()?, durations_s);
     Some((first["channel"].as_str()?.to_owned(), share("from_s")?, share("to_s")?))
 }

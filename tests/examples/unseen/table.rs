@@ -54,7 +54,7 @@ struct Figure {
     target: &'static str,
 }
 
-const FIGURES: [Figure; 9] = [
+const FIGURES: [Figure; 10] = [
     Figure {
         name: "single: right name first",
         of: is_single,
@@ -103,6 +103,12 @@ const FIGURES: [Figure; 9] = [
         of: is_unlisted,
         right: Outcome::is_right_place,
         target: "85 %",
+    },
+    Figure {
+        name: "changes: right names and times",
+        of: |outcome| matches!(outcome.case.kind, Kind::Change(_)),
+        right: Outcome::is_right_change,
+        target: "",
     },
 ];
 

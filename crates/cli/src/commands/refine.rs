@@ -240,7 +240,7 @@ fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     arguments.constrain.iter().for_each(|constrain| constrain.add_to(&mut settings.constraints));
     settings.constraints.trust_sd = arguments.trust_sd.or(settings.constraints.trust_sd);
     settings.held_out.extend(arguments.held_out.iter().cloned());
-    Ok(settings)
+    Ok(settings.as_ordered())
 }
 
 fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {

@@ -15,7 +15,7 @@ use super::super::hypothesis::priors;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
 use super::trial_information::TrialInformation;
-use crate::residual::EffectCandidate;
+use sistership_residual::EffectCandidate;
 
 /// By `effect/form`.
 pub(super) fn levels(

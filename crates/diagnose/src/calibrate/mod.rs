@@ -27,8 +27,10 @@ use super::nuisance::{lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Columns, Discrepancies, EffectCandidate, Gram, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{
+    Columns, Discrepancies, EffectCandidate, Gram, Instrument, Noise, Nuisance,
+};
 
 /// What a model is calibrated with.
 #[derive(Clone, Copy)]

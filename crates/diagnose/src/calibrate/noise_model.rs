@@ -8,8 +8,8 @@ use super::super::evidence::not_positive;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
 use super::trial_information::{TrialInformation, shift};
-use crate::residual::{Discrepancies, Linearised, Noise, deviances};
 use sistership_estimate::refine::RefineError;
+use sistership_residual::{Discrepancies, Linearised, Noise, deviances};
 
 /// What readings scatter by beside the model.
 #[derive(Debug, Clone)]

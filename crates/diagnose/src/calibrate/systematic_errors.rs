@@ -15,8 +15,8 @@ use super::super::setup::search;
 use super::super::thresholds::THRESHOLDS;
 use super::super::values::{acts_on, model_with};
 use super::super::{Request, Settings};
-use crate::residual::EffectCandidate;
 use sistership_estimate::refine::RefineError;
+use sistership_residual::EffectCandidate;
 
 /// Errors of instruments that have one size on all trials; none where the instruments agree.
 pub(super) fn of(

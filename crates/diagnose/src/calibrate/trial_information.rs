@@ -6,7 +6,7 @@ use nalgebra::Cholesky;
 use rayon::prelude::*;
 
 use super::super::coefficient_prior::CoefficientPrior;
-use crate::residual::Gram;
+use sistership_residual::Gram;
 
 /// What is known of the coefficients, trial by trial.
 pub(super) struct TrialInformation<'a> {

@@ -7,6 +7,7 @@
 //! hidden_effects`).
 
 mod calibration;
+mod changes;
 mod effects;
 mod limits;
 mod remainder;
@@ -14,6 +15,7 @@ mod search;
 mod trials;
 
 use calibration::{CALIBRATION, CalibrationThresholds, DISCREPANCY, DiscrepancyThresholds};
+use changes::{CHANGES, ChangeThresholds};
 use effects::{
     CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds,
 };
@@ -43,6 +45,8 @@ pub(crate) struct Thresholds {
     pub limits: LimitThresholds,
     /// When something remains unexplained.
     pub remainder: RemainderThresholds,
+    /// What changes within a trial.
+    pub changes: ChangeThresholds,
     /// On what it depends.
     pub dependence: DependenceThresholds,
     /// The fit of the model that is given.
@@ -65,6 +69,7 @@ pub(crate) const THRESHOLDS: Thresholds = Thresholds {
     confounding: CONFOUNDING,
     limits: LIMITS,
     remainder: REMAINDER,
+    changes: CHANGES,
     dependence: DEPENDENCE,
     refit: REFIT,
     trials: TRIALS,

@@ -66,15 +66,16 @@ pub(super) fn of_same_law(
     mut model: Model,
     law: &Law,
     target: &Vessel,
-    trials: &[&Trial],
+    (trials, position): (&[&Trial], f64),
 ) -> Result<(Model, PriorMeasure), RefineError> {
     let envelope = OperatingEnvelope::new(&model, law, trials)?;
-    let mixed = mixed(&envelope, target, model.speed_m_s, trials)?;
+    let mixed = mixed(&envelope, target, model.speed_m_s, (trials, position))?;
     moved(&mut model, law, &envelope, &mixed)?;
     Ok((model, PriorMeasure::Mixture(mixed)))
 }
 
-/// What a source says, moved towards what the estimate says by its shares.
+/// What a source says, moved towards what the estimate says by its shares at a position
+/// ([`super::settings::Settings::mixture_positions`]).
 ///
 /// # Errors
 /// The ship's particulars do not suffice for an estimate.
@@ -82,22 +83,48 @@ pub(super) fn mixed(
     envelope: &OperatingEnvelope,
     target: &Vessel,
     speed_m_s: Option<f64>,
-    trials: &[&Trial],
+    (trials, position): (&[&Trial], f64),
 ) -> Result<OperatingEnvelope, RefineError> {
+    let (estimated, law) = estimated(target, speed_m_s)?;
+    let shares = MIXTURE.misfit.map(|misfit| misfit.map_or(0.0, |misfit| at(position, misfit)));
+    let moved = envelope.moved_to((&estimated, law), &shares, trials)?;
+    Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
+}
+
+/// The estimate from the ship's particulars, and its law.
+///
+/// # Errors
+/// They do not suffice, or its speed is not known.
+pub(super) fn estimated(
+    target: &Vessel,
+    speed_m_s: Option<f64>,
+) -> Result<(Model, &'static Law), RefineError> {
     let Regressions { library, law } = regressions()?;
     let speed_m_s = speed_m_s.ok_or_else(|| {
         RefineError::Data(format!("{}: the speed of the estimate is not known", target.name()))
     })?;
     let estimate = estimate(library, target, law, speed_m_s)
         .map_err(|error| RefineError::Data(format!("no estimate for the mixture: {error}")))?;
-    let moved = envelope.moved_to((&estimate.model, law), &MIXTURE.misfit.map(share), trials)?;
-    Ok(OperatingEnvelope { mixed: Some(words()), ..moved })
+    Ok((estimate.model, law))
 }
+
+/// The estimate's share at a position: none at 0, that of the least variance at a half, all at 1.
+fn at(position: f64, misfit: Misfit) -> f64 {
+    let learned = share(misfit);
+    match position <= LEARNED {
+        true => learned * position / LEARNED,
+        false => learned + (1.0 - learned) * (position - LEARNED) / (1.0 - LEARNED),
+    }
+}
+
+/// The position of the learned shares, and of the estimate.
+pub(super) const LEARNED: f64 = 0.5;
+pub(super) const ESTIMATE: f64 = 1.0;
 
 /// The estimate's share in the mean of least variance: with `C` the covariance of both errors,
 /// `C^-1 1 / (1' C^-1 1)` (Bates and Granger 1969, Eq. 2).
-fn share(misfit: Option<Misfit>) -> f64 {
-    let Some(Misfit { source, estimate, common }) = misfit else { return 0.0 };
+fn share(misfit: Misfit) -> f64 {
+    let Misfit { source, estimate, common } = misfit;
     ((source - common) / (source + estimate - 2.0 * common)).clamp(0.0, 1.0)
 }
 
@@ -123,8 +150,8 @@ fn moved(
 }
 
 /// The shares for people.
-fn words() -> String {
-    let one = |axis: Axis| format!("{axis} {:.2}", share(MIXTURE.misfit[axis as usize]));
+fn words(shares: &[f64; 4]) -> String {
+    let one = |axis: Axis| format!("{axis} {:.2}", shares[axis as usize]);
     let shares = [Axis::X, Axis::Y, Axis::N].map(one).join(", ");
     format!(
         "the prior is a mixture of the source and of the estimate from particulars, whose shares \
@@ -141,11 +168,12 @@ mod tests {
 
     #[test]
     fn shares_are_those_of_the_least_variance() {
-        let of = |source, estimate, common| share(Some(Misfit { source, estimate, common }));
+        let of = |source, estimate, common| share(Misfit { source, estimate, common });
         assert_eq!(of(1.0, 1.0, 0.0), 0.5);
         assert_eq!(of(4.0, 1.0, 0.0), 0.8);
         assert_eq!(of(1.0, 9.0, 2.0), 0.0);
-        assert_eq!(share(None), 0.0);
+        let misfit = Misfit { source: 4.0, estimate: 1.0, common: 0.0 };
+        assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0].map(|p| at(p, misfit)), [0.0, 0.4, 0.8, 0.9, 1.0]);
         // The mean square of the mean by its share is least there.
         let square = |w: f64| (1.0 - w).powi(2) * 2.0 + w * w * 3.0 + 2.0 * w * (1.0 - w) * 0.5;
         let best = of(2.0, 3.0, 0.5);
@@ -159,7 +187,7 @@ mod tests {
         let (target, law) = (zoo.vessel("kcs").unwrap(), zoo.law(&source.law).unwrap());
         let carried = transfer(&source, law, target, None);
         let own = OperatingEnvelope::new(&carried, law, &[]).unwrap();
-        let (model, measure) = of_same_law(carried.clone(), law, target, &[]).unwrap();
+        let (model, measure) = of_same_law(carried.clone(), law, target, (&[], LEARNED)).unwrap();
         let PriorMeasure::Mixture(mixed) = measure else { panic!("another measure") };
         let said = own.moved_to((&model, law), &[1.0; 4], &[]).unwrap();
         for axis in [Axis::X, Axis::Y, Axis::N] {

@@ -18,6 +18,7 @@ mod manoeuvres;
 mod measure;
 mod merged;
 mod mixture;
+mod mixture_position;
 mod outcome;
 mod parts;
 mod posterior;

@@ -15,6 +15,7 @@ use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
 use super::mixture;
+use super::mixture_position::chosen;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
 use super::problem::Problem;
@@ -64,7 +65,17 @@ pub fn refine_watched(
     watch: Watch<'_>,
 ) -> Result<Refinement, RefineError> {
     let known = SourceEnvelopes::default();
-    with_candidates((request, &known), Extent::Estimator, progress, watch, finish)
+    let weighed = |settings: &Settings| {
+        let request = Request { settings, ..*request };
+        let goes_on = |_, _: &str| progress(0.02, "where between source and estimate");
+        weigh((&request, &known), Extent::Estimator, &goes_on)
+    };
+    let Some(position) = chosen(request.settings, weighed)? else {
+        return with_candidates((request, &known), Extent::Estimator, progress, watch, finish);
+    };
+    let settings = &Settings { mixture_positions: vec![position], ..request.settings.clone() };
+    let request = Request { settings, ..*request };
+    with_candidates((&request, &known), Extent::Estimator, progress, watch, finish)
 }
 
 /// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out.
@@ -178,6 +189,7 @@ fn starting(
 ) -> Result<(Model, PriorMeasure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
     let is_mixture = request.settings.prior == Prior::Mixture;
+    let position = request.settings.mixture_positions.first().copied().unwrap_or(mixture::LEARNED);
     if is_mixture {
         mixture::check(source, target)?;
     }
@@ -190,15 +202,20 @@ fn starting(
             unrecorded::forget(&mut carried, law, whole);
         }
         if is_mixture {
-            return mixture::of_same_law(carried, law, target, whole);
+            return mixture::of_same_law(carried, law, target, (whole, position));
         }
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
     let (mut model, mut envelope) =
         across::begun((source, own), law, target, approach, (whole, known))?;
-    if is_mixture {
-        envelope = Arc::new(mixture::mixed(&envelope, target, model.speed_m_s, whole)?);
+    if is_mixture && position == mixture::ESTIMATE {
+        // By its own manoeuvres, not those of the source.
+        let (estimated, own) = mixture::estimated(target, model.speed_m_s)?;
+        let of = (whole, &SourceEnvelopes::default());
+        (model, envelope) = across::begun((&estimated, own), law, target, approach, of)?;
+    } else if is_mixture {
+        envelope = Arc::new(mixture::mixed(&envelope, target, model.speed_m_s, (whole, position))?);
     }
     if request.settings.recorded_terms {
         unrecorded::forget(&mut model, law, whole);

@@ -67,6 +67,10 @@ pub enum Prior {
     Mixture,
 }
 
+/// Positions of a mixture among which trials choose where an order says nothing else: source,
+/// learned shares and estimate, and halfway between.
+const MIXTURE_POSITIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
 impl Prior {
     /// Every prior.
     pub const ALL: [Self; 2] = [Self::Source, Self::Mixture];
@@ -119,6 +123,11 @@ pub struct Settings {
     /// the program; nothing where the prior is the source.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regressions_sha256: Option<String>,
+    /// Where the mean of a `mixture` may stand: 0 at the source, 0.5 where the learned shares put it,
+    /// 1 at the estimate. Of several the trials choose. Where an order leaves it empty, five of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 20), extend("items" = { "type": "number", "format": "double", "minimum": 0, "maximum": 1 }))]
+    pub mixture_positions: Vec<f64>,
     /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
     #[schemars(length(min = 1, max = 20))]
     pub ranges: Vec<Range>,
@@ -230,6 +239,7 @@ impl Default for Settings {
             method: Method::Published,
             prior: Prior::Source,
             regressions_sha256: None,
+            mixture_positions: Vec::new(),
             ranges: (0..=6).map(range).collect(),
             lambda_count: 100,
             difference_s: None,
@@ -259,6 +269,14 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// With what a new order means where it says nothing. Versions of before it was asked have none.
+    pub fn as_ordered(mut self) -> Self {
+        if self.prior == Prior::Mixture && self.mixture_positions.is_empty() {
+            self.mixture_positions = MIXTURE_POSITIONS.to_vec();
+        }
+        self
+    }
+
     /// Fills in what model selection chooses among, so that a version records it.
     pub(super) fn fill_selection(&mut self, families: &[Family]) {
         if self.families.is_empty() {
@@ -288,6 +306,13 @@ impl Settings {
             if !(0.0..=1.0).contains(&range.alpha_max) {
                 return refuse("ranges", "alpha_max must be from 0 to 1");
             }
+        }
+        let positions = &self.mixture_positions;
+        if positions.len() > 20 || positions.iter().any(|at| !(0.0..=1.0).contains(at)) {
+            return refuse("mixture_positions", "give at most 20, each from 0 to 1");
+        }
+        if !positions.is_empty() && self.prior != Prior::Mixture {
+            return refuse("mixture_positions", "are of the prior `mixture`");
         }
         if !(2..=1000).contains(&self.lambda_count) {
             return refuse("lambda_count", "must be from 2 to 1000");

@@ -91,6 +91,10 @@ pub struct FormFile {
     /// Whether the form is meant only for laws without roll.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub only_without_roll: bool,
+    /// Whether the form is tried as a change within a trial only: throughout, it is what
+    /// coefficients say.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub only_as_change: bool,
     /// How far one author's form of it is from another's: root mean square of the difference by
     /// that of the response, where the sizes suit each other best. Where absent, a few per cent.
     #[serde(default, skip_serializing_if = "Option::is_none")]

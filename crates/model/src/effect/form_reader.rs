@@ -124,7 +124,8 @@ impl Form {
     }
 }
 
-/// Each way of acting belongs to one place where effects act.
+/// Each way of acting belongs to one place where effects act; what changes the flow about the hull
+/// may be given as the forces that it adds.
 fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
     let counts = [
         ("sees", ActsOn::Inflow, file.sees.len()),
@@ -135,7 +136,8 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
         ("forces", ActsOn::Force, file.forces.len()),
         ("measures", ActsOn::Measurement, file.measures.len()),
     ];
-    let stray = counts.iter().find(|(_, of, count)| *of != acts_on && *count > 0);
+    let may = |of: ActsOn| of == acts_on || (acts_on, of) == (ActsOn::Inflow, ActsOn::Force);
+    let stray = counts.iter().find(|(_, of, count)| !may(*of) && *count > 0);
     if let Some((section, of, _)) = stray {
         return Err(((*section).into(), format!("belongs to effects that act on {}", word(*of))));
     }

@@ -71,6 +71,7 @@ impl Term<'_> {
             needs: needs(&force),
             unless: Vec::new(),
             only_without_roll: false,
+            only_as_change: false,
             misfit: None,
             particulars: IndexMap::new(),
             parameters: IndexMap::from([(

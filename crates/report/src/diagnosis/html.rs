@@ -6,7 +6,7 @@ use askama::Template;
 use sistership_diagnose::{Found, ResidualSeries, Unexplained};
 
 use super::input::DiagnosisInput;
-use super::{errors, evidence, limits, provenance, remaining, sentence, summary};
+use super::{changes, errors, evidence, limits, provenance, remaining, sentence, summary};
 use crate::numbers::{fixed, list, significant, stated};
 use crate::plots::{self, Plot};
 use crate::rendered::ReportError;
@@ -37,6 +37,7 @@ struct DiagnosisPage<'a> {
     trials: Vec<DiagnosisTrialPlots<'a>>,
     scatters: Vec<Plot>,
     unexplained: Table,
+    changes: Vec<String>,
     dependences: Vec<String>,
     curves: Vec<Plot>,
     discrepancies: Table,
@@ -90,6 +91,7 @@ pub(crate) fn page(
         trials: replayed.iter().map(|replayed| DiagnosisTrialPlots::of(input, replayed)).collect(),
         scatters: plots::scatters(&diagnosis.residuals),
         unexplained: remaining::unexplained(&diagnosis.unexplained),
+        changes: changes::changes(&diagnosis.changes),
         dependences: remaining::dependences(&diagnosis.depends_on),
         curves: plots::dependences(&diagnosis.depends_on),
         discrepancies: remaining::discrepancies(&diagnosis.discrepancies),

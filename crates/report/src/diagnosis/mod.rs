@@ -3,12 +3,14 @@
 //!
 //! [`render_diagnosis`] says in one sentence what was found (`sentence`), in two more what to do
 //! and what could not be told (`summary`), puts the figures into tables (`evidence`, `errors`,
-//! `limits`, `remaining`, `provenance`) and simulates the trials with the model
+//! `limits`, `remaining`, `changes`, `provenance`) and simulates the trials with the model
 //! before and after (`replays`) for the plots. Nothing depends on the clock.
 
+mod changes;
 mod distinct;
 mod errors;
 mod evidence;
+mod figures;
 mod html;
 mod input;
 mod limits;
@@ -21,6 +23,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+pub use changes::change;
 pub use distinct::distinct;
 pub use input::DiagnosisInput;
 pub use remaining::dependence;

@@ -8,7 +8,7 @@ use sistership_diagnose::Value;
 use crate::numbers::{fixed, significant};
 
 /// Endings of names, the unit shown, and what the value is multiplied by.
-const UNITS: [(&str, &str, f64); 9] = [
+const UNITS: [(&str, &str, f64); 10] = [
     ("_rad_s", "deg/s", 180.0 / std::f64::consts::PI),
     ("_deg_s", "deg/s", 1.0),
     ("_m_s", "m/s", 1.0),
@@ -18,6 +18,7 @@ const UNITS: [(&str, &str, f64); 9] = [
     ("_m", "m", 1.0),
     ("_s", "s", 1.0),
     ("_n", "N", 1.0),
+    ("_percent", "%", 1.0),
 ];
 
 /// A parameter as it is shown.

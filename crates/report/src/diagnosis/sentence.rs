@@ -2,11 +2,9 @@
 
 use sistership_diagnose::{Diagnosis, Found, Verdict};
 
-use super::parameter::ShownParameter;
-use crate::numbers::{list, significant};
-
-/// Most parameters that a sentence names.
-const MOST: usize = 3;
+use super::changes::change;
+use super::figures::with_figures;
+use crate::numbers::list;
 
 /// What was found, for a stranger.
 pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
@@ -34,8 +32,7 @@ pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
 
 /// An effect with what is known of it: `current (0.60 m/s towards 45 deg)`.
 pub(crate) fn effect(found: &Found) -> String {
-    let (name, figures) = (name(found), figures(found));
-    if figures.is_empty() { name } else { format!("{name} ({figures})") }
+    with_figures(name(found), &found.parameters)
 }
 
 /// What an effect is called: a missing term by the term.
@@ -48,43 +45,11 @@ fn name(found: &Found) -> String {
     }
 }
 
-fn figures(found: &Found) -> String {
-    let of = |name: &str| found.parameters.get(name).map(|value| ShownParameter::of(name, value));
-    for (direction, word) in [("towards_deg", "towards"), ("from_deg", "from")] {
-        if let (Some(speed), Some(angle)) = (of("speed_m_s"), of(direction)) {
-            return format!("{} {word} {}", short(&speed), compass(&angle));
-        }
-    }
-    let all: Vec<ShownParameter> = ShownParameter::all(&found.parameters)
-        .into_iter()
-        .map(|(_, parameter)| parameter)
-        .collect();
-    let with_unit: Vec<&ShownParameter> =
-        all.iter().filter(|parameter| !parameter.unit.is_empty()).collect();
-    let shown = if with_unit.is_empty() { all.iter().collect() } else { with_unit };
-    match shown.as_slice() {
-        [only] => short(only),
-        several if several.len() > MOST => String::new(),
-        several => list(
-            &several
-                .iter()
-                .map(|parameter| format!("{} {}", parameter.words, short(parameter)))
-                .collect::<Vec<_>>(),
-        ),
-    }
-}
-
-/// Three digits and the unit: the standard error stands in the table.
-fn short(parameter: &ShownParameter) -> String {
-    format!("{} {}", significant(parameter.value, 2), parameter.unit).trim_end().to_owned()
-}
-
-fn compass(angle: &ShownParameter) -> String {
-    format!("{:.0} deg", angle.value.rem_euclid(360.0))
-}
-
-/// Where it is: the stretch that the diagnosis puts first.
+/// Where it is: the change that explains it, or the stretch that the diagnosis puts first.
 fn where_(diagnosis: &Diagnosis) -> String {
+    if let Some(first) = diagnosis.changes.first() {
+        return format!(" throughout: {}", change(first));
+    }
     diagnosis.unexplained.first().map_or_else(String::new, |stretch| {
         let what = motion(&stretch.channel);
         format!(

@@ -172,6 +172,9 @@ fn what_nothing_explains_is_placed() {
     case.diagnosis.verdict = Verdict::Unexplained;
     case.diagnosis.effects = Vec::new();
     case.diagnosis.model = None;
+    let changed = case.render().json["sentence"].as_str().unwrap().to_owned();
+    assert!(changed.contains("throughout: in turn rudder damage (35 %) begins at"), "{changed}");
+    case.diagnosis.changes = Vec::new();
     let sentence = case.render().json["sentence"].as_str().unwrap().to_owned();
     assert!(
         sentence

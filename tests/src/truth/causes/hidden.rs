@@ -19,6 +19,10 @@ pub struct Hidden {
     pub forces: Vec<Force>,
     /// Errors of instruments.
     pub sensors: Vec<Sensor>,
+    /// The share of each trial from which on gear, forces and rate biases are there.
+    pub since: f64,
+    /// The trial from which on they are, counted from 0.
+    pub first_trial: usize,
 }
 
 impl Hidden {
@@ -29,6 +33,8 @@ impl Hidden {
         self.gear.extend(other.gear);
         self.forces.extend(other.forces);
         self.sensors.extend(other.sensors);
+        self.since = self.since.max(other.since);
+        self.first_trial = self.first_trial.max(other.first_trial);
         self
     }
 }

@@ -38,8 +38,11 @@ pub fn trials(
 ) -> Vec<Trial> {
     let one = |(index, course): (usize, &Course)| {
         let mut rng = crate::synthetic::replica(seed, 200 + index);
+        let before = Hidden { wind: hidden.wind, current: hidden.current, ..Hidden::default() };
+        let hidden = if index < hidden.first_trial { &before } else { hidden };
         let mut track = sailed(ship, hidden, course);
-        hidden.sensors.iter().for_each(|sensor| sensor.indicated(&mut track));
+        let since_s = hidden.since * track.t_s.last().copied().unwrap_or(0.0);
+        hidden.sensors.iter().for_each(|sensor| sensor.indicated(&mut track, since_s));
         let name = format!("{}_on_{}.csv", course.manoeuvre.name(), course.heading_deg);
         let mut trial = instruments.record(ship, &name, &track, &mut rng);
         if let Some(wind) = hidden.wind.filter(|wind| wind.is_recorded) {
@@ -76,7 +79,11 @@ fn sailed(ship: &dyn Truth, hidden: &Hidden, course: &Course) -> Trajectory {
         let order_rad = helm.order_deg(t_s - APPROACH * time_s, &seen).to_radians();
         let follow =
             |angle, standing: &mut Standing| standing.after(angle, t_s / duration_s, STEP_S);
-        let actual_rad = gear.iter_mut().fold(state[at::DELTA], follow);
+        let is_there = t_s >= hidden.since * duration_s;
+        let actual_rad = match is_there {
+            true => gear.iter_mut().fold(state[at::DELTA], follow),
+            false => state[at::DELTA],
+        };
         state = sea.step(t_s, &state, order_rad, actual_rad);
     }
     track
@@ -127,7 +134,8 @@ impl Sea<'_> {
         }
         let through_water = [at::U, at::V, at::R].map(|place| relative[place]);
         let now = Moment { t_s, share, state, through_water };
-        self.hidden.forces.iter().for_each(|force| add(&force.accelerations(self.ship, &now)));
+        let forces = self.hidden.forces.iter().filter(|_| share >= self.hidden.since);
+        forces.for_each(|force| add(&force.accelerations(self.ship, &now)));
         all
     }
 }

@@ -20,10 +20,12 @@ pub enum Sensor {
 }
 
 impl Sensor {
-    /// What is indicated of a track.
-    pub(super) fn indicated(&self, track: &mut Trajectory) {
+    /// What is indicated of a track; a rate bias from a time on.
+    pub(super) fn indicated(&self, track: &mut Trajectory, since_s: f64) {
         match *self {
-            Self::RateBias(bias) => each(track, |_, state| state[at::R] += bias),
+            Self::RateBias(bias) => each(track, |t_s, state| {
+                state[at::R] += if t_s < since_s { 0.0 } else { bias };
+            }),
             Self::HeadingDrift(drift) => each(track, |t_s, state| state[at::PSI] += drift * t_s),
             Self::Log(scale) => each(track, |_, state| {
                 state[at::U] *= 1.0 + scale;

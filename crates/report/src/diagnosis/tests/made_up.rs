@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnose::{
-    Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
-    NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre, Settings, TrialErrors,
-    Unexplained, Value, VariableDependence, Verdict,
+    Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,
+    Hypothesis, LimitedBy, NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre,
+    Settings, TrialErrors, Unexplained, Value, VariableDependence, Verdict,
 };
 use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
 use sistership_model::effect::ActsOn;
@@ -187,6 +187,22 @@ fn limits() -> Vec<DetectionLimit> {
     ]
 }
 
+/// A rudder that was hit in a turn.
+fn damage() -> Change {
+    Change {
+        effect: "rudder-damage".into(),
+        form: "share-lost".into(),
+        meaning: "a share of the rudder's angle does nothing".into(),
+        trial: "turn".into(),
+        course: ChangeCourse::Begins,
+        at_s: Some(310.0),
+        between_s: Some([300.0, 320.0]),
+        parameters: [("share_lost_percent".to_owned(), Value { value: 35.0, se: 2.0 })].into(),
+        evidence: 80.0,
+        or: Vec::new(),
+    }
+}
+
 /// What follows the rudder, and the heading less.
 fn depends_on() -> RemainderDependence {
     let variable = |variable: &str, share: f64| VariableDependence {
@@ -225,6 +241,7 @@ fn diagnosis(after: Model) -> Diagnosis {
         verdict: Verdict::Effects,
         effects: vec![current()],
         unexplained: vec![stretch],
+        changes: vec![damage()],
         depends_on: vec![depends_on()],
         limits: limits(),
         cannot_tell: BTreeMap::from([("wave-drift".to_owned(), LimitedBy::Model)]),

@@ -1,0 +1,175 @@
+//! When a change is there: windows of time, and the stretches by which they are first weighed.
+
+use nalgebra::DMatrix;
+
+use super::super::outcome::ChangeCourse;
+use super::super::thresholds::THRESHOLDS;
+
+/// A window of time in which a change is there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    pub course: ChangeCourse,
+    /// When it begins or ends, s of the trial; nothing where it does neither.
+    pub at_s: f64,
+}
+
+impl Window {
+    /// Whether it has a beginning or an end within the trial.
+    pub fn is_timed(self) -> bool {
+        matches!(self.course, ChangeCourse::Begins | ChangeCourse::Ends)
+    }
+
+    /// How much of the change is there at a time of a trial of this span.
+    pub fn share(self, t_s: f64, [begin_s, end_s]: [f64; 2]) -> f64 {
+        match self.course {
+            ChangeCourse::Throughout => 1.0,
+            ChangeCourse::Begins => f64::from(u8::from(t_s >= self.at_s)),
+            ChangeCourse::Ends => f64::from(u8::from(t_s < self.at_s)),
+            ChangeCourse::Drifts => (t_s - begin_s) / (end_s - begin_s),
+        }
+    }
+}
+
+/// The stretches of a trial, alike in length.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stretches {
+    pub span_s: [f64; 2],
+    pub count: usize,
+}
+
+/// How many ways there are in which a change may go.
+const COURSES: f64 = 4.0;
+
+impl Stretches {
+    /// Of a trial from its first to its last sample; `length_s` is the time in which the ship sails
+    /// its length.
+    pub fn new(span_s: [f64; 2], length_s: f64) -> Self {
+        let limits = THRESHOLDS.changes;
+        let wanted = ((span_s[1] - span_s[0]) / (limits.stretch * length_s)).round() as usize;
+        Self { span_s, count: wanted.clamp(limits.fewest, limits.most) }
+    }
+
+    /// How long each is, s.
+    pub fn width_s(self) -> f64 {
+        (self.span_s[1] - self.span_s[0]) / self.count as f64
+    }
+
+    /// For each, whether a time is in it.
+    pub fn hold(self, t_s: f64) -> Vec<f64> {
+        let own = (((t_s - self.span_s[0]) / self.width_s()) as usize).min(self.count - 1);
+        (0..self.count).map(|place| f64::from(u8::from(place == own))).collect()
+    }
+
+    /// All windows that begin and end where stretches do.
+    pub fn windows(self) -> Vec<Window> {
+        let timed = |course| {
+            let times = (1..self.count).map(|k| self.span_s[0] + self.width_s() * k as f64);
+            times.map(move |at_s| Window { course, at_s })
+        };
+        let whole = [ChangeCourse::Throughout, ChangeCourse::Drifts];
+        timed(ChangeCourse::Begins)
+            .chain(timed(ChangeCourse::Ends))
+            .chain(whole.map(|course| Window { course, at_s: self.span_s[0] }))
+            .collect()
+    }
+
+    /// Windows of the same course at times between the neighbours of one.
+    pub fn near(self, window: Window) -> Vec<Window> {
+        let half = THRESHOLDS.changes.finer;
+        let at = |k: i32| Window { at_s: window.at_s + f64::from(k) * self.finer_s(), ..window };
+        (1 - half..half).map(at).collect()
+    }
+
+    /// How far the times of these are apart, s.
+    pub fn finer_s(self) -> f64 {
+        self.width_s() / f64::from(THRESHOLDS.changes.finer)
+    }
+
+    /// Logarithm of the probability of a window that begins or ends where stretches do: each course
+    /// is as probable as another, and each time of a course.
+    pub fn log_prior(self, window: Window) -> f64 {
+        let times = if window.is_timed() { self.count - 1 } else { 1 };
+        -(COURSES * times as f64).ln()
+    }
+
+    /// From the size of each of `parameters` in a window to that in every stretch: stretches of the
+    /// first parameter, then those of the next.
+    pub fn spread(self, window: Window, parameters: usize) -> DMatrix<f64> {
+        let middle = |stretch: usize| self.span_s[0] + self.width_s() * (stretch as f64 + 0.5);
+        DMatrix::from_fn(parameters * self.count, parameters, |row, column| {
+            let share = window.share(middle(row % self.count), self.span_s);
+            if row / self.count == column { share } else { 0.0 }
+        })
+    }
+}
+
+/// Between which times is the middle of the probability, by times with the evidence of each and how
+/// much time it stands for.
+pub(super) fn interval(mut all: Vec<(f64, f64, f64)>) -> [f64; 2] {
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let most = all.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
+    let mass = |one: &(f64, f64, f64)| (one.1 - most).exp() * one.2;
+    let tail = THRESHOLDS.changes.tail * all.iter().map(mass).sum::<f64>();
+    let reached = |order: &[(f64, f64, f64)]| {
+        let mut sum = 0.0;
+        let reached = order.iter().find(|one| {
+            sum += mass(one);
+            sum >= tail
+        });
+        reached.map_or((f64::NAN, 0.0), |one| (one.0, 0.5 * one.2))
+    };
+    let (first, before) = reached(&all);
+    all.reverse();
+    let (last, after) = reached(&all);
+    [first - before, last + after]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_follow_each_other_from_end_to_end() {
+        let stretches = Stretches::new([100.0, 500.0], 20.0);
+        assert_eq!((stretches.count, stretches.width_s()), (40, 10.0));
+        let held = |t_s| stretches.hold(t_s).iter().position(|share| *share == 1.0);
+        assert_eq!([held(100.0), held(111.0), held(500.0)], [Some(0), Some(1), Some(39)]);
+    }
+
+    #[test]
+    fn windows_together_are_as_probable_as_a_change() {
+        let stretches = Stretches::new([0.0, 100.0], 10.0);
+        let all = stretches.windows().into_iter().map(|window| stretches.log_prior(window).exp());
+        assert!((all.sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_window_is_there_in_its_stretches() {
+        let stretches = Stretches { span_s: [0.0, 40.0], count: 4 };
+        let shares = |course, at_s| -> Vec<f64> {
+            stretches.spread(Window { course, at_s }, 1).iter().copied().collect()
+        };
+        assert_eq!(shares(ChangeCourse::Begins, 30.0), [0.0, 0.0, 0.0, 1.0]);
+        assert_eq!(shares(ChangeCourse::Ends, 30.0), [1.0, 1.0, 1.0, 0.0]);
+        assert_eq!(shares(ChangeCourse::Throughout, 0.0), [1.0; 4]);
+        assert_eq!(shares(ChangeCourse::Drifts, 0.0), [0.125, 0.375, 0.625, 0.875]);
+        let two = Stretches { span_s: [0.0, 20.0], count: 2 };
+        let spread = two.spread(Window { course: ChangeCourse::Begins, at_s: 10.0 }, 2);
+        assert_eq!(spread, DMatrix::from_row_slice(4, 2, &[0., 0., 1., 0., 0., 0., 0., 1.]));
+    }
+
+    #[test]
+    fn finer_times_stay_between_the_neighbours() {
+        let stretches = Stretches { span_s: [0.0, 40.0], count: 4 };
+        let near = stretches.near(Window { course: ChangeCourse::Begins, at_s: 20.0 });
+        assert!(near.iter().all(|window| window.at_s > 10.0 && window.at_s < 30.0));
+        assert!(near.iter().any(|window| window.at_s == 20.0));
+    }
+
+    #[test]
+    fn an_interval_holds_the_middle_of_the_probability() {
+        let at = |time: f64, evidence: f64| (time, evidence, 1.0);
+        let all = vec![at(1.0, -50.0), at(3.0, 0.0), at(2.0, -1.0), at(4.0, -1.0), at(5.0, -50.0)];
+        assert_eq!(interval(all), [1.5, 4.5]);
+    }
+}

@@ -1,0 +1,119 @@
+//! Where between source and estimate a mixture stands: where its fit simulates manoeuvres left out
+//! best.
+
+use rayon::prelude::*;
+
+use super::outcome::RefineError;
+use super::settings::Settings;
+use super::weighed::Weighed;
+
+/// The position that is taken; none where there is nothing to choose. The estimate, which was nearer
+/// to most ships than any source (docs/evidence/strangers.md), is asked first, and of few trials
+/// what comes later must be better by more than a standard error. `weigh` weighs a mixture at one
+/// position.
+///
+/// # Errors
+/// It was cancelled.
+pub(super) fn chosen(
+    settings: &Settings,
+    weigh: impl Fn(&Settings) -> Result<Vec<Weighed>, RefineError> + Sync,
+) -> Result<Option<f64>, RefineError> {
+    let mut positions = settings.mixture_positions.clone();
+    if positions.len() < 2 {
+        return Ok(None);
+    }
+    positions.sort_by(|a, b| b.total_cmp(a));
+    let weighed = |position: &f64| {
+        let settings = Settings { mixture_positions: vec![*position], ..settings.clone() };
+        match weigh(&settings) {
+            Err(RefineError::Cancelled) => Err(RefineError::Cancelled),
+            weighed => Ok(weighed.ok().and_then(least)),
+        }
+    };
+    let all: Vec<Option<Weighed>> =
+        positions.par_iter().map(weighed).collect::<Result<_, RefineError>>()?;
+    let mut best: Option<(f64, &Weighed)> = None;
+    for (position, weighed) in positions.iter().zip(&all) {
+        let Some(weighed) = weighed else { continue };
+        if best.is_none_or(|(_, before)| is_better(weighed, before, settings.in_parts)) {
+            best = Some((*position, weighed));
+        }
+    }
+    Ok(best.map(|(position, _)| position))
+}
+
+/// The one with the least error of those that can be taken.
+fn least(weighed: Vec<Weighed>) -> Option<Weighed> {
+    let takeable = weighed.into_iter().filter(|one| one.reason.is_none() && one.error.is_some());
+    takeable.min_by(|a, b| a.error.unwrap_or(f64::MAX).total_cmp(&b.error.unwrap_or(f64::MAX)))
+}
+
+/// Whether a fit has the lesser error, of few trials by more than a standard error of the difference
+/// over their parts (Breiman et al. 1984, section 3.4.3).
+fn is_better(new: &Weighed, old: &Weighed, is_few: bool) -> bool {
+    let gains: Vec<f64> =
+        new.each.iter().filter_map(|(name, error)| Some(old.each.get(name)? - error)).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    if !is_few || gains.len() < 2 {
+        return new.error < old.error;
+    }
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean > (variance / count).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::refine::Prior;
+
+    /// Errors by part of a mixture that is best at a position.
+    fn weighed(position: f64, best: f64, scatter: f64) -> Vec<Weighed> {
+        let error = |part: usize| {
+            1.0 + (position - best).abs() + scatter * position * if part < 2 { 1.0 } else { -1.0 }
+        };
+        let each = (0..4).map(|part| (part.to_string(), error(part))).collect();
+        let error = Some(1.0 + (position - best).abs());
+        vec![Weighed { error, each, reason: None, ..Weighed::refused(String::new()) }]
+    }
+
+    fn position(best: f64, scatter: f64, in_parts: bool) -> Option<f64> {
+        let positions = vec![0.0, 0.5, 1.0];
+        let settings = Settings {
+            prior: Prior::Mixture,
+            mixture_positions: positions,
+            in_parts,
+            ..Settings::default()
+        };
+        let weigh = |one: &Settings| Ok(weighed(one.mixture_positions[0], best, scatter));
+        chosen(&settings, weigh).unwrap()
+    }
+
+    #[test]
+    fn the_best_is_taken() {
+        assert_eq!(position(0.5, 0.0, true), Some(0.5));
+        assert_eq!(position(0.0, 3.0, false), Some(0.0));
+    }
+
+    #[test]
+    fn few_trials_must_be_clear() {
+        assert_eq!(position(0.5, 3.0, true), Some(1.0));
+    }
+
+    #[test]
+    fn one_position_is_no_choice() {
+        let settings = Settings { mixture_positions: vec![0.5], ..Settings::default() };
+        assert_eq!(chosen(&settings, |_| panic!("weighed")).unwrap(), None);
+    }
+
+    #[test]
+    fn what_cannot_be_weighed_is_passed_over() {
+        let settings = Settings { mixture_positions: vec![0.0, 1.0], ..Settings::default() };
+        let weigh = |one: &Settings| match one.mixture_positions[0] {
+            1.0 => Err(RefineError::Data("no estimate".into())),
+            other => Ok(weighed(other, 0.0, 0.0)),
+        };
+        assert_eq!(chosen(&settings, weigh).unwrap(), Some(0.0));
+    }
+}

@@ -1,0 +1,178 @@
+//! A model linearised along a recorded motion.
+
+use sistership_model::trial::Channel;
+
+/// One gap-free part of a trial: how deviations from the recorded path go from sample to sample,
+/// and how they are read. All matrices row by row, sample after sample.
+#[derive(Debug, Clone)]
+pub struct Linearised {
+    /// Samples of the trial.
+    pub samples: Vec<usize>,
+    /// Time of each, s.
+    pub t_s: Vec<f64>,
+    /// Number of states, accelerations, columns.
+    pub sizes: Sizes,
+    /// Rate of change of deviations with deviations: states by states.
+    pub jacobian: Vec<f64>,
+    /// Accelerations by columns.
+    pub accelerations: Vec<f64>,
+    /// What the model moves more than the recorded path from a sample to the next, by state.
+    pub defect: Vec<f64>,
+    /// Readings less what instruments would say on the path, by recorded channel.
+    pub reading: Vec<f64>,
+    /// What instruments say more by deviations: channels by states; absent where they say the state
+    /// itself.
+    pub by_state: Option<Vec<f64>>,
+    /// What instruments say more by those columns that act on them: channels by `measured` columns.
+    pub by_column: Vec<f64>,
+    /// Those columns.
+    pub measured: Vec<usize>,
+    /// The recorded channels with their places among the states.
+    pub channels: Vec<(Channel, usize)>,
+    /// Of samples, how many go with one reading.
+    pub every: usize,
+}
+
+/// How much of a linearisation is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// Everything.
+    Whole,
+    /// The path and the columns; how deviations go on and are read comes from another one
+    /// ([`Linearised::by_filter_of`]).
+    Columns,
+}
+
+/// Numbers of things.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sizes {
+    /// States.
+    pub states: usize,
+    /// Accelerations.
+    pub axes: usize,
+    /// Columns.
+    pub columns: usize,
+}
+
+impl Linearised {
+    /// This one's path and columns through the filter of another: how deviations go on and are read
+    /// is the other's.
+    pub fn by_filter_of(self, other: &Self) -> Self {
+        Self { jacobian: other.jacobian.clone(), by_state: other.by_state.clone(), ..self }
+    }
+
+    /// All columns at given parameters, as one column.
+    pub fn along(&self, parameters: &[f64]) -> Self {
+        let weighted =
+            |row: &[f64]| row.iter().zip(parameters).map(|(value, by)| value * by).sum::<f64>();
+        let measured: Vec<f64> = self.measured.iter().map(|&column| parameters[column]).collect();
+        let said =
+            |row: &[f64]| row.iter().zip(&measured).map(|(value, by)| value * by).sum::<f64>();
+        Self {
+            sizes: Sizes { columns: 1, ..self.sizes },
+            accelerations: self
+                .accelerations
+                .chunks_exact(self.sizes.columns.max(1))
+                .map(weighted)
+                .collect(),
+            by_column: self.by_column.chunks_exact(self.measured.len().max(1)).map(said).collect(),
+            measured: if self.measured.is_empty() { Vec::new() } else { vec![0] },
+            samples: self.samples.clone(),
+            t_s: self.t_s.clone(),
+            jacobian: self.jacobian.clone(),
+            defect: self.defect.clone(),
+            reading: self.reading.clone(),
+            by_state: self.by_state.clone(),
+            channels: self.channels.clone(),
+            every: self.every,
+        }
+    }
+
+    /// Some columns as they are and, behind them, each of `cut` once for every weight that a time
+    /// has, times that weight.
+    pub fn cut(&self, kept: &[usize], cut: &[usize], weights: &dyn Fn(f64) -> Vec<f64>) -> Self {
+        let count = self.t_s.first().map_or(0, |t| weights(*t).len());
+        let copies = cut.iter().flat_map(|&column| (0..count).map(move |k| (column, Some(k))));
+        let pieces: Vec<Piece> = kept.iter().map(|&column| (column, None)).chain(copies).collect();
+        let place = |column: usize| self.measured.iter().position(|&known| known == column);
+        let seen: Vec<(usize, Piece)> = pieces
+            .iter()
+            .enumerate()
+            .filter_map(|(own, &(column, copy))| Some((own, (place(column)?, copy))))
+            .collect();
+        let mut by_column = Vec::new();
+        if !seen.is_empty() {
+            let rows = self.channels.len() * self.measured.len();
+            for (t, rows) in self.t_s.iter().zip(self.by_column.chunks_exact(rows)) {
+                let by = weights(*t);
+                for row in rows.chunks_exact(self.measured.len()) {
+                    by_column.extend(seen.iter().map(|(_, piece)| of_piece(*piece, row, &by)));
+                }
+            }
+        }
+        Self {
+            sizes: Sizes { columns: pieces.len(), ..self.sizes },
+            accelerations: self.in_pieces(&pieces, weights),
+            by_column,
+            measured: seen.into_iter().map(|(own, _)| own).collect(),
+            ..self.clone()
+        }
+    }
+
+    fn in_pieces(&self, pieces: &[Piece], weights: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
+        let Sizes { axes, columns, .. } = self.sizes;
+        let steps = self.accelerations.chunks_exact((axes * columns).max(1));
+        let mut all = Vec::with_capacity(steps.len() * axes * pieces.len());
+        for (ends, rows) in self.t_s.windows(2).zip(steps) {
+            let by = weights(0.5 * (ends[0] + ends[1]));
+            for row in rows.chunks_exact(columns) {
+                all.extend(pieces.iter().map(|piece| of_piece(*piece, row, &by)));
+            }
+        }
+        all
+    }
+}
+
+/// A column, and which of the weights it is multiplied by.
+type Piece = (usize, Option<usize>);
+
+fn of_piece((column, copy): Piece, row: &[f64], by: &[f64]) -> f64 {
+    row[column] * copy.map_or(1.0, |copy| by[copy])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two steps of one acceleration with two columns, the second of which acts on the instrument.
+    fn part() -> Linearised {
+        Linearised {
+            samples: vec![0, 1, 2],
+            t_s: vec![0.0, 1.0, 2.0],
+            sizes: Sizes { states: 1, axes: 1, columns: 2 },
+            jacobian: vec![0.0; 2],
+            accelerations: vec![1.0, 2.0, 3.0, 4.0],
+            defect: vec![0.0; 2],
+            reading: vec![0.0; 3],
+            by_state: Some(vec![1.0; 3]),
+            by_column: vec![5.0, 6.0, 7.0],
+            measured: vec![1],
+            channels: vec![(Channel::U, 0)],
+            every: 1,
+        }
+    }
+
+    #[test]
+    fn a_column_is_cut_where_its_weights_say_so() {
+        let halves = |t: f64| vec![f64::from(u8::from(t < 1.0)), f64::from(u8::from(t >= 1.0))];
+        let cut = part().cut(&[0], &[1], &halves);
+        assert_eq!(cut.sizes.columns, 3);
+        assert_eq!(cut.accelerations, [1.0, 2.0, 0.0, 3.0, 0.0, 4.0]);
+        assert_eq!(cut.measured, [1, 2]);
+        assert_eq!(cut.by_column, [5.0, 0.0, 0.0, 6.0, 0.0, 7.0]);
+        // Together they are what was cut.
+        let (whole, again) = (part().along(&[0.5, 2.0]), cut.along(&[0.5, 2.0, 2.0]));
+        assert_eq!(whole.accelerations, again.accelerations);
+        assert_eq!(whole.by_column, again.by_column);
+    }
+}
