@@ -2,7 +2,7 @@
 //! within trials explain everything.
 
 use super::Request;
-use super::changes::changes;
+use super::changes::{changes, open};
 use super::choose::{ConvergedChoice, EffectChoice, choose};
 use super::constancy::inconstant;
 use super::hypothesis::JudgedHypothesis;
@@ -131,6 +131,9 @@ fn only_changes<'a>(
     steady: &[String],
 ) -> Result<Option<(LeftState<'a>, Vec<Change>)>, RefineError> {
     let state = LeftState::of(choice.alone_settled(first, request)?)?;
+    if open(&state.remaining).len() > THRESHOLDS.changes.asked {
+        return Ok(None);
+    }
     let changes = state.changes(request, first)?;
     let is_told = |open: &Unexplained| changes.iter().any(|change| change.trial == open.trial);
     let is_steady = changes.iter().any(|change| steady.contains(&change.effect));

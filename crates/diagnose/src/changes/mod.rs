@@ -26,7 +26,8 @@ use of_trial::ChangeSearch;
 /// The changes of one effect that explain what remains, the most evident first: of the effect that
 /// explains most trials by the most evidence. Where it explains fewer than half of those that leave
 /// something, nothing is told: what explains one trial here and another there only resembles what
-/// is missing; nor where it is there throughout most trials, in another size in each. `listed` are the effects that were tried, also those that were refused because they
+/// is missing; nor where it is there throughout most trials, in another size in each. Of many such
+/// trials those are asked that leave most. `listed` are the effects that were tried, also those that were refused because they
 /// are not the same at all times.
 ///
 /// # Errors
@@ -41,16 +42,25 @@ pub(super) fn changes(
     }
     let workspace = search.workspace(columns(search, best, listed))?;
     let changing = ChangeSearch::new(search, best, &workspace);
-    let is_open = |place: &usize| {
-        remaining.iter().any(|stretch| stretch.trial == workspace.trials[*place].name)
-    };
-    let open: Vec<usize> = (0..workspace.trials.len()).filter(is_open).collect();
-    let of = |place: &usize| changing.of_trial(*place, least_evidence).unwrap_or_default();
-    let each: Vec<Vec<Change>> = open.par_iter().map(of).collect();
+    let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
+    let asked: Vec<usize> = open(remaining).iter().filter_map(place).collect();
+    let of = |place: &usize| changing.of_trial(*place, least_evidence);
+    let each: Vec<Vec<Change>> = asked.par_iter().take(THRESHOLDS.changes.asked).map(of).collect();
     let found = common(each, least_evidence);
     let whole = found.iter().filter(|change| change.course == ChangeCourse::Throughout).count();
     let is_change = whole as f64 <= THRESHOLDS.changes.throughout * workspace.trials.len() as f64;
     Ok(if is_change { found } else { Vec::new() })
+}
+
+/// Trials that leave something, those first that leave most.
+pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for stretch in remaining {
+        if !names.contains(&stretch.trial) {
+            names.push(stretch.trial.clone());
+        }
+    }
+    names
 }
 
 /// Of the changes that explain each trial, those of the effect that is taken.

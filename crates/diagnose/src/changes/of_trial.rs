@@ -68,9 +68,9 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     }
 
     /// The most evident change of each effect that explains all that remains of a trial.
-    pub fn of_trial(&self, place: usize, least_evidence: f64) -> Option<Vec<Change>> {
-        let stretches = self.stretches(place)?;
+    pub fn of_trial(&self, place: usize, least_evidence: f64) -> Vec<Change> {
         let of_source = |source: &ChangeSource| {
+            let stretches = self.stretches(place, source)?;
             let coarse = self.by_stretches(place, source, stretches)?;
             let taken = simplest(&coarse, least_evidence)?;
             if taken.evidence <= least_evidence {
@@ -88,15 +88,16 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let mut effects = BTreeSet::new();
         found.retain(|change| effects.insert(change.effect.clone()));
-        Some(found)
+        found
     }
 
-    fn stretches(&self, place: usize) -> Option<Stretches> {
+    fn stretches(&self, place: usize, source: &ChangeSource) -> Option<Stretches> {
         let parts = &self.workspace.linear()[place];
         let first = parts.first()?.t_s.first()?;
         let last = parts.last()?.t_s.last()?;
         let length_s = self.workspace.lpp_m / self.workspace.speed_m_s;
-        (last > first).then(|| Stretches::new([*first, *last], length_s))
+        let parameters = source.columns.len();
+        (last > first).then(|| Stretches::new([*first, *last], length_s, parameters))
     }
 
     /// Every window of a source that begins and ends where stretches do.

@@ -42,11 +42,12 @@ const COURSES: f64 = 4.0;
 
 impl Stretches {
     /// Of a trial from its first to its last sample; `length_s` is the time in which the ship sails
-    /// its length.
-    pub fn new(span_s: [f64; 2], length_s: f64) -> Self {
+    /// its length. Each stretch is a column for each of `parameters`.
+    pub fn new(span_s: [f64; 2], length_s: f64, parameters: usize) -> Self {
         let limits = THRESHOLDS.changes;
         let wanted = ((span_s[1] - span_s[0]) / (limits.stretch * length_s)).round() as usize;
-        Self { span_s, count: wanted.clamp(limits.fewest, limits.most) }
+        let most = (limits.columns / parameters.max(1)).clamp(limits.fewest, limits.most);
+        Self { span_s, count: wanted.clamp(limits.fewest, most) }
     }
 
     /// How long each is, s.
@@ -130,15 +131,16 @@ mod tests {
 
     #[test]
     fn stretches_follow_each_other_from_end_to_end() {
-        let stretches = Stretches::new([100.0, 500.0], 20.0);
+        let stretches = Stretches::new([100.0, 500.0], 20.0, 1);
         assert_eq!((stretches.count, stretches.width_s()), (40, 10.0));
+        assert_eq!(Stretches::new([100.0, 500.0], 20.0, 10).count, THRESHOLDS.changes.fewest);
         let held = |t_s| stretches.hold(t_s).iter().position(|share| *share == 1.0);
         assert_eq!([held(100.0), held(111.0), held(500.0)], [Some(0), Some(1), Some(39)]);
     }
 
     #[test]
     fn windows_together_are_as_probable_as_a_change() {
-        let stretches = Stretches::new([0.0, 100.0], 10.0);
+        let stretches = Stretches::new([0.0, 100.0], 10.0, 1);
         let all = stretches.windows().into_iter().map(|window| stretches.log_prior(window).exp());
         assert!((all.sum::<f64>() - 1.0).abs() < 1e-12);
     }

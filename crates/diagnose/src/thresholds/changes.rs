@@ -13,6 +13,12 @@ pub(crate) struct ChangeThresholds {
     /// `n_2`: most stretches of a trial, a count. Source: chosen; each is a column for each
     /// parameter of each effect, and a sixtieth of a trial is as fine as a plot shows.
     pub most: usize,
+    /// `n_c`: most columns of an effect, a count, where [`Self::fewest`] stretches have no more.
+    /// Source: chosen; the time of a filtering goes with their square.
+    pub columns: usize,
+    /// `n_t`: most trials that are asked, a count, those that leave most. Source: chosen; what
+    /// changed on more of them is not of one day.
+    pub asked: usize,
     /// `n_f`: times in a stretch at which a change is then dated, a count. Source: chosen; a
     /// twentieth of `L/U`, about the shortest step between samples that are used.
     pub finer: i32,
@@ -32,6 +38,8 @@ pub(super) const CHANGES: ChangeThresholds = ChangeThresholds {
     stretch: 0.5,
     fewest: 8,
     most: 60,
+    columns: 80,
+    asked: 8,
     finer: 10,
     trials: 0.5,
     throughout: 0.5,
