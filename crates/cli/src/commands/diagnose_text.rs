@@ -27,7 +27,7 @@ pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> S
     parts.extend(diagnosis.effects.iter().map(effect));
     if !diagnosis.unexplained.is_empty() {
         parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
-        parts.extend(diagnosis.changes.iter().map(|one| change(one) + "\n"));
+        parts.extend(changed(diagnosis));
         parts.extend(diagnosis.depends_on.iter().map(|left| dependence(left) + "\n"));
     }
     parts.extend(diagnosis.next_trial.as_ref().map(next_trial));
@@ -90,6 +90,14 @@ fn unexplained(stretches: &[Unexplained]) -> TextTable {
         table.row([stretch.trial.clone(), stretch.channel.clone()].into_iter().chain(figures));
     }
     table
+}
+
+/// What begins, ends or drifts within trials; none where nothing does.
+fn changed(diagnosis: &Diagnosis) -> Option<String> {
+    let lines: Vec<String> =
+        diagnosis.changes.iter().map(|one| format!("  {}\n", change(one))).collect();
+    let of_the_day = "it is of that day: no model carries it";
+    (!lines.is_empty()).then(|| format!("What changed then ({of_the_day})\n{}", lines.concat()))
 }
 
 fn next_trial(next: &NextTrial) -> String {
