@@ -27,8 +27,8 @@ use of_trial::ChangeSearch;
 /// explains most trials by the most evidence. Where it explains fewer than half of those that leave
 /// something, nothing is told: what explains one trial here and another there only resembles what
 /// is missing; nor where it is there throughout most trials, in another size in each. Of many such
-/// trials those are asked that leave most. `listed` are the effects that were tried, also those that were refused because they
-/// are not the same at all times.
+/// trials those are asked that leave most. `listed` are the effects that were tried, also those
+/// that were refused because they are not the same at all times.
 ///
 /// # Errors
 /// Names what a trial lacks.

@@ -8,7 +8,6 @@ use super::super::search::HypothesisSearch;
 use sistership_residual::{Columns, EffectCandidate};
 
 /// Columns whose size may change.
-#[derive(Clone)]
 pub(super) struct ChangeSource {
     /// The effect at its absence: where its size is that of the change.
     pub candidate: EffectCandidate,

@@ -287,6 +287,17 @@ impl Settings {
         }
     }
 
+    fn check_positions(&self) -> Result<(), &'static str> {
+        let positions = &self.mixture_positions;
+        if positions.len() > 20 || positions.iter().any(|at| !(0.0..=1.0).contains(at)) {
+            return Err("give at most 20, each from 0 to 1");
+        }
+        if !positions.is_empty() && self.prior != Prior::Mixture {
+            return Err("are of the prior `mixture`");
+        }
+        Ok(())
+    }
+
     /// Checks the numbers.
     ///
     /// # Errors
@@ -307,13 +318,8 @@ impl Settings {
                 return refuse("ranges", "alpha_max must be from 0 to 1");
             }
         }
-        let positions = &self.mixture_positions;
-        if positions.len() > 20 || positions.iter().any(|at| !(0.0..=1.0).contains(at)) {
-            return refuse("mixture_positions", "give at most 20, each from 0 to 1");
-        }
-        if !positions.is_empty() && self.prior != Prior::Mixture {
-            return refuse("mixture_positions", "are of the prior `mixture`");
-        }
+        self.check_positions()
+            .map_err(|message| ("mixture_positions".to_owned(), message.to_owned()))?;
         if !(2..=1000).contains(&self.lambda_count) {
             return refuse("lambda_count", "must be from 2 to 1000");
         }
