@@ -41,23 +41,23 @@ pub(super) struct ConvergedChoice<'a> {
 }
 
 /// Judges single effects, then what stands together with the best, exchanging each of a set for
-/// every other.
+/// every other. `base` is that without effects.
 ///
 /// # Errors
 /// Names what a trial lacks.
 pub(super) fn choose(
     search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
     settings: &Settings,
 ) -> Result<EffectChoice, RefineError> {
-    let base = search.base(&[], &search.levels)?;
-    let (level, alone) = search.alone(&base)?;
+    let (level, alone) = search.alone(base)?;
     let limits = match search.states_odds {
-        true => limits(search, &base, level, settings.least_evidence),
+        true => limits(search, base, level, settings.least_evidence),
         false => Vec::new(),
     };
     let (tried, levels) = (Vec::new(), search.levels.clone());
     let mut choice = EffectChoice { alone, limits, tried, taken: None, levels };
-    choice.add(search, settings, &base, THRESHOLDS.search.judged)?;
+    choice.add(search, settings, base, THRESHOLDS.search.judged)?;
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
         let base = search.base(&kept, &choice.levels)?;
@@ -93,7 +93,10 @@ fn companions(
     count: usize,
 ) -> Result<Vec<JudgedHypothesis>, RefineError> {
     let likely = likely(screen(search, base), count);
-    likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
+    let judged = |ScreenedEffect { candidate, level, .. }: &ScreenedEffect| {
+        base.once((candidate.key(), *level), || search.judge(base, candidate, *level))
+    };
+    likely.par_iter().map(judged).collect()
 }
 
 /// The most probable, those that are believed most after their false-alarm levels, and whatever

@@ -2,6 +2,7 @@
 //! hypothesis near it is then judged by what it moves alone: its own columns pass the same filter,
 //! the coefficients' are there already.
 
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -11,6 +12,7 @@ use sistership_model::manifest::VelocityFrame;
 
 use super::calibrated_model::CalibratedModel;
 use super::evidence::DiscrepancyFactor;
+use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use sistership_estimate::refine::RefineError;
 use sistership_residual::{
@@ -24,6 +26,8 @@ pub(super) struct FilteredBase<'a> {
     pub workspace: LinearisedTrials<'a>,
     pub levels: Vec<FilteredLevel>,
     coefficients: usize,
+    /// What has been judged beside it, by the effect and the level that it was first seen at.
+    judged: Mutex<BTreeMap<(String, usize), JudgedHypothesis>>,
 }
 
 /// The filter at one level.
@@ -63,7 +67,26 @@ impl<'a> FilteredBase<'a> {
             levels: levels.into_iter().map(at).collect(),
             coefficients,
             workspace,
+            judged: Mutex::default(),
         }
+    }
+
+    /// A hypothesis beside it that is judged once, however often it is asked for.
+    ///
+    /// # Errors
+    /// What judging it says.
+    pub fn once(
+        &self,
+        key: (String, usize),
+        judge: impl FnOnce() -> Result<JudgedHypothesis, RefineError>,
+    ) -> Result<JudgedHypothesis, RefineError> {
+        let all = || self.judged.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = all().get(&key) {
+            return Ok(known.clone());
+        }
+        let judged = judge()?;
+        all().insert(key, judged.clone());
+        Ok(judged)
     }
 
     /// Products of all columns over all trials, at one of the levels.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Request;
-use super::choose::{ConvergedChoice, EffectChoice, choose};
+use super::choose::{ConvergedChoice, choose};
 use super::dependence::of_remainder;
 use super::judge::{SimulatedErrors, errors};
 use super::limits::{but, cannot_tell};
@@ -33,9 +33,12 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnos
     step(progress, 0.05, "which effects can be tried on these trials")?;
     let search = search(request)?;
     step(progress, 0.1, "every effect alone, then together")?;
-    let choice = choose(&search, request.settings)?;
+    let base = search.base(&[], &search.levels)?;
+    let choice = choose(&search, &base, request.settings)?;
     step(progress, 0.8, "what remains")?;
-    answer(request, &search, choice, progress)
+    let selected = selected(request, (&search, &base), choice, progress)?;
+    drop(base);
+    answer(request, &search, selected, progress)
 }
 
 fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
@@ -45,10 +48,9 @@ fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineE
 fn answer(
     request: &Request<'_>,
     first: &HypothesisSearch<'_>,
-    choice: EffectChoice,
+    selected: SelectedEffects<'_>,
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
-    let selected = selected(request, first, choice, progress)?;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
     let fitted = fitted(request, &selected.settled);
     step(progress, 0.95, "what these trials cannot tell apart")?;

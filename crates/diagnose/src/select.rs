@@ -5,6 +5,7 @@ use super::Request;
 use super::changes::{changes, open};
 use super::choose::{ConvergedChoice, EffectChoice, choose};
 use super::constancy::inconstant;
+use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use super::misfit::of_shape;
@@ -28,13 +29,13 @@ pub(super) struct SelectedEffects<'a> {
 /// The effects taken, as far as each is the same at all times where something remains unexplained.
 /// Where one is not, the choice is made again without it: it may have stood before another. Whether
 /// changes within trials are all that there is, is asked first: choosing again takes as long as
-/// everything before.
+/// everything before. `base` is that of the first search without effects.
 ///
 /// # Errors
 /// Names what a trial lacks.
 pub(super) fn selected<'a>(
     request: &Request<'_>,
-    first: &HypothesisSearch<'a>,
+    (first, base): (&HypothesisSearch<'a>, &FilteredBase<'a>),
     mut choice: EffectChoice,
     progress: Progress<'_>,
 ) -> Result<SelectedEffects<'a>, RefineError> {
@@ -60,7 +61,7 @@ pub(super) fn selected<'a>(
         let names = state.names(|place| varying.contains(&place)).into_iter();
         refused.extend(names.inspect(|name| search.forget(name)));
         told(progress, "effects without those that only resemble what is missing")?;
-        choice = choose(&search, request.settings)?.after(choice);
+        choice = choose(&search, base, request.settings)?.after(choice);
     }
 }
 

@@ -28,7 +28,7 @@ pub fn filter_first(
     discrepancies: &Discrepancies,
 ) -> Gram {
     let (rows, log_variance) = whitened_first(linear, columns, noise, discrepancies);
-    Gram::of_rows(rows, 1 + columns, log_variance)
+    Gram::of_rows(&rows, 1 + columns, log_variance)
 }
 
 /// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the

@@ -1,7 +1,9 @@
 //! Sums over samples of the products of whitened columns: all that fitting and comparing hypotheses
 //! need.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
+
+use super::symmetric_products::symmetric_products;
 
 /// Products of whitened residual (place 0) and columns (from 1), with what the likelihood needs
 /// besides.
@@ -15,30 +17,20 @@ pub struct Gram {
     pub count: usize,
 }
 
-/// Columns that are multiplied at a time.
+/// Columns that a general product multiplies at a time.
 const BLOCK: usize = 48;
+/// Of so many rows or columns it does not fuse (nalgebra's `gemm`, 5).
+const UNFUSED: usize = 5;
 
 impl Gram {
     /// Of whitened rows, each of `width` numbers, the residual first.
-    pub fn of_rows(rows: Vec<f64>, width: usize, log_variance: f64) -> Self {
-        let count = rows.len() / width;
-        // Rows of samples are columns of this matrix, so that the product is nalgebra's fast one.
-        Self::of_columns(&DMatrix::from_vec(width, count, rows), log_variance)
+    pub fn of_rows(rows: &[f64], width: usize, log_variance: f64) -> Self {
+        Self { products: products(rows, width), log_variance, count: rows.len() / width }
     }
 
-    /// Of whitened readings as columns, the residual first in each. Only one triangle is computed,
-    /// in blocks.
+    /// Of whitened readings as columns, the residual first in each.
     pub fn of_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
-        let (width, count) = readings.shape();
-        let mut products = DMatrix::zeros(width, width);
-        for start in (0..width).step_by(BLOCK) {
-            let size = BLOCK.min(width - start);
-            let below =
-                readings.rows(start, width - start) * readings.rows(start, size).transpose();
-            products.view_mut((start, start), (width - start, size)).copy_from(&below);
-        }
-        products.fill_upper_triangle_with_lower_triangle();
-        Self { products, log_variance, count }
+        Self::of_rows(readings.as_slice(), readings.nrows(), log_variance)
     }
 
     /// Of no sample.
@@ -68,5 +60,49 @@ impl Gram {
             sum.add(part);
             sum
         })
+    }
+}
+
+/// Products of all columns over rows. Of so few columns or rows that a general product does not fuse
+/// them, it is that one, by which models were made that are still to be verified.
+fn products(rows: &[f64], width: usize) -> DMatrix<f64> {
+    let readings = DMatrixView::from_slice(rows, width, rows.len() / width);
+    let fused = (readings.ncols() > UNFUSED).then(|| symmetric_products(rows, width)).flatten();
+    let Some(mut products) = fused else { return in_blocks(readings) };
+    let last = width % BLOCK;
+    if last <= UNFUSED {
+        let own = readings.rows(width - last, last);
+        products.view_mut((width - last, width - last), (last, last)).copy_from(&in_blocks(own));
+    }
+    products
+}
+
+/// By a general product, of which one triangle is taken.
+fn in_blocks(readings: DMatrixView<'_, f64>) -> DMatrix<f64> {
+    let width = readings.nrows();
+    let mut products = DMatrix::zeros(width, width);
+    for start in (0..width).step_by(BLOCK) {
+        let size = BLOCK.min(width - start);
+        let below = readings.rows(start, width - start) * readings.rows(start, size).transpose();
+        products.view_mut((start, start), (width - start, size)).copy_from(&below);
+    }
+    products.fill_upper_triangle_with_lower_triangle();
+    products
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_are_those_of_blocks_to_the_last_bit() {
+        let reading = |k: usize| (k as f64 * 0.7).sin() * 10_f64.powi(k as i32 % 5);
+        for (count, width) in [(4, 30), (6, 3), (300, 50), (700, 96), (256, 101), (90, 151)] {
+            let rows: Vec<f64> = (0..count * width).map(reading).collect();
+            let blocks = in_blocks(DMatrixView::from_slice(&rows, width, count));
+            let own = products(&rows, width);
+            let differ = own.iter().zip(&blocks).filter(|(a, b)| a.to_bits() != b.to_bits());
+            assert_eq!(differ.count(), 0, "{count} readings of {width} columns");
+        }
     }
 }

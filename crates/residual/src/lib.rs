@@ -30,6 +30,7 @@ mod regressor_block;
 mod sample_block;
 mod secants;
 mod smoother;
+mod symmetric_products;
 mod tangents;
 mod tapes;
 mod thresholds;

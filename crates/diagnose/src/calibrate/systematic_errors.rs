@@ -46,7 +46,8 @@ pub(super) fn of(
     if economical {
         search.listed = seeming;
     }
-    let choice = choose(&search, &settings)?;
+    let base = search.base(&[], &search.levels)?;
+    let choice = choose(&search, &base, &settings)?;
     Ok(model_with(search.model, &choice.best().candidates, None)
         .effects
         .split_off(model.effects.len()))

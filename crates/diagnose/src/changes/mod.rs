@@ -12,8 +12,6 @@ mod windows;
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use super::hypothesis::JudgedHypothesis;
 use super::outcome::{Change, ChangeCourse, Unexplained};
 use super::search::HypothesisSearch;
@@ -44,9 +42,8 @@ pub(super) fn changes(
     let changing = ChangeSearch::new(search, best, &workspace);
     let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
     let asked: Vec<usize> = open(remaining).iter().filter_map(place).collect();
-    let of = |place: &usize| changing.of_trial(*place, least_evidence);
-    let each: Vec<Vec<Change>> = asked.par_iter().take(THRESHOLDS.changes.asked).map(of).collect();
-    let found = common(each, least_evidence);
+    let asked = &asked[..asked.len().min(THRESHOLDS.changes.asked)];
+    let found = common(in_turn(&changing, asked, least_evidence), least_evidence);
     let whole = found.iter().filter(|change| change.course == ChangeCourse::Throughout).count();
     let is_change = whole as f64 <= THRESHOLDS.changes.throughout * workspace.trials.len() as f64;
     Ok(if is_change { found } else { Vec::new() })
@@ -63,6 +60,26 @@ pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
     names
 }
 
+/// The changes that explain each trial, of effects that may still explain enough of them.
+fn in_turn(changing: &ChangeSearch<'_, '_>, asked: &[usize], least: f64) -> Vec<Vec<Change>> {
+    let mut each: Vec<Vec<Change>> = Vec::new();
+    for &place in asked {
+        let to_come = asked.len() - each.len();
+        let explained = |effect: &str| {
+            let of_effect = |changes: &&Vec<Change>| changes.iter().any(|one| one.effect == effect);
+            each.iter().filter(of_effect).count()
+        };
+        let may_be = |effect: &str| is_enough(explained(effect) + to_come, asked.len());
+        each.push(changing.of_trial(place, least, &may_be));
+    }
+    each
+}
+
+/// Whether the changes of an effect explain enough of the trials.
+fn is_enough(trials: usize, of: usize) -> bool {
+    trials as f64 >= THRESHOLDS.changes.trials * of as f64
+}
+
 /// Of the changes that explain each trial, those of the effect that is taken.
 fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
     let mut effects: BTreeMap<String, (usize, f64)> = BTreeMap::new();
@@ -72,7 +89,7 @@ fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
     }
     let taken = effects.iter().max_by(|a, b| a.1.0.cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
     let Some((effect, &(trials, evidence))) = taken else { return Vec::new() };
-    if (trials as f64) < THRESHOLDS.changes.trials * each.len() as f64 {
+    if !is_enough(trials, each.len()) {
         return Vec::new();
     }
     let is_near = |(name, (of, own)): &(&String, &(usize, f64))| {

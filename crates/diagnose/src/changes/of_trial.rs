@@ -67,9 +67,18 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         }
     }
 
-    /// The most evident change of each effect that explains all that remains of a trial.
-    pub fn of_trial(&self, place: usize, least_evidence: f64) -> Vec<Change> {
+    /// The most evident change of each effect that explains all that remains of a trial, of those
+    /// that are asked for.
+    pub fn of_trial(
+        &self,
+        place: usize,
+        least_evidence: f64,
+        is_asked: &(dyn Fn(&str) -> bool + Sync),
+    ) -> Vec<Change> {
         let of_source = |source: &ChangeSource| {
+            if !is_asked(&source.candidate.effect) {
+                return None;
+            }
             let stretches = self.stretches(place, source)?;
             let coarse = self.by_stretches(place, source, stretches)?;
             let taken = simplest(&coarse, least_evidence)?;
@@ -163,7 +172,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     fn gram(&self, place: usize, source: &ChangeSource, weights: &dyn Fn(f64) -> Vec<f64>) -> Gram {
         let of = |part: &Linearised| {
             let (rows, log_variance) = whitened(part, &self.workspace.noise, &self.discrepancies);
-            Gram::of_rows(rows, 1 + part.sizes.columns, log_variance)
+            Gram::of_rows(&rows, 1 + part.sizes.columns, log_variance)
         };
         let grams: Vec<Gram> = self.cut(place, source, weights).iter().map(of).collect();
         let width = grams.first().map_or(0, |gram| gram.products.nrows());

@@ -132,10 +132,10 @@ mod tests {
     #[test]
     fn stretches_follow_each_other_from_end_to_end() {
         let stretches = Stretches::new([100.0, 500.0], 20.0, 1);
-        assert_eq!((stretches.count, stretches.width_s()), (40, 10.0));
+        assert_eq!((stretches.count, stretches.width_s()), (20, 20.0));
         assert_eq!(Stretches::new([100.0, 500.0], 20.0, 10).count, THRESHOLDS.changes.fewest);
         let held = |t_s| stretches.hold(t_s).iter().position(|share| *share == 1.0);
-        assert_eq!([held(100.0), held(111.0), held(500.0)], [Some(0), Some(1), Some(39)]);
+        assert_eq!([held(100.0), held(121.0), held(500.0)], [Some(0), Some(1), Some(19)]);
     }
 
     #[test]
