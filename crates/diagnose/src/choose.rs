@@ -24,6 +24,9 @@ use sistership_residual::EffectCandidate;
 pub(super) struct EffectChoice {
     /// The model alone.
     pub alone: JudgedHypothesis,
+    /// Logarithm of its probability at whichever level it is most probable, also below what
+    /// calibration saw.
+    alone_at_any: f64,
     /// How small each effect would have been shown.
     pub limits: Vec<DetectionLimit>,
     pub tried: Vec<JudgedHypothesis>,
@@ -55,8 +58,9 @@ pub(super) fn choose(
         true => limits(search, base, level, settings.least_evidence),
         false => Vec::new(),
     };
+    let alone_at_any = search.alone_at(base, &|_| true)?.1.log_evidence;
     let (tried, levels) = (Vec::new(), search.levels.clone());
-    let mut choice = EffectChoice { alone, limits, tried, taken: None, levels };
+    let mut choice = EffectChoice { alone, alone_at_any, limits, tried, taken: None, levels };
     choice.add(search, settings, base, THRESHOLDS.search.judged)?;
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
@@ -281,7 +285,10 @@ impl EffectChoice {
     /// has over the one without it: seen from where both stand, an effect of which the columns
     /// change with its size would be worth more.
     fn last_evidence(&self, search: &HypothesisSearch<'_>, found: &JudgedHypothesis) -> f64 {
-        last_evidence(search, found).min(found.log_evidence - self.best().log_evidence)
+        let best = self.best().log_evidence;
+        let is_outside = found.candidates.last().is_some_and(is_from_outside);
+        let than = if is_outside { best.max(self.alone_at_any) } else { best };
+        last_evidence(search, found).min(found.log_evidence - than)
     }
 
     /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has
@@ -362,8 +369,12 @@ fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec
 }
 
 /// What the others leave unexplained where their forms are another author's than nature's: an
-/// effect beside them that explains no more may be that.
+/// effect beside them that explains no more may be that. It does not follow a record from outside:
+/// placebos would explain as much of it.
 fn shadow(judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
+    if is_from_outside(&judged.candidates[place]) {
+        return 0.0;
+    }
     let of = |other: usize| shadow_share(&judged.candidates[other]) * evidence[other].max(0.0);
     (0..evidence.len()).filter(|other| *other != place).map(of).sum()
 }

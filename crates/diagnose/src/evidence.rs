@@ -9,8 +9,9 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::coefficient_prior::CoefficientPrior;
+use super::discount::is_from_outside;
 use sistership_estimate::refine::RefineError;
-use sistership_residual::Gram;
+use sistership_residual::{EffectCandidate, Gram};
 
 /// The columns of effects with the coefficients integrated out.
 #[derive(Debug, Clone)]
@@ -55,6 +56,14 @@ pub struct DiscrepancyFactor {
     pub factor: f64,
     /// Logarithm of its prior probability.
     pub log_prior: f64,
+}
+
+impl DiscrepancyFactor {
+    /// Whether it is weighed for an effect, or for the model alone: a level below what calibration
+    /// saw is for what was there on its trials, too.
+    pub fn is_weighed(self, of: Option<&EffectCandidate>) -> bool {
+        self.factor >= 1.0 || of.is_some_and(is_from_outside)
+    }
 }
 
 impl MarginalInformation {

@@ -14,7 +14,7 @@ use super::said::{apart, how, hypotheses, in_model, remarks};
 use super::search::HypothesisSearch;
 use super::select::{SelectedEffects, selected};
 use super::series::{levels, residuals};
-use super::setup::search;
+use super::setup::{search, with_level_below};
 use super::thresholds::THRESHOLDS;
 use sistership_estimate::refine::{Progress, RefineError};
 use sistership_model::Model;
@@ -31,7 +31,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnos
         return Err(RefineError::Data("there is no trial to diagnose on".into()));
     }
     step(progress, 0.05, "which effects can be tried on these trials")?;
-    let search = search(request)?;
+    let search = with_level_below(search(request)?);
     step(progress, 0.1, "every effect alone, then together")?;
     let base = search.base(&[], &search.levels)?;
     let choice = choose(&search, &base, request.settings)?;

@@ -52,7 +52,12 @@ fn screened(
         first += candidate.at.len();
         let fixing: Vec<NormalPrior> =
             base.taken.iter().chain([*candidate]).flat_map(priors).collect();
-        let gain = |(level, reduced): &(usize, MarginalInformation)| {
+        let is_weighed = |(level, _): &&(usize, MarginalInformation)| {
+            base.levels[*level].level.is_weighed(Some(candidate))
+        };
+        let reduced: Vec<&(usize, MarginalInformation)> =
+            reduced.iter().filter(is_weighed).collect();
+        let gain = |(level, reduced): &&(usize, MarginalInformation)| {
             let gain = reduced.estimate(&places, &fixing)?.gain;
             Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
         };
@@ -60,7 +65,7 @@ fn screened(
             reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
         let own = (&places[kept.len()..], *candidate);
         let discounted =
-            discounted(reduced, (&kept, &base.taken), own, search.discount(candidate))?;
+            discounted(&reduced, (&kept, &base.taken), own, search.discount(candidate))?;
         let prior = search.log_prior(candidate);
         Some(ScreenedEffect {
             evidence: evidence + prior,
@@ -76,7 +81,7 @@ fn screened(
 
 /// The discounted evidence of an effect beside those of a base, at the level at which it says most.
 fn discounted(
-    reduced: &[(usize, MarginalInformation)],
+    reduced: &[&(usize, MarginalInformation)],
     (kept, taken): (&[usize], &[EffectCandidate]),
     (own, candidate): (&[usize], &EffectCandidate),
     discount: f64,
@@ -84,7 +89,7 @@ fn discounted(
     let others: Vec<NormalPrior> = taken.iter().flat_map(priors).collect();
     let fixing = priors(candidate);
     let columns: Vec<usize> = (0..own.len()).collect();
-    let gain = |(_, reduced): &(usize, MarginalInformation)| {
+    let gain = |(_, reduced): &&(usize, MarginalInformation)| {
         let given = reduced.given(kept, &others, own)?.discounted(discount);
         Some(given.estimate(&columns, &fixing)?.gain)
     };

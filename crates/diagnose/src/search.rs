@@ -9,7 +9,7 @@ use sistership_model::{Model, Trial};
 use super::Request;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
-use super::discount::discount;
+use super::discount::{discount, is_from_outside};
 use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::{JudgedHypothesis, halfway, placed, priors};
@@ -178,6 +178,19 @@ impl<'a> HypothesisSearch<'a> {
     /// # Errors
     /// Says that the information is not positive.
     pub fn alone(&self, base: &FilteredBase<'_>) -> Result<(usize, JudgedHypothesis), RefineError> {
+        let outside = base.taken.iter().find(|candidate| is_from_outside(candidate));
+        self.alone_at(base, &|level| level.is_weighed(outside))
+    }
+
+    /// The same at some of the levels.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn alone_at(
+        &self,
+        base: &FilteredBase<'_>,
+        is_weighed: &dyn Fn(DiscrepancyFactor) -> bool,
+    ) -> Result<(usize, JudgedHypothesis), RefineError> {
         let places: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
         let grams = |level: usize| match base.taken.len() {
             0 => Ok::<_, RefineError>(base.alone(level)),
@@ -187,6 +200,7 @@ impl<'a> HypothesisSearch<'a> {
             Some((level, self.judged(base, &base.taken, level, grams(level).ok()?, &places)?))
         };
         let best = (0..base.levels.len())
+            .filter(|level| is_weighed(base.levels[*level].level))
             .filter_map(at)
             .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
         best.ok_or_else(not_positive)
@@ -272,7 +286,8 @@ impl<'a> HypothesisSearch<'a> {
         let at = |level: usize| {
             Some((level, self.judged(base, candidates, level, stand.grams(level), &places)?))
         };
-        let levels = level.saturating_sub(1)..=level;
+        let is_weighed = |level: &usize| base.levels[*level].level.is_weighed(candidates.last());
+        let levels = (level.saturating_sub(1)..=level).filter(is_weighed);
         let best =
             levels.filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
         best.ok_or_else(not_positive)

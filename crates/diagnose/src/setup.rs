@@ -9,6 +9,7 @@ use sistership_model::{Effect, Model, Trial};
 
 use super::Request;
 use super::calibrated_model::CalibratedModel;
+use super::discount::is_from_outside;
 use super::evidence::DiscrepancyFactor;
 use super::linearised_trials::LinearisedTrials;
 use super::log_priors::{log_priors, states_odds};
@@ -119,6 +120,15 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
     };
     search.expected = expected(request, &search)?;
     Ok(search)
+}
+
+/// The search with a level of the discrepancy below what calibration saw, where something from
+/// outside is recorded: a part of what calibration left may have come of that.
+pub(super) fn with_level_below(mut search: HypothesisSearch<'_>) -> HypothesisSearch<'_> {
+    if search.model.uncertainty.is_some() && search.listed.iter().any(is_from_outside) {
+        search.levels.insert(0, known(THRESHOLDS.discrepancy.factor_below));
+    }
+    search
 }
 
 fn known(factor: f64) -> DiscrepancyFactor {

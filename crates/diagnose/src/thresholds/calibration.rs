@@ -90,6 +90,11 @@ pub(crate) struct DiscrepancyThresholds {
     /// dimensionless. Source: chosen: half decades to ten times what calibration saw, beyond which
     /// the remainder says that something is missing.
     pub known_factors: [f64; 3],
+    /// `k_0`: a level below what calibration saw that is weighed beside [`Self::known_factors`] for
+    /// effects that follow a record from outside, dimensionless: what is recorded was there on the
+    /// trials of the calibration, too, and is a part of the discrepancy that they left. Source:
+    /// chosen, a half decade (`docs/evidence/diagnosis_unseen.md`, "Random divisions").
+    pub factor_below: f64,
     /// `s_k`: standard deviation of the natural logarithm of that factor, dimensionless. Source:
     /// chosen, so that a level ten times the known one costs an evidence of 2.7.
     pub known_spread: f64,
@@ -109,6 +114,7 @@ pub(crate) struct DiscrepancyThresholds {
 pub(super) const DISCREPANCY: DiscrepancyThresholds = DiscrepancyThresholds {
     white_share: 0.05,
     known_factors: [1.0, 3.0, 10.0],
+    factor_below: 1.0 / 3.0,
     known_spread: 1.0,
     unknown_factors: [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0],
     least_level: 1e-5,
