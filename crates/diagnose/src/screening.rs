@@ -52,11 +52,7 @@ fn screened(
         first += candidate.at.len();
         let fixing: Vec<NormalPrior> =
             base.taken.iter().chain([*candidate]).flat_map(priors).collect();
-        let is_weighed = |(level, _): &&(usize, MarginalInformation)| {
-            base.levels[*level].level.is_weighed(Some(candidate))
-        };
-        let reduced: Vec<&(usize, MarginalInformation)> =
-            reduced.iter().filter(is_weighed).collect();
+        let reduced = weighed(base, reduced, candidate);
         let gain = |(level, reduced): &&(usize, MarginalInformation)| {
             let gain = reduced.estimate(&places, &fixing)?.gain;
             Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
@@ -77,6 +73,18 @@ fn screened(
     let mut screened: Vec<ScreenedEffect> = others.iter().filter_map(&mut one).collect();
     screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     screened
+}
+
+/// The levels that are weighed for a candidate, with what the trials say there.
+fn weighed<'r>(
+    base: &FilteredBase<'_>,
+    reduced: &'r [(usize, MarginalInformation)],
+    candidate: &EffectCandidate,
+) -> Vec<&'r (usize, MarginalInformation)> {
+    let is_weighed = |(level, _): &&(usize, MarginalInformation)| {
+        base.levels[*level].level.is_weighed(Some(candidate))
+    };
+    reduced.iter().filter(is_weighed).collect()
 }
 
 /// The discounted evidence of an effect beside those of a base, at the level at which it says most.

@@ -2,8 +2,8 @@
 //!
 //! The same code is compiled three times, with AVX-512, with AVX2 and plainly, and the processor is
 //! asked which to run. Nothing else differs: without fused multiplication every lane is rounded as
-//! it is in the plain code, so that results are the same to the last bit. What says [`f64::mul_add`]
-//! itself passes [`fused`].
+//! it is in the plain code, so that results are the same to the last bit. What calls
+//! [`f64::mul_add`] itself passes [`fused`].
 
 /// What is worth compiling for each width.
 pub trait Wide {

@@ -63,8 +63,8 @@ impl Gram {
     }
 }
 
-/// Products of all columns over rows. Of so few columns or rows that a general product does not fuse
-/// them, it is that one, by which models were made that are still to be verified.
+/// Products of all columns over rows. Of so few columns or rows that a general product does not
+/// fuse them, it is that one, by which models were made that are still to be verified.
 fn products(rows: &[f64], width: usize) -> DMatrix<f64> {
     let readings = DMatrixView::from_slice(rows, width, rows.len() / width);
     let fused = (readings.ncols() > UNFUSED).then(|| symmetric_products(rows, width)).flatten();

@@ -28,8 +28,8 @@ pub(crate) struct ChangeThresholds {
     /// explain, dimensionless. Source: chosen, half; the same table.
     pub trials: f64,
     /// `s_w`: largest share of all trials that a change may be there throughout, dimensionless.
-    /// Source: chosen, half: what most trials have in one size each is no change in time. With a quarter,
-    /// what half of the trials have is not told (same table).
+    /// Source: chosen, half: what most trials have in one size each is no change in time. With a
+    /// quarter, what half of the trials have is not told (same table).
     pub throughout: f64,
     /// `p_t`: probability on either side of the interval of a change's time, dimensionless. Source:
     /// derived: 95 % lie between.
