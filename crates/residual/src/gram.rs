@@ -25,12 +25,14 @@ const UNFUSED: usize = 5;
 impl Gram {
     /// Of whitened rows, each of `width` numbers, the residual first.
     pub fn of_rows(rows: &[f64], width: usize, log_variance: f64) -> Self {
-        Self { products: products(rows, width), log_variance, count: rows.len() / width }
+        let count = rows.len() / width;
+        Self { products: products(rows, (width, count)), log_variance, count }
     }
 
-    /// Of whitened readings as columns, the residual first in each.
+    /// Of whitened readings as columns, the residual first in each; perhaps of no number at all.
     pub fn of_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
-        Self::of_rows(readings.as_slice(), readings.nrows(), log_variance)
+        let products = products(readings.as_slice(), readings.shape());
+        Self { products, log_variance, count: readings.ncols() }
     }
 
     /// Of no sample.
@@ -63,11 +65,12 @@ impl Gram {
     }
 }
 
-/// Products of all columns over rows. Of so few columns or rows that a general product does not
-/// fuse them, it is that one, by which models were made that are still to be verified.
-fn products(rows: &[f64], width: usize) -> DMatrix<f64> {
-    let readings = DMatrixView::from_slice(rows, width, rows.len() / width);
-    let fused = (readings.ncols() > UNFUSED).then(|| symmetric_products(rows, width)).flatten();
+/// Products of all columns over readings. Of so few columns or readings that a general product does
+/// not fuse them, it is that one, by which models were made that are still to be verified.
+fn products(rows: &[f64], (width, count): (usize, usize)) -> DMatrix<f64> {
+    let readings = DMatrixView::from_slice(rows, width, count);
+    let is_fused = width > UNFUSED && count > UNFUSED;
+    let fused = is_fused.then(|| symmetric_products(rows, width)).flatten();
     let Some(mut products) = fused else { return in_blocks(readings) };
     let last = width % BLOCK;
     if last <= UNFUSED {
@@ -97,10 +100,12 @@ mod tests {
     #[test]
     fn products_are_those_of_blocks_to_the_last_bit() {
         let reading = |k: usize| (k as f64 * 0.7).sin() * 10_f64.powi(k as i32 % 5);
-        for (count, width) in [(4, 30), (6, 3), (300, 50), (700, 96), (256, 101), (90, 151)] {
+        let cases = [(9, 0), (0, 9), (4, 30), (6, 3), (300, 50), (700, 96), (256, 101), (90, 151)];
+        for (count, width) in cases {
             let rows: Vec<f64> = (0..count * width).map(reading).collect();
             let blocks = in_blocks(DMatrixView::from_slice(&rows, width, count));
-            let own = products(&rows, width);
+            let own = products(&rows, (width, count));
+            assert_eq!(own.shape(), (width, width));
             let differ = own.iter().zip(&blocks).filter(|(a, b)| a.to_bits() != b.to_bits());
             assert_eq!(differ.count(), 0, "{count} readings of {width} columns");
         }
