@@ -8,7 +8,10 @@ use sistership_model::Trial;
 use sistership_model::branch::Learner;
 use sistership_model::trial::Channel;
 
-use super::outcome::{RemainderDependence, ResidualSeries, Unexplained, VariableDependence};
+use super::outcome::{
+    OriginKind, RemainderDependence, RemainderOrigin, ResidualSeries, Unexplained,
+    VariableDependence,
+};
 use super::series::recorded;
 use super::thresholds::THRESHOLDS;
 
@@ -19,8 +22,12 @@ const TIME: &str = "t";
 pub(super) fn of_remainder(
     trials: &[&Trial],
     residuals: &[ResidualSeries],
-    unexplained: &[Unexplained],
+    (unexplained, origins): (&[Unexplained], &[RemainderOrigin]),
 ) -> Vec<RemainderDependence> {
+    let is_origin = |channel: &str| {
+        let first = origins.first().filter(|origin| origin.of == OriginKind::Acceleration);
+        first.is_some_and(|origin| origin.channel == channel)
+    };
     // A heading that does not follow is asked of the yaw acceleration.
     let is_of = |stretch: &Unexplained, channel: &str| {
         stretch.channel == channel || (stretch.channel == "psi" && channel == "r")
@@ -31,7 +38,7 @@ pub(super) fn of_remainder(
     channels.dedup();
     channels
         .into_iter()
-        .filter(|channel| is_left(channel))
+        .filter(|channel| is_left(channel) || is_origin(channel))
         .filter_map(|channel| {
             let of = |series: &&ResidualSeries| series.channel == channel;
             of_channel(trials, channel, &residuals.iter().filter(of).collect::<Vec<_>>())
@@ -172,7 +179,7 @@ mod tests {
 
     fn told(left: fn(f64, f64, f64) -> f64) -> RemainderDependence {
         let (trial, series) = case(left);
-        of_remainder(&[&trial], &[series], &[stretch()]).remove(0)
+        of_remainder(&[&trial], &[series], (&[stretch()], &[])).remove(0)
     }
 
     #[test]
@@ -199,7 +206,7 @@ mod tests {
         second.t_s.iter_mut().for_each(late);
         other.t_s.iter_mut().for_each(late);
         let psi = Unexplained { channel: "psi".into(), ..stretch() };
-        let told = of_remainder(&[&first, &second], &[one, other], &[psi]).remove(0);
+        let told = of_remainder(&[&first, &second], &[one, other], (&[psi], &[])).remove(0);
         let time = &told.variables[0];
         assert!(time.variable == "t" && time.at.iter().all(|t| *t < 480.0), "{time:?}");
     }
@@ -209,12 +216,12 @@ mod tests {
         let (trial, mut series) = case(|delta, _, _| delta);
         series.t_s.truncate(20);
         series.after.truncate(20);
-        assert!(of_remainder(&[&trial], &[series], &[stretch()]).is_empty());
+        assert!(of_remainder(&[&trial], &[series], (&[stretch()], &[])).is_empty());
     }
 
     #[test]
     fn nothing_is_asked_where_nothing_is_left() {
         let (trial, series) = case(|delta, _, _| delta);
-        assert!(of_remainder(&[&trial], &[series], &[]).is_empty());
+        assert!(of_remainder(&[&trial], &[series], (&[], &[])).is_empty());
     }
 }

@@ -23,6 +23,7 @@ mod log_priors;
 mod misfit;
 mod next_trial;
 mod nuisance;
+mod origin;
 mod outcome;
 mod placebo;
 mod refit;
@@ -45,8 +46,8 @@ pub use calibrate::calibrate;
 pub use expected::{ExpectedInformation, Unknowns, forms_of};
 pub use outcome::{
     Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,
-    Hypothesis, LimitedBy, NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre,
-    TrialErrors, Unexplained, Value, VariableDependence, Verdict,
+    Hypothesis, LimitedBy, NextTrial, OriginKind, RemainderDependence, RemainderOrigin,
+    ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained, Value, VariableDependence, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;

@@ -36,6 +36,9 @@ pub struct Diagnosis {
     /// day, and no model carries them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
+    /// Where what no effect explains comes from, the most evident first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub origins: Vec<RemainderOrigin>,
     /// On what depends what is left there, by acceleration.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub depends_on: Vec<RemainderDependence>,
@@ -159,7 +162,8 @@ pub struct Confounded {
 /// A stretch of a trial that no effect explains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unexplained {
-    /// The channel whose equation does not hold.
+    /// The channel whose readings the model does not follow; [`RemainderOrigin`] says what is
+    /// missing.
     pub channel: String,
     /// Root mean square of what remains over what the noise predicts.
     pub rms_over_noise: f64,
@@ -169,6 +173,32 @@ pub struct Unexplained {
     pub from_s: f64,
     /// Until when, s of the trial.
     pub to_s: f64,
+}
+
+/// What, taken to be more random than it is known to be, makes the trials that leave something more
+/// probable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RemainderOrigin {
+    /// What that is.
+    pub of: OriginKind,
+    /// `u`, `v`, `r` or `p` of an acceleration; the channel of readings.
+    pub channel: String,
+    /// By how much, natural logarithm, by the standard deviation that does most.
+    pub evidence: f64,
+    /// Of so many trials it is the most evident origin.
+    pub first_in: usize,
+    /// Trials that were asked.
+    pub trials: usize,
+}
+
+/// Of what kind an origin is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OriginKind {
+    /// A force or moment that the equations of motion lack.
+    Acceleration,
+    /// An instrument.
+    Readings,
 }
 
 /// An effect that changes within a trial, or that one trial alone has, and with which nothing of

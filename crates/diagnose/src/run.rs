@@ -8,6 +8,7 @@ use super::dependence::of_remainder;
 use super::judge::{SimulatedErrors, errors};
 use super::limits::{but, cannot_tell};
 use super::linearised_trials::LinearisedTrials;
+use super::origin::origins;
 use super::outcome::{Diagnosis, Found, NextTrial, Unexplained, Verdict};
 use super::refit::{Refit, refits};
 use super::said::{apart, how, hypotheses, in_model, remarks};
@@ -121,10 +122,12 @@ fn written(
     let limits = but(choice.limits.clone(), &names);
     let FittedModel { errors, taken } = fitted;
     let residuals = residuals(first, search, best)?;
+    let origins = origins(&settled, &remaining, request.settings.least_evidence);
     Ok(Diagnosis {
         verdict: verdict(&remaining, &named.found),
         changes,
-        depends_on: of_remainder(first.trials, &residuals, &remaining),
+        depends_on: of_remainder(first.trials, &residuals, (&remaining, &origins)),
+        origins,
         effects: named.found,
         unexplained: remaining,
         cannot_tell: cannot_tell(&limits),

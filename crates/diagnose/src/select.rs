@@ -14,7 +14,7 @@ use super::remainder::unexplained;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use sistership_estimate::refine::{Progress, RefineError};
-use sistership_residual::EffectCandidate;
+use sistership_residual::{Discrepancies, EffectCandidate};
 
 /// What is taken in the end.
 pub(super) struct SelectedEffects<'a> {
@@ -144,16 +144,28 @@ fn only_changes<'a>(
     Ok(is_all.then_some((state, changes)))
 }
 
+/// The discrepancy by which it is judged what remains.
+pub(super) fn expected(
+    search: &HypothesisSearch<'_>,
+    workspace: &LinearisedTrials<'_>,
+) -> Discrepancies {
+    match search.model.uncertainty {
+        Some(_) => search.expected.clone(),
+        None => workspace.scales().discrepancies(THRESHOLDS.discrepancy.remainder_level),
+    }
+}
+
+/// By how much each column moved.
+pub(super) fn parameters(best: &JudgedHypothesis) -> Vec<f64> {
+    best.shift.iter().copied().chain(best.moved()).collect()
+}
+
 fn remaining(
     search: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
     workspace: &LinearisedTrials<'_>,
 ) -> Result<Vec<Unexplained>, RefineError> {
-    let expected = match search.model.uncertainty {
-        Some(_) => &search.expected,
-        None => &workspace.scales().discrepancies(THRESHOLDS.discrepancy.remainder_level),
-    };
-    let parameters: Vec<f64> = best.shift.iter().copied().chain(best.moved()).collect();
+    let (expected, parameters) = (&expected(search, workspace), parameters(best));
     let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
     let open = |candidate: &EffectCandidate| {
         let share = of_shape(candidate);

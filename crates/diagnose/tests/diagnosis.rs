@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, Normal};
-use sistership_diagnose::{Diagnosis, Request, Settings, Verdict, diagnose};
+use sistership_diagnose::{Diagnosis, OriginKind, Request, Settings, Verdict, diagnose};
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, at};
@@ -72,7 +72,23 @@ fn diagnosed(zoo: &Zoo, model: &Model, trials: &[Trial]) -> Diagnosis {
 }
 
 fn by(zoo: &Zoo, model: &Model, trials: &[Trial], settings: &Settings) -> Diagnosis {
-    let names = ["current", "rudder-offset", "yaw-rate-bias", "extra-resistance"];
+    among(
+        &["current", "rudder-offset", "yaw-rate-bias", "extra-resistance"],
+        zoo,
+        model,
+        trials,
+        settings,
+    )
+}
+
+/// By a library of some effects.
+fn among(
+    names: &[&str],
+    zoo: &Zoo,
+    model: &Model,
+    trials: &[Trial],
+    settings: &Settings,
+) -> Diagnosis {
     let effects: Vec<Arc<Effect>> =
         names.iter().map(|name| Arc::clone(zoo.effect(name).unwrap())).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
@@ -154,4 +170,30 @@ fn what_is_held_for_impossible_is_not_named() {
     let diagnosis = by(&zoo, &model, &trials, &settings);
     assert!(!names(&diagnosis).contains(&"rudder-offset"), "{:?}", names(&diagnosis));
     assert!(diagnosis.prior_odds["rudder-offset"] < 1e-299);
+}
+
+#[test]
+fn a_force_that_no_effect_has_is_told_by_its_equation() {
+    let zoo = Zoo::embedded().unwrap();
+    let effect = hidden(&zoo, "extra-resistance", &[("coefficient", 0.01)]);
+    let (trials, model) = (trials(&zoo, Some(effect)), zoo.model("mariner").unwrap());
+    let diagnosis = among(&["yaw-rate-bias"], &zoo, &model, &trials, &Settings::default());
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{:?}", diagnosis.before);
+    let first = &diagnosis.origins[0];
+    assert_eq!((first.of, first.channel.as_str()), (OriginKind::Acceleration, "u"), "{first:?}");
+}
+
+#[test]
+fn a_compass_that_swings_is_told_by_its_readings() {
+    let zoo = Zoo::embedded().unwrap();
+    let mut trials = trials(&zoo, None);
+    for trial in &mut trials {
+        let t_s = trial.t_s.clone();
+        let headings = trial.channels.get_mut(&Channel::Psi).unwrap();
+        headings.iter_mut().zip(&t_s).for_each(|(psi, t)| *psi += 0.02 * (t / 7.0).sin());
+    }
+    let diagnosis = diagnosed(&zoo, &zoo.model("mariner").unwrap(), &trials);
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained);
+    let first = &diagnosis.origins[0];
+    assert_eq!((first.of, first.channel.as_str()), (OriginKind::Readings, "psi"), "{first:?}");
 }

@@ -24,7 +24,7 @@ pub const STYLE: &str = include_str!("../templates/report_style.css");
 
 pub use branch::{BranchInput, render_branch};
 pub use contributed_ship::contributed_ship;
-pub use diagnosis::{DiagnosisInput, change, dependence, distinct, render_diagnosis};
+pub use diagnosis::{DiagnosisInput, change, dependence, distinct, origin, render_diagnosis};
 pub use refinement::{RefinementInput, render_refinement};
 pub use rendered::{Rendered, ReportError, VersionLabel};
 pub use validation::render_validation;

@@ -1,8 +1,8 @@
 //! Each ship of the zoo in turn is a stranger, of which particulars alone are known: what do the
 //! other ships' models, carried over, say of its manoeuvres, and is the most similar one the best?
 //! `cargo run --release -p sistership-tests --example strangers`; `-- misfit` prints how far
-//! sources and estimates are from the truth in accelerations, `-- work` and `-- judgement` what one
-//! zigzag and four trials make of each prior. docs/evidence/strangers.md has what came out.
+//! sources and estimates are from the truth in accelerations, `-- work` and `-- judgement` what one, two
+//! and four trials make of each prior, `-- drawn 3001 3041` the same of ships that these seeds draw. docs/evidence/strangers.md has what came out.
 
 #![allow(clippy::unwrap_used)]
 
@@ -21,6 +21,7 @@ use sistership_model::{Model, Vessel, Zoo};
 use sistership_sources::transfer::transfer;
 
 use figures::{Figures, error, sailed};
+use sailing::Strangers;
 use ships::{MEASURES, bare, kin, likeness};
 use statistics::{bootstrap, mean, median, rank_correlation};
 
@@ -44,10 +45,17 @@ struct Stranger {
 fn main() {
     match std::env::args().nth(1).as_deref() {
         Some("misfit") => misfit::run(),
-        Some("work") => with_trials::run(true),
-        Some("judgement") => with_trials::run(false),
+        Some("work") => with_trials::run(&Strangers::Work),
+        Some("judgement") => with_trials::run(&Strangers::Judgement),
+        Some("drawn") => with_trials::run(&drawn()),
         _ => particulars_alone(),
     }
+}
+
+/// Ships of the truth from the first seed given up to before the second.
+fn drawn() -> Strangers {
+    let seed = |place: usize| std::env::args().nth(place).unwrap().parse().unwrap();
+    Strangers::Drawn(seed(2)..seed(3))
 }
 
 fn particulars_alone() {

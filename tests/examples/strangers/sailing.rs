@@ -1,5 +1,7 @@
 //! Strangers that sail: ships of the zoo by their own laws, and ships whose laws it does not have.
 
+use std::ops::Range;
+
 use sistership_dynamics::Ship;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
@@ -12,8 +14,35 @@ use sistership_tests::truth::{self, family};
 use crate::figures::{Figures, sailed};
 use crate::ships::{bare, is_for_work};
 
-/// Ships of the truth that are sailed, by their seeds: for work, and for judgement.
-const SEEDS: [std::ops::Range<u64>; 2] = [1001..1009, 2001..2009];
+/// Which strangers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Strangers {
+    /// Of the zoo and of the truth, for work.
+    Work,
+    /// The same, for judgement.
+    Judgement,
+    /// Of the truth alone, by their seeds.
+    Drawn(Range<u64>),
+}
+
+impl Strangers {
+    fn seeds(&self) -> Range<u64> {
+        match self {
+            Self::Work => 1001..1009,
+            Self::Judgement => 2001..2009,
+            Self::Drawn(seeds) => seeds.clone(),
+        }
+    }
+
+    fn has(&self, ship: &str) -> bool {
+        match self {
+            Self::Work => is_for_work(ship),
+            Self::Judgement => !is_for_work(ship),
+            Self::Drawn(_) => false,
+        }
+    }
+}
+
 /// What is fitted, first one, then all; rudder and change of heading, deg.
 const FITTED: [Manoeuvre; 4] = [
     Manoeuvre::Zigzag(20.0, 20.0),
@@ -39,11 +68,11 @@ pub struct Sailed {
     pub figures: Figures,
 }
 
-/// Ships of the zoo, and ships whose laws it does not have, for work or for judgement.
-pub fn strangers(zoo: &Zoo, work: bool) -> Vec<Sailed> {
-    let known = zoo.vessels().filter(|vessel| is_for_work(vessel.name()) == work);
+/// Ships of the zoo, and ships whose laws it does not have.
+pub fn strangers(zoo: &Zoo, of: &Strangers) -> Vec<Sailed> {
+    let known = zoo.vessels().filter(|vessel| of.has(vessel.name()));
     let known = known.filter_map(|vessel| of_zoo(zoo, vessel));
-    known.chain(SEEDS[usize::from(!work)].clone().filter_map(of_truth)).collect()
+    known.chain(of.seeds().filter_map(of_truth)).collect()
 }
 
 fn of_zoo(zoo: &Zoo, vessel: &Vessel) -> Option<Sailed> {

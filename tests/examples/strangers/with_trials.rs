@@ -12,7 +12,7 @@ use sistership_model::trial::Trial;
 use sistership_model::{Model, Zoo};
 
 use crate::figures::{error, sailed};
-use crate::sailing::{Sailed, strangers};
+use crate::sailing::{Sailed, Strangers, strangers};
 use crate::ships::{MEASURES, kin, likeness};
 use crate::statistics::{bootstrap, mean, median};
 
@@ -22,7 +22,7 @@ const FITTED: &str = "low-speed";
 /// standardised error: as if it were wrong by a factor of 5, or as wide as the trials themselves.
 const LOST: [f64; 2] = [1.6, 1.0];
 /// How many trials are fitted.
-const COUNTS: [usize; 2] = [1, 4];
+const COUNTS: [usize; 3] = [1, 2, 4];
 /// The default order of the program (correlation), and the best one of particulars alone.
 const SHOWN: [usize; 2] = [0, 3];
 
@@ -39,10 +39,10 @@ struct Row {
     sources: Vec<Option<[Errors; 2]>>,
 }
 
-/// Prints the tables of the ships for work or for judgement.
-pub fn run(work: bool) {
+/// Prints the tables of some strangers.
+pub fn run(of: &Strangers) {
     let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
-    let all = strangers(&zoo, work);
+    let all = strangers(&zoo, of);
     for count in COUNTS {
         let rows: Vec<Row> =
             all.par_iter().filter_map(|one| row(&zoo, &library, one, count)).collect();

@@ -24,7 +24,8 @@ pub struct Outcome {
     pub estimates: Vec<Estimate>,
     /// Changes: effect, and at which share of the trial where they begin or end within it.
     pub changes: Vec<(String, Option<f64>)>,
-    /// The strongest stretch that nothing explains: channel, from, to by its trial.
+    /// What no effect explains: the acceleration or the readings from which it comes, and from when
+    /// to when it is strongest, by its trial.
     pub open: Option<(String, f64, f64)>,
     /// Whether the smallest size that would have been shown is above what was hidden.
     pub below_limit: bool,
@@ -51,7 +52,7 @@ impl Outcome {
             verdict: answer["verdict"].as_str().unwrap_or_default().to_owned(),
             estimates: right.flat_map(|effect| estimates(effect, &case)).collect(),
             changes: changes(&answer["changes"], durations_s),
-            open: strongest(&answer["unexplained"], durations_s),
+            open: strongest(answer, durations_s),
             below_limit: limits::is_below(&answer["limits"], &case),
             evidence: effects.iter().map(evidence).collect(),
             ship,
@@ -85,9 +86,7 @@ impl Outcome {
     pub fn is_right_place(&self) -> bool {
         let Kind::Unlisted(channel, from) = self.case.kind else { return false };
         let holds = |(open, begins, ends): &(String, f64, f64)| {
-            // Yaw rate and heading are of one motion.
-            let same = open == channel || (channel == "r" && open == "psi");
-            same && 0.5 * (begins + ends) >= 0.8 * from
+            open == channel && 0.5 * (begins + ends) >= 0.8 * from
         };
         self.is_unexplained() && self.open.as_ref().is_some_and(holds)
     }
@@ -163,8 +162,11 @@ fn share(told: &Value, t_s: f64, durations_s: &Durations) -> Option<f64> {
     Some(t_s / durations_s.get(told["trial"].as_str()?)?)
 }
 
-fn strongest(unexplained: &Value, durations_s: &Durations) -> Option<(String, f64, f64)> {
-    let first = unexplained.as_array()?.first()?;
+fn strongest(answer: &Value, durations_s: &Durations) -> Option<(String, f64, f64)> {
+    let first = answer["unexplained"].as_array()?.first()?;
     let share = |name: &str| share(first, first[name].as_f64()?, durations_s);
-    Some((first["channel"].as_str()?.to_owned(), share("from_s")?, share("to_s")?))
+    let origin = &answer["origins"][0];
+    let channel = origin["channel"].as_str()?;
+    let readings = if origin["of"] == "readings" { "readings of " } else { "" };
+    Some((format!("{readings}{channel}"), share("from_s")?, share("to_s")?))
 }

@@ -6,7 +6,7 @@ use sistership_diagnose::{
     Confounded, Diagnosis, Found, Hypothesis, LimitedBy, NextTrial, Unexplained, Verdict,
 };
 use sistership_model::Model;
-use sistership_report::{change, dependence, distinct};
+use sistership_report::{change, dependence, distinct, origin};
 
 use super::channels::CHANNELS;
 use super::worth;
@@ -28,6 +28,7 @@ pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> S
     if !diagnosis.unexplained.is_empty() {
         parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
         parts.extend(changed(diagnosis));
+        parts.extend(origin(&diagnosis.origins).map(|said| said + "\n"));
         parts.extend(diagnosis.depends_on.iter().map(|left| dependence(left) + "\n"));
     }
     parts.extend(diagnosis.next_trial.as_ref().map(next_trial));

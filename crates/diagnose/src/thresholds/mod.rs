@@ -20,7 +20,9 @@ use effects::{
     CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds,
 };
 use limits::{LIMITS, LimitThresholds};
-use remainder::{DEPENDENCE, DependenceThresholds, REMAINDER, RemainderThresholds};
+use remainder::{
+    DEPENDENCE, DependenceThresholds, ORIGIN, OriginThresholds, REMAINDER, RemainderThresholds,
+};
 use search::{REFIT, RefitThresholds, SEARCH, SearchThresholds};
 use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, TrialThresholds};
 
@@ -47,6 +49,8 @@ pub(crate) struct Thresholds {
     pub remainder: RemainderThresholds,
     /// What changes within a trial.
     pub changes: ChangeThresholds,
+    /// Where it comes from.
+    pub origin: OriginThresholds,
     /// On what it depends.
     pub dependence: DependenceThresholds,
     /// The fit of the model that is given.
@@ -70,6 +74,7 @@ pub(crate) const THRESHOLDS: Thresholds = Thresholds {
     limits: LIMITS,
     remainder: REMAINDER,
     changes: CHANGES,
+    origin: ORIGIN,
     dependence: DEPENDENCE,
     refit: REFIT,
     trials: TRIALS,

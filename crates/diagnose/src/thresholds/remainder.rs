@@ -33,6 +33,23 @@ pub(super) const REMAINDER: RemainderThresholds = RemainderThresholds {
     channels: [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Psi],
 };
 
+/// How it is asked where a remainder comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OriginThresholds {
+    /// `f_o`: factors on a standard deviation that are tried, dimensionless. Source: derived: two
+    /// neighbours are apart by a doubling, between which the log likelihood of `n` readings moves by at
+    /// most `n/6`, the same for all; what is 32 times as random says nothing of a trial any more.
+    pub factors: [f64; 5],
+    /// `n_o`: most trials that are asked, a count. Source: as many as are asked for changes.
+    pub asked: usize,
+    /// `n_w`: origins that are told, a count. Source: chosen, as many as variables.
+    pub shown: usize,
+}
+
+/// The origin's values.
+pub(super) const ORIGIN: OriginThresholds =
+    OriginThresholds { factors: [2.0, 4.0, 8.0, 16.0, 32.0], asked: 8, shown: 3 };
+
 /// How it is asked on what a remainder depends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DependenceThresholds {

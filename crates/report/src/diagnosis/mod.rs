@@ -26,7 +26,7 @@ mod tests;
 pub use changes::change;
 pub use distinct::distinct;
 pub use input::DiagnosisInput;
-pub use remaining::dependence;
+pub use remaining::{dependence, origin};
 
 use serde_json::{Value, json};
 

@@ -2,11 +2,12 @@
 //! coefficients moved.
 
 use sistership_diagnose::{
-    DiscrepancyLevel, RemainderDependence, Settings, Unexplained, VariableDependence,
+    DiscrepancyLevel, OriginKind, RemainderDependence, RemainderOrigin, Settings, Unexplained,
+    VariableDependence,
 };
 use sistership_model::Model;
 
-use super::sentence::motion;
+use super::sentence::{motion, of_origin};
 use crate::numbers::{fixed, known, list, signed, significant};
 use crate::tables::{Cell, Column, Row, Table, setting};
 use crate::words::{acceleration, recorded};
@@ -15,7 +16,7 @@ use crate::words::{acceleration, recorded};
 pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
     let columns = vec![
         Column::text("trial", ""),
-        Column::text("equation", ""),
+        Column::text("readings", ""),
         Column::number("from", "s"),
         Column::number("to", "s"),
         Column::number("remainder", "÷ noise"),
@@ -27,6 +28,26 @@ pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
         Row::of(names.into_iter().chain(times).chain([remainder]).collect())
     };
     Table { columns, rows: stretches.iter().map(row).collect() }
+}
+
+/// Where what is left comes from, in a sentence; none where nothing says it.
+pub fn origin(all: &[RemainderOrigin]) -> Option<String> {
+    let (first, others) = all.split_first()?;
+    let evidence = |origin: &RemainderOrigin| fixed(origin.evidence, 0);
+    let other = |origin: &RemainderOrigin| format!("{} ({})", of_origin(origin), evidence(origin));
+    let beside: Vec<String> = others.iter().map(other).collect();
+    let beside = if beside.is_empty() { String::new() } else { format!("; {}", list(&beside)) };
+    let kind = match first.of {
+        OriginKind::Acceleration => "a force or moment that the model lacks",
+        OriginKind::Readings => "an instrument",
+    };
+    let (most, trials) = (of_origin(first), first.trials);
+    Some(format!(
+        "It comes most likely from {most}, {kind} (evidence {}, foremost in {} of {trials} \
+         trials){beside}.",
+        evidence(first),
+        first.first_in
+    ))
 }
 
 /// On what depends what is left, in a sentence each.

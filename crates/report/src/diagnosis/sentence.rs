@@ -1,6 +1,6 @@
 //! The answer in one plain sentence.
 
-use sistership_diagnose::{Diagnosis, Found, Verdict};
+use sistership_diagnose::{Diagnosis, Found, OriginKind, RemainderOrigin, Verdict};
 
 use super::changes::change;
 use super::figures::with_figures;
@@ -51,12 +51,22 @@ fn where_(diagnosis: &Diagnosis) -> String {
         return format!(" throughout: {}", change(first));
     }
     diagnosis.unexplained.first().map_or_else(String::new, |stretch| {
-        let what = motion(&stretch.channel);
+        let of_stretch = || motion(&stretch.channel).to_owned();
+        let what = diagnosis.origins.first().map_or_else(of_stretch, of_origin);
         format!(
             ", most of all in {what} of {} from {:.0} s to {:.0} s",
             stretch.trial, stretch.from_s, stretch.to_s
         )
     })
+}
+
+/// What an origin of the remainder is.
+pub(super) fn of_origin(origin: &RemainderOrigin) -> String {
+    let motion = motion(&origin.channel);
+    match origin.of {
+        OriginKind::Acceleration => motion.to_owned(),
+        OriginKind::Readings => format!("the readings of {motion}"),
+    }
 }
 
 /// The motion whose equation a channel stands for.

@@ -1,7 +1,7 @@
 //! The diagnosis in three sentences for an officer: what was found, what to do, and what these
 //! trials could not tell.
 
-use sistership_diagnose::{Diagnosis, LimitedBy, Verdict};
+use sistership_diagnose::{Diagnosis, LimitedBy, OriginKind, Verdict};
 
 use super::evidence::next_trial;
 use super::sentence::sentence;
@@ -15,6 +15,9 @@ pub(crate) fn summary(diagnosis: &Diagnosis) -> [String; 3] {
 fn advice(diagnosis: &Diagnosis) -> String {
     match (&diagnosis.next_trial, diagnosis.verdict) {
         (Some(next), _) => next_trial(next),
+        (None, Verdict::Unexplained) if is_of_readings(diagnosis) => {
+            "Look at the instrument that says so before the model is changed.".into()
+        }
         (None, Verdict::Unexplained) => {
             "Look into the log of that trial for what happened then, before the model is changed."
                 .into()
@@ -29,6 +32,10 @@ fn advice(diagnosis: &Diagnosis) -> String {
         }
         (None, Verdict::Complete) => "Go on using the model as it is.".into(),
     }
+}
+
+fn is_of_readings(diagnosis: &Diagnosis) -> bool {
+    diagnosis.origins.first().is_some_and(|origin| origin.of == OriginKind::Readings)
 }
 
 fn open(diagnosis: &Diagnosis) -> String {

@@ -55,6 +55,10 @@ fn every_part_is_there_and_in_order() {
     // Trajectory, series and residual of each trial; one scatter for each acceleration; a curve for
     // each variable on which what is left depends.
     assert_eq!(html.matches("class=\"plot\"").count(), 2 * 3 + 2 + 2);
+    assert!(html.contains(
+        "It comes most likely from yaw, a force or moment that the model lacks (evidence 412, \
+         foremost in 2 of 2 trials); the readings of the heading (96)."
+    ));
     assert!(
         html.contains("class=\"band\"")
             && html.contains("class=\"stretch\"")

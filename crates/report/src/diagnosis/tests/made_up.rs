@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use sistership_diagnose::{
     Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,
-    Hypothesis, LimitedBy, NextTrial, RemainderDependence, ResidualSeries, SailedManoeuvre,
-    Settings, TrialErrors, Unexplained, Value, VariableDependence, Verdict,
+    Hypothesis, LimitedBy, NextTrial, OriginKind, RemainderDependence, RemainderOrigin,
+    ResidualSeries, SailedManoeuvre, Settings, TrialErrors, Unexplained, Value, VariableDependence,
+    Verdict,
 };
 use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
 use sistership_model::effect::ActsOn;
@@ -203,6 +204,18 @@ fn damage() -> Change {
     }
 }
 
+/// A moment that is missing, more likely than a compass that wanders.
+fn origins() -> Vec<RemainderOrigin> {
+    let one = |of: OriginKind, channel: &str, evidence: f64, first_in: usize| RemainderOrigin {
+        of,
+        channel: channel.to_owned(),
+        evidence,
+        first_in,
+        trials: 2,
+    };
+    vec![one(OriginKind::Acceleration, "r", 412.3, 2), one(OriginKind::Readings, "psi", 96.0, 0)]
+}
+
 /// What follows the rudder, and the heading less.
 fn depends_on() -> RemainderDependence {
     let variable = |variable: &str, share: f64| VariableDependence {
@@ -242,6 +255,7 @@ fn diagnosis(after: Model) -> Diagnosis {
         effects: vec![current()],
         unexplained: vec![stretch],
         changes: vec![damage()],
+        origins: origins(),
         depends_on: vec![depends_on()],
         limits: limits(),
         cannot_tell: BTreeMap::from([("wave-drift".to_owned(), LimitedBy::Model)]),
