@@ -29,6 +29,34 @@ impl Failure {
             Self::Told => None,
         }
     }
+
+    /// Both reasons, one after the other; a call that is wrong stays one.
+    fn and(self, other: Self) -> Self {
+        let lines: Vec<&str> = [&self, &other].into_iter().filter_map(Self::message).collect();
+        match (lines.is_empty(), self.status().max(other.status())) {
+            (true, _) => Self::Told,
+            (false, 2) => Self::Call(lines.join("\n")),
+            (false, _) => Self::Refused(lines.join("\n")),
+        }
+    }
+}
+
+/// Both of two, or every reason why not: a person mends all of a call at once.
+pub fn both<A, B>(a: Result<A, Failure>, b: Result<B, Failure>) -> Result<(A, B), Failure> {
+    match (a, b) {
+        (Ok(a), Ok(b)) => Ok((a, b)),
+        (Err(failure), Ok(_)) | (Ok(_), Err(failure)) => Err(failure),
+        (Err(a), Err(b)) => Err(a.and(b)),
+    }
+}
+
+/// All of many, or every reason why not.
+pub fn all<T>(each: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>, Failure> {
+    each.fold(Ok(Vec::new()), |all, one| {
+        let (mut all, one) = both(all, one)?;
+        all.push(one);
+        Ok(all)
+    })
 }
 
 impl From<FileError> for Failure {
@@ -51,5 +79,16 @@ mod tests {
         assert_eq!(Failure::Call("x".into()).status(), 2);
         assert_eq!(about_file(std::path::Path::new("a"), "b"), Failure::Refused("a: b".into()));
         assert_eq!((Failure::Told.status(), Failure::Told.message()), (1, None));
+    }
+
+    #[test]
+    fn every_reason_is_told() {
+        let refused = |what: &str| Failure::Refused(what.to_owned());
+        let of = |all: [Result<u8, Failure>; 3]| super::all(all.into_iter());
+        assert_eq!(of([Ok(1), Ok(2), Ok(3)]), Ok(vec![1, 2, 3]));
+        assert_eq!(of([Err(refused("a")), Ok(2), Err(refused("c"))]), Err(refused("a\nc")));
+        let call = Failure::Call("b".into());
+        assert_eq!(both::<u8, u8>(Err(refused("a")), Err(call)), Err(Failure::Call("a\nb".into())));
+        assert_eq!(of([Err(Failure::Told), Ok(1), Err(Failure::Told)]), Err(Failure::Told));
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use sistership_model::trial::{Finding, Trial};
-use sistership_trials::{Loaded, Refusal, load_path};
+use sistership_trials::{Loaded, load_path};
 
 use crate::failure::Failure;
 use crate::output::{count, note};
@@ -33,7 +33,13 @@ pub struct ReadTrial {
 pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
     let (mut read, mut refused) = (Vec::new(), Vec::new());
     for path in paths {
-        let loaded = load_path(path)?;
+        let loaded = match load_path(path) {
+            Ok(loaded) => loaded,
+            Err(error) => {
+                refused.push(error.to_string());
+                continue;
+            }
+        };
         let files = files_of(path, &loaded);
         let ship = loaded.manifest.map(|manifest| manifest.ship);
         for (result, (file, path, is_stretch)) in loaded.trials.into_iter().zip(files) {
@@ -41,12 +47,12 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
                 Ok(trial) => {
                     read.push(ReadTrial { trial, file, path, is_stretch, ship: ship.clone() });
                 }
-                Err(refusal) => refused.push(refusal),
+                Err(refusal) => refused.push(refusal.to_string()),
             }
         }
     }
     if !refused.is_empty() {
-        return Err(Failure::Refused(all_refusals(&refused)));
+        return Err(Failure::Refused(refused.join("\n")));
     }
     tell_warnings(&read);
     name_apart(&mut read)?;
@@ -63,11 +69,6 @@ fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf, bool)> {
             .collect(),
         None => vec![(path.display().to_string(), path.to_path_buf(), false)],
     }
-}
-
-fn all_refusals(refused: &[Refusal]) -> String {
-    let each: Vec<String> = refused.iter().map(ToString::to_string).collect();
-    each.join("\n")
 }
 
 /// The first warnings of each file; what several files have in common is told once.

@@ -48,6 +48,7 @@ impl Library {
             line: None,
             field: String::new(),
             message: "is missing".to_owned(),
+            further: Vec::new(),
         };
         Ok(Self { sha256: sha256(&texts), regressions, series: series.ok_or_else(missing)?? })
     }

@@ -56,6 +56,7 @@ impl PropellerSeries {
             line: None,
             field: String::new(),
             message: error.to_string(),
+            further: Vec::new(),
         })
     }
 

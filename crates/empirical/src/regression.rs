@@ -88,6 +88,7 @@ impl Regression {
             line: None,
             field,
             message,
+            further: Vec::new(),
         };
         let raw: RegressionFile = sistership_model::yaml::read(text)
             .map_err(|error| wrong(String::new(), error.to_string()))?;

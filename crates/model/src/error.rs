@@ -2,8 +2,13 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+
+use crate::yaml::MOST_FAULTS;
+
 /// A refusal of a model file: which file, line and field, and why.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, thiserror::Error)]
 pub struct FileError {
     /// Name of the file, or of what was sent instead of one.
     pub file: String,
@@ -13,6 +18,8 @@ pub struct FileError {
     pub field: String,
     /// What is wrong and what would be right.
     pub message: String,
+    /// What else is wrong with it.
+    pub further: Vec<FileError>,
 }
 
 impl fmt::Display for FileError {
@@ -22,10 +29,11 @@ impl fmt::Display for FileError {
             write!(out, ":{line}")?;
         }
         if self.field.is_empty() {
-            write!(out, ": {}", self.message)
+            write!(out, ": {}", self.message)?;
         } else {
-            write!(out, ": {}: {}", self.field, self.message)
+            write!(out, ": {}: {}", self.field, self.message)?;
         }
+        self.further.iter().try_for_each(|further| write!(out, "\n{further}"))
     }
 }
 
@@ -37,7 +45,15 @@ impl FileError {
             line: error.line,
             field: String::new(),
             message: error.message,
+            further: Vec::new(),
         }
+    }
+
+    /// Several refusals as one, the first [`MOST_FAULTS`] of them; none of none.
+    pub fn of_all(all: impl Iterator<Item = Self>) -> Option<Self> {
+        let mut all = all.take(MOST_FAULTS);
+        let first = all.next()?;
+        Some(Self { further: all.collect(), ..first })
     }
 }
 
@@ -52,9 +68,15 @@ impl<'a> Blame<'a> {
         Self { file, text }
     }
 
-    /// Deserialises the text; the parser's own line and column survive.
-    pub(crate) fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, FileError> {
-        crate::yaml::read(self.text).map_err(|error| FileError::of_yaml(self.file, error))
+    /// Deserialises the text. Where its shape is wrong everything is named that the schema tells;
+    /// otherwise the parser's own line and column survive.
+    pub(crate) fn read<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, FileError> {
+        crate::yaml::read(self.text).map_err(|error| {
+            let of_parser = FileError::of_yaml(self.file, error);
+            let faults = crate::yaml::faults::<T>(self.text).into_iter();
+            FileError::of_all(faults.map(|(field, message)| self.at(&field, message)))
+                .unwrap_or(of_parser)
+        })
     }
 
     /// An error at a dotted field; the line is that of the path's keys, each looked for below the
@@ -65,6 +87,7 @@ impl<'a> Blame<'a> {
             line: self.line_of(field),
             field: field.to_owned(),
             message: message.to_string(),
+            further: Vec::new(),
         }
     }
 

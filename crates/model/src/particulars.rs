@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::quantity::Quantity;
+use crate::yaml::MOST_FAULTS;
 use sistership_formula::units::Dimension;
 
 /// Particulars by name, in SI.
@@ -62,19 +63,30 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// Names the particular at fault and what is believed of it.
 pub fn check(particulars: &Particulars) -> Result<(), (String, String)> {
-    for (name, quantity) in particulars {
+    faults(particulars).into_iter().next().map_or(Ok(()), Err)
+}
+
+/// Every particular at fault, with what is believed of it; of many the first.
+pub fn faults(particulars: &Particulars) -> Vec<(String, String)> {
+    let one = |(name, quantity): (&String, &Quantity)| {
         let Some(&(_, _, low, high)) = KNOWN.iter().find(|(known, ..)| known == name) else {
             let known: Vec<&str> = names().collect();
-            return Err((name.clone(), format!("unknown particular; known: {}", known.join(", "))));
-        };
-        if !(low..=high).contains(&quantity.value) {
-            return Err((
+            return Some((
                 name.clone(),
-                format!("{} is outside {low} to {high}; is the unit right?", quantity.value),
+                format!("unknown particular; known: {}", known.join(", ")),
             ));
-        }
+        };
+        let is_possible = (low..=high).contains(&quantity.value);
+        let message =
+            || format!("{} is outside {low} to {high}; is the unit right?", quantity.value);
+        (!is_possible).then(|| (name.clone(), message()))
+    };
+    let found: Vec<(String, String)> =
+        particulars.iter().filter_map(one).take(MOST_FAULTS).collect();
+    match found.is_empty() {
+        true => check_block_coefficient(particulars).err().into_iter().collect(),
+        false => found,
     }
-    check_block_coefficient(particulars)
 }
 
 /// Displacement and block coefficient must tell the same story.

@@ -85,12 +85,25 @@ impl Section {
         &self,
         sources: &[&str],
     ) -> Result<BTreeMap<String, Quantity>, (String, String)> {
-        let one = |(name, written): (&String, &Written)| {
-            let quantity = resolve(written, self.source.as_deref(), sources)
-                .map_err(|e| (name.clone(), e.to_string()))?;
-            Ok((name.clone(), quantity))
-        };
-        self.values.iter().map(one).collect()
+        let (values, refused) = self.resolve_all(sources);
+        refused.into_iter().next().map_or(Ok(values), Err)
+    }
+
+    /// The values that can be read, and what is wrong with each of the others.
+    pub fn resolve_all(
+        &self,
+        sources: &[&str],
+    ) -> (BTreeMap<String, Quantity>, Vec<(String, String)>) {
+        let (mut values, mut refused) = (BTreeMap::new(), Vec::new());
+        for (name, written) in &self.values {
+            match resolve(written, self.source.as_deref(), sources) {
+                Ok(quantity) => {
+                    values.insert(name.clone(), quantity);
+                }
+                Err(error) => refused.push((name.clone(), error.to_string())),
+            }
+        }
+        (values, refused)
     }
 }
 

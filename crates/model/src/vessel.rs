@@ -169,7 +169,7 @@ impl Vessel {
     /// Reads and checks a vessel; its models are checked against their laws when they are taken.
     ///
     /// # Errors
-    /// Names file, line and field of the first thing that is wrong.
+    /// Names file, line and field of everything that is wrong.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         let blame = Blame::new(file, text);
         Self::check(blame.read()?, &blame)
@@ -184,27 +184,33 @@ impl Vessel {
     }
 
     fn check(raw: VesselFile, blame: &Blame<'_>) -> Result<Self, FileError> {
-        check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
-        check_slug(&raw.category).map_err(|e| blame.at("category", e))?;
-        if raw.scale.is_some_and(|scale| !(1.0..=1000.0).contains(&scale)) {
-            return Err(blame.at("scale", "is full-scale length over model length, from 1 to 1000"));
-        }
         let keys: Vec<&str> = raw.sources.keys().map(String::as_str).collect();
-        let at = |section: &str| {
-            let section = section.to_owned();
-            move |(name, message): (String, String)| blame.at(&format!("{section}.{name}"), message)
+        let mut faults = head(&raw);
+        let mut add = |section: &str, found: Vec<FieldError>| {
+            let at = |(name, message)| (format!("{section}.{name}"), message);
+            faults.extend(found.into_iter().map(at));
         };
-        check_licences(&raw.licences, &keys).map_err(at("licences"))?;
-        let particulars = raw.particulars.resolve(&keys).map_err(at("particulars.values"))?;
-        particulars::check(&particulars).map_err(at("particulars.values"))?;
-        let quoted_vectors = quoted(&raw, &keys).map_err(at("quoted_vectors"))?;
+        add("licences", of_licences(&raw.licences, &keys));
+        let (particulars, unread) = raw.particulars.resolve_all(&keys);
+        add("particulars.values", unread);
+        add("particulars.values", particulars::faults(&particulars));
+        let quoted_vectors = quoted(&raw, &keys).unwrap_or_else(|fault| {
+            add("quoted_vectors", vec![fault]);
+            BTreeMap::new()
+        });
         for (index, model) in raw.models.iter().enumerate() {
-            check_model(model, raw.models.iter().take(index)).map_err(at("models"))?;
+            let found = check_model(model, raw.models.iter().take(index));
+            add("models", found.err().into_iter().collect());
         }
         for (index, trials) in raw.free_running.iter().enumerate() {
-            trials.check(&keys).map_err(at(&format!("free_running.{index}")))?;
+            let found = trials.check(&keys);
+            add(&format!("free_running.{index}"), found.err().into_iter().collect());
         }
-        Ok(Self { file: raw, particulars, quoted_vectors })
+        let at = |(field, message): &FieldError| blame.at(field, message);
+        match FileError::of_all(faults.iter().map(at)) {
+            Some(error) => Err(error),
+            None => Ok(Self { file: raw, particulars, quoted_vectors }),
+        }
     }
 
     /// Its name in the zoo.
@@ -228,21 +234,31 @@ type FieldError = (String, String);
 /// The longest licence that is a name and no text, bytes.
 const LONGEST_LICENCE: usize = 80;
 
-fn check_licences(
-    licences: &BTreeMap<String, String>,
-    sources: &[&str],
-) -> Result<(), (String, String)> {
-    for (key, licence) in licences {
+/// What is wrong with the names that stand first.
+fn head(raw: &VesselFile) -> Vec<FieldError> {
+    let slug =
+        |field: &str, name: &str| Some((field.to_owned(), check_slug(name).err()?.to_string()));
+    let is_scale = raw.scale.is_none_or(|scale| (1.0..=1000.0).contains(&scale));
+    let scale = (!is_scale).then(|| {
+        let message = "is full-scale length over model length, from 1 to 1000";
+        ("scale".to_owned(), message.to_owned())
+    });
+    let slugs = [slug("name", &raw.name), slug("category", &raw.category)];
+    slugs.into_iter().chain([scale]).flatten().collect()
+}
+
+fn of_licences(licences: &BTreeMap<String, String>, sources: &[&str]) -> Vec<FieldError> {
+    let one = |(key, licence): (&String, &String)| {
         let message = if !sources.contains(&key.as_str()) {
             format!("`{key}` is not listed under `sources`")
         } else if licence.trim().is_empty() || licence.len() > LONGEST_LICENCE {
             format!("name the licence in 1 to {LONGEST_LICENCE} bytes, or say `none stated`")
         } else {
-            continue;
+            return None;
         };
-        return Err((key.clone(), message));
-    }
-    Ok(())
+        Some((key.clone(), message))
+    };
+    licences.iter().filter_map(one).collect()
 }
 
 fn quoted(
@@ -297,17 +313,51 @@ fn check_model<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::check_licences;
+    #![allow(clippy::unwrap_used)]
+    use super::{Vessel, of_licences};
+
+    /// The lines of a refusal, without the file's name.
+    fn refused(text: &str) -> Vec<String> {
+        let error = Vessel::parse("v", text).unwrap_err().to_string();
+        error.lines().map(|line| line.trim_start_matches("v:").to_owned()).collect()
+    }
+
+    #[test]
+    fn everything_that_is_missing_or_unknown_is_told() {
+        let told = refused("kind: vessel\nname: [a]\nparticulars:\n  lpp_m: 100\n");
+        let all = told.join("\n");
+        assert_eq!(told.len(), 4, "{all}");
+        for part in [
+            "2: name: is a list; text is asked for",
+            "4: particulars.lpp_m: is no field; there are source, values",
+            "title: is missing",
+            "category: is missing",
+        ] {
+            assert!(all.contains(part), "{part} in {all}");
+        }
+    }
+
+    #[test]
+    fn every_value_that_is_wrong_is_told() {
+        let told = refused(
+            "kind: vessel\nname: a\ntitle: A\ncategory: tanker!\nsources: { s: { citation: C } }\nparticulars:\n  source: s\n  values:\n    lpp_m: -100\n    lenght_m: 3\n    \
+             beam_m: { value: 20, source: t }\n",
+        );
+        let all = told.join("\n");
+        for field in ["category", "lpp_m", "lenght_m", "beam_m"] {
+            assert!(told.iter().any(|line| line.contains(field)), "{field} in {all}");
+        }
+    }
 
     #[test]
     fn a_licence_is_of_a_listed_source_and_a_name() {
         let of = |key: &str, licence: &str| {
             let licences = [(key.to_owned(), licence.to_owned())].into();
-            check_licences(&licences, &["a"]).map_err(|(field, _)| field)
+            of_licences(&licences, &["a"]).into_iter().map(|(field, _)| field).collect::<Vec<_>>()
         };
-        assert_eq!(of("a", "MIT"), Ok(()));
-        assert_eq!(of("b", "MIT"), Err("b".to_owned()));
-        assert_eq!(of("a", " "), Err("a".to_owned()));
-        assert_eq!(of("a", &"MIT".repeat(40)), Err("a".to_owned()));
+        assert!(of("a", "MIT").is_empty());
+        assert_eq!(of("b", "MIT"), ["b"]);
+        assert_eq!(of("a", " "), ["a"]);
+        assert_eq!(of("a", &"MIT".repeat(40)), ["a"]);
     }
 }

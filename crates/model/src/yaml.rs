@@ -9,8 +9,10 @@
 mod aliases;
 mod brackets;
 mod line_break;
+mod structure;
 
 pub use brackets::MAX_DEPTH;
+pub(crate) use structure::faults;
 
 use serde::de::DeserializeOwned;
 
@@ -20,6 +22,10 @@ pub const MAX_BYTES: usize = 8 << 20;
 /// Commas, brackets, colons, dashes and question marks that may each begin an item of a document,
 /// whichever of them do.
 pub const MAX_ITEMS: usize = 400_000;
+
+/// Faults of one document that are told: each is looked for in the text, and a text may have hundreds
+/// of thousands.
+pub const MOST_FAULTS: usize = 20;
 
 /// What is wrong with a text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -125,6 +125,7 @@ impl Zoo {
                     "there is no law `{law_name}`; there are {}",
                     self.laws.names().join(", ")
                 ),
+                further: Vec::new(),
             }),
         }
     }
@@ -146,7 +147,13 @@ impl Zoo {
             "there is no such ship in the zoo and no such file; the zoo has {}",
             self.vessels.names().join(", ")
         );
-        FileError { file: name.to_owned(), line: None, field: String::new(), message }
+        FileError {
+            file: name.to_owned(),
+            line: None,
+            field: String::new(),
+            message,
+            further: Vec::new(),
+        }
     }
 
     /// A law by name.

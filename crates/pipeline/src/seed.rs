@@ -111,7 +111,13 @@ fn publishing(ship: &str, error: DeriveError) -> SeedError {
 }
 
 fn damaged(file: &str, message: String) -> SeedError {
-    SeedError::Zoo(FileError { file: file.to_owned(), line: None, field: String::new(), message })
+    SeedError::Zoo(FileError {
+        file: file.to_owned(),
+        line: None,
+        field: String::new(),
+        message,
+        further: Vec::new(),
+    })
 }
 
 #[cfg(test)]

@@ -170,6 +170,7 @@ fn missing(file: &str, error: &io::Error) -> FileError {
         line: None,
         field: String::new(),
         message: format!("cannot be read: {error}"),
+        further: Vec::new(),
     }
 }
 

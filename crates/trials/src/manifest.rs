@@ -16,27 +16,27 @@ use crate::units::Kind;
 /// Reads a manifest with everything that it declares; `file_name` is only for messages.
 ///
 /// # Errors
-/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves
+/// Names line and field of everything that is wrong: the YAML, an unknown channel or unit, a path that leaves
 /// the folder, a file named twice, impossible smoothing, a declaration that cannot be.
 pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
     let written: Written =
         sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
     let file = ManifestFile::from(written);
     let manifest = &file.manifest;
-    let problem = columns(&file)
-        .or_else(|| trials(manifest))
-        .or_else(|| sensors(&file))
-        .or_else(|| conventions(manifest))
-        .or_else(|| declarations(&file.declarations));
-    match problem {
-        None => Ok(file),
-        Some(Problem { field, near, message }) => Err(FileError {
-            file: file_name.to_owned(),
-            line: line_of(text, &near),
-            field,
-            message,
-        }),
-    }
+    let problems = columns(&file)
+        .chain(trials(manifest))
+        .chain(sensors(&file))
+        .chain(conventions(manifest))
+        .chain(declarations(&file.declarations));
+    let refused = |Problem { field, near, message }: Problem| FileError {
+        file: file_name.to_owned(),
+        line: line_of(text, &near),
+        field,
+        message,
+        further: Vec::new(),
+    };
+    FileError::of_all(problems.map(refused)).map_or(Ok(()), Err)?;
+    Ok(file)
 }
 
 struct Problem {
@@ -46,9 +46,9 @@ struct Problem {
     message: String,
 }
 
-fn columns(file: &ManifestFile) -> Option<Problem> {
+fn columns(file: &ManifestFile) -> impl Iterator<Item = Problem> {
     let sensors = file.sensors.iter().flatten().flat_map(|sensor| &sensor.columns);
-    file.manifest.columns.iter().chain(sensors).find_map(|(name, mapped)| {
+    file.manifest.columns.iter().chain(sensors).filter_map(|(name, mapped)| {
         let problem = |message: String| Problem {
             field: format!("columns.{name}"),
             near: format!("{name}:"),
@@ -64,15 +64,13 @@ fn columns(file: &ManifestFile) -> Option<Problem> {
     })
 }
 
-fn trials(manifest: &Manifest) -> Option<Problem> {
-    if manifest.trials.is_empty() {
-        return Some(Problem {
-            field: "trials".into(),
-            near: "trials:".into(),
-            message: "lists no file".into(),
-        });
-    }
-    manifest.trials.iter().enumerate().find_map(|(index, trial)| {
+fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
+    let none = manifest.trials.is_empty().then(|| Problem {
+        field: "trials".into(),
+        near: "trials:".into(),
+        message: "lists no file".into(),
+    });
+    let each = manifest.trials.iter().enumerate().filter_map(|(index, trial)| {
         let earlier = &manifest.trials[..index];
         if let Some((field, message)) = stretches::problem(trial, earlier) {
             let (field, near) = (format!("trials[{index}].{field}"), trial.file.clone());
@@ -96,16 +94,16 @@ fn trials(manifest: &Manifest) -> Option<Problem> {
             near: trial.file.clone(),
             message: format!("`{}` {message}", trial.file),
         })
-    })
+    });
+    none.into_iter().chain(each)
 }
 
-fn sensors(file: &ManifestFile) -> Option<Problem> {
-    let wrong = |sensor: &&SensorFile| {
+fn sensors(file: &ManifestFile) -> impl Iterator<Item = Problem> {
+    let is_wrong = |sensor: &&SensorFile| {
         !stays_inside(&sensor.file)
             || sensor.clock_offset_s.is_some_and(|offset| !offset.is_finite())
     };
-    let sensor = file.sensors.iter().flatten().find(wrong)?;
-    Some(Problem {
+    file.sensors.iter().flatten().filter(is_wrong).map(|sensor| Problem {
         field: "trials.sensors".into(),
         near: sensor.file.clone(),
         message: format!(
@@ -116,35 +114,34 @@ fn sensors(file: &ManifestFile) -> Option<Problem> {
     })
 }
 
-fn declarations(declared: &Declarations) -> Option<Problem> {
+fn declarations(declared: &Declarations) -> impl Iterator<Item = Problem> {
     let problem = |field: &str, message: String| Problem {
         field: field.into(),
         near: format!("{}:", field.rsplit('.').next().unwrap_or(field)),
         message,
     };
     let variation = declared.variation_deg;
-    match (declared.heading, variation) {
+    let heading = match (declared.heading, variation) {
         (North::Magnetic, None) => {
             let message = "a magnetic heading needs the variation of the place; add \
-            `variation_deg`, \
-                           positive to the east";
-            return Some(problem("heading", message.into()));
+                           `variation_deg`, positive to the east";
+            Some(problem("heading", message.into()))
         }
         (North::True, Some(_)) => {
             let message = "is added to magnetic headings only; add `heading: magnetic`";
-            return Some(problem("variation_deg", message.into()));
+            Some(problem("variation_deg", message.into()))
         }
-        _ => {}
-    }
-    if variation.is_some_and(|variation| !(-180.0..=180.0).contains(&variation)) {
-        return Some(problem("variation_deg", "must be between -180 and 180".into()));
-    }
-    if let Some(antenna) = declared.antenna
-        && !(antenna.x_m.abs() < 1000.0 && antenna.y_m.abs() < 1000.0)
-    {
-        return Some(problem("antenna", "must be on the ship, in m from midship".into()));
-    }
-    declared.maximum.iter().find_map(|(name, maximum)| {
+        _ => None,
+    };
+    let is_angle = variation.is_none_or(|variation| (-180.0..=180.0).contains(&variation));
+    let angle =
+        (!is_angle).then(|| problem("variation_deg", "must be between -180 and 180".into()));
+    let is_aboard = declared
+        .antenna
+        .is_none_or(|antenna| antenna.x_m.abs() < 1000.0 && antenna.y_m.abs() < 1000.0);
+    let antenna =
+        (!is_aboard).then(|| problem("antenna", "must be on the ship, in m from midship".into()));
+    let maximum = declared.maximum.iter().filter_map(move |(name, maximum)| {
         let message = match Target::by_name(name) {
             None => format!("`{name}` is not a channel; channels are {}", channel_names()),
             Some(_) if !(maximum.value > 0.0 && maximum.value.is_finite()) => {
@@ -153,7 +150,8 @@ fn declarations(declared: &Declarations) -> Option<Problem> {
             Some(target) => Kind::of(target).factor(&maximum.unit).err()?,
         };
         Some(problem(&format!("maximum.{name}"), message))
-    })
+    });
+    [heading, angle, antenna].into_iter().flatten().chain(maximum)
 }
 
 /// Whether a path names something below the folder on any system: a backslash or colon would mean
@@ -226,6 +224,16 @@ trials:
             refused("direction: from }", "direction: from }, smoothing: { window: 4, degree: 2 }")
                 .contains("odd")
         );
+    }
+
+    #[test]
+    fn every_fault_is_told() {
+        let text = GOOD.replace("  delta:", "  rudder:").replace("zigzag/a.csv", "../a.csv");
+        let error = read_manifest_file("m.yaml", &text).unwrap_err().to_string();
+        let lines: Vec<&str> = error.lines().collect();
+        assert_eq!(lines.len(), 2, "{error}");
+        assert!(lines[0].starts_with("m.yaml:6: columns.rudder"), "{error}");
+        assert!(lines[1].starts_with("m.yaml:8: trials[0].file"), "{error}");
     }
 
     #[test]

@@ -70,6 +70,7 @@ fn refused(path: &Path, message: &str) -> FileError {
         line: None,
         field: String::new(),
         message: message.to_owned(),
+        further: Vec::new(),
     }
 }
 

@@ -80,6 +80,7 @@ pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<Appraisal>, Fil
             line: None,
             field: format!("models.{name}"),
             message,
+            further: Vec::new(),
         };
         let law = zoo.law(&model.law).ok_or_else(|| refused("its law is missing".into()))?;
         appraise(vessel, &model, law).map_err(|error| refused(error.to_string()))

@@ -13,7 +13,7 @@ use sistership_model::{Law, Model, Trial, Zoo};
 use super::branch_document::BranchDocument;
 use super::branch_text;
 use super::written::{WrittenFiles, guard, model_file, promised};
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::named;
 use crate::output::{self, count, note};
 use crate::trials;
@@ -127,14 +127,14 @@ struct Trained {
 /// # Errors
 /// The model, a trial or a setting is refused, or a file cannot be written.
 pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
-    let settings = settings(arguments)?;
-    let (model, law) = named::foundation(zoo, &arguments.model)?;
     let inputs: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
-    let out = promised(arguments.out.as_deref(), &inputs)?;
     let beside = arguments.out.as_deref().map(weights::beside);
-    let beside_file = promised(beside.as_deref(), &inputs)?;
-    let read = trials::read(&arguments.trials)?;
+    let files =
+        both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs));
+    let asked = both(settings(arguments), named::foundation(zoo, &arguments.model));
+    let read = both(files, trials::read(&arguments.trials));
+    let ((settings, (model, law)), ((out, beside_file), read)) = both(asked, read)?;
     trials::remark_other_ship(&read, &model.ship);
     let mut files = WrittenFiles { out: arguments.out.as_deref(), report: None };
     guard(&files, &read)?;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use sistership_trials::{CheckOutcome, check_path};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, all};
 use crate::output::{self, count};
 use crate::table::number;
 use crate::trials::place;
@@ -40,10 +40,8 @@ struct CheckedTrials {
 /// # Errors
 /// A path cannot be read, or a trial is refused.
 pub fn run(check: &CheckArguments) -> Result<(), Failure> {
-    let mut checked = CheckedTrials { trials: Vec::new() };
-    for path in &check.trials {
-        checked.trials.extend(check_path(path)?);
-    }
+    let each = check.trials.iter().map(|path| check_path(path).map_err(Failure::from));
+    let checked = CheckedTrials { trials: all(each)?.concat() };
     output::print(check.json, &checked, || text(&checked.trials))?;
     if checked.trials.iter().all(CheckOutcome::accepted) { Ok(()) } else { Err(Failure::Told) }
 }

@@ -1,16 +1,15 @@
 //! `sistership compare`: models side by side.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
+use sistership_model::Zoo;
 use sistership_model::trial::{Channel, Trial};
-use sistership_model::{Law, Model, Zoo};
 use sistership_pipeline::comparison::{
     Compared, ComparedTrial, Comparison, TrialError, check, compare,
 };
 
-use crate::failure::Failure;
+use crate::failure::{Failure, all, both};
 use crate::table::{TextTable, number, optional};
 use crate::{named, output, trials};
 
@@ -45,9 +44,8 @@ pub fn run(zoo: &Zoo, asked: &CompareArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let names: Vec<&str> = asked.models.iter().map(String::as_str).collect();
     check(&names).map_err(|error| Failure::Call(error.to_string()))?;
-    let models: Vec<(Model, Arc<Law>)> =
-        names.iter().map(|name| named::model(zoo, name)).collect::<Result<_, _>>()?;
-    let read = if asked.trials.is_empty() { Vec::new() } else { trials::read(&asked.trials)? };
+    let models = all(names.iter().map(|name| named::model(zoo, name)));
+    let (models, read) = both(models, trials::read(&asked.trials))?;
     let compared: Vec<Compared<'_>> = names
         .iter()
         .zip(&models)

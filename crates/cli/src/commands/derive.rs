@@ -78,7 +78,7 @@ pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
 }
 
 fn blamed(path: &Path, field: String, message: String) -> FileError {
-    FileError { file: path.display().to_string(), line: None, field, message }
+    FileError { file: path.display().to_string(), line: None, field, message, further: Vec::new() }
 }
 
 fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> String {

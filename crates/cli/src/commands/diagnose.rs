@@ -13,7 +13,7 @@ use sistership_report::{DiagnosisInput, render_diagnosis};
 
 use super::diagnose_text;
 use super::written::{WrittenFiles, guard, model_file, promised};
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::files::PromisedFile;
 use crate::named;
 use crate::output::{self, count, note};
@@ -86,17 +86,15 @@ struct DiagnoseDocument<'a> {
 /// # Errors
 /// The model, a trial or a setting is refused, or a file cannot be written.
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
-    let settings = settings(zoo, arguments)?;
-    let (model, law) = named::model(zoo, &arguments.model)?;
-    if model.branch.is_some() {
-        let error = PlantError::Branch(model.name);
-        return Err(Failure::Refused(format!("{}: {error}", arguments.model)));
-    }
     let named: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
-    let out = promised(arguments.out.as_deref(), &named)?;
-    let report = promised(arguments.report.as_deref(), &named)?;
-    let read = trials::read(&arguments.trials)?;
+    let files = both(
+        promised(arguments.out.as_deref(), &named),
+        promised(arguments.report.as_deref(), &named),
+    );
+    let asked = both(settings(zoo, arguments), model(zoo, &arguments.model));
+    let read = both(files, trials::read(&arguments.trials));
+    let ((settings, (model, law)), ((out, report), read)) = both(asked, read)?;
     trials::remark_other_ship(&read, &model.ship);
     note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
     let mut files =
@@ -110,6 +108,16 @@ pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     files.out = files.out.filter(|_| kept);
     let document = DiagnoseDocument { diagnosis: printed(&diagnosis)?, files };
     output::print(arguments.json, &document, || diagnose_text::text(&diagnosis, &model, &files))
+}
+
+/// A model without a learned branch.
+fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+    let (model, law) = named::model(zoo, name)?;
+    if model.branch.is_some() {
+        let error = PlantError::Branch(model.name);
+        return Err(Failure::Refused(format!("{name}: {error}")));
+    }
+    Ok((model, law))
 }
 
 /// What can be seen in the call alone is a call that is wrong.

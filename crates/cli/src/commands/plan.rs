@@ -9,7 +9,7 @@ use sistership_plan::{Instruments, Plan, PlanError, PlanRequest, plan};
 
 use super::estimate::estimate_of;
 use super::plan_text;
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::trials::{self, ReadTrial};
 use crate::values::positive;
 use crate::{named, output};
@@ -52,8 +52,7 @@ pub struct PlanArguments {
 /// # Errors
 /// The ship, a trial or an effect is refused, or nothing fits into the time.
 pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
-    let (model, law) = model(zoo, &asked.ship)?;
-    let read = if asked.trials.is_empty() { Vec::new() } else { trials::read(&asked.trials)? };
+    let ((model, law), read) = both(model(zoo, &asked.ship), trials::read(&asked.trials))?;
     trials::remark_other_ship(&read, &model.ship);
     let plan = planned(zoo, asked, (&model, &law), &read)?;
     output::print(asked.json, &plan, || plan_text::text(&plan))

@@ -20,7 +20,7 @@ use super::refine_search::{Start, searched};
 use super::refine_settings::{held_out, settings_file};
 use super::refine_text;
 use super::written::{WrittenFiles, guard, model_file, promised};
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
@@ -139,16 +139,18 @@ struct RefineDocument<'a> {
 /// # Errors
 /// The ship, the source, a trial or the refinement is refused, or a file cannot be written.
 pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
-    let target = named::ship(zoo, &arguments.ship)?;
-    let mut settings = settings(arguments)?;
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
-    let given =
-        named.map(|source| named::foundation(zoo, source)).transpose()?.map(|(model, _)| model);
-    let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose()?;
+    let given = named.map(|source| named::foundation(zoo, source)).transpose();
+    let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose();
     let inputs = named_files(arguments);
-    let out = promised(arguments.out.as_deref(), &inputs)?;
-    let report = promised(arguments.report.as_deref(), &inputs)?;
-    let read = trials::read(&arguments.trials)?;
+    let files = both(
+        promised(arguments.out.as_deref(), &inputs),
+        promised(arguments.report.as_deref(), &inputs),
+    );
+    let target = both(named::ship(zoo, &arguments.ship), settings(arguments));
+    let start = both(both(target, both(given, law)), both(files, trials::read(&arguments.trials)));
+    let (((target, mut settings), (given, law)), ((out, report), read)) = start?;
+    let given = given.map(|(model, _)| model);
     trials::remark_other_ship(&read, target.name());
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
     let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };

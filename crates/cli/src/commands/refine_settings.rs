@@ -20,6 +20,7 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
         line,
         field,
         message,
+        further: Vec::new(),
     };
     let read: Result<Settings, _> = sistership_model::yaml::read(&text);
     let settings = read.map_err(|error| FileError::of_yaml(&path.display().to_string(), error))?;

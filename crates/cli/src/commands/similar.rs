@@ -7,7 +7,7 @@ use sistership_model::{Vessel, Zoo};
 use sistership_sources::similarity::{Definition, RankedSource};
 use sistership_sources::source::{Similarity, similar};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::table::{TextTable, number};
 use crate::values::definition;
 use crate::{named, output, trials};
@@ -41,8 +41,8 @@ pub struct SimilarArguments {
 /// # Errors
 /// The ship or a trial is refused.
 pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
-    let target = named::ship(zoo, &similar_to.ship)?;
-    let read = trials::read(&similar_to.trials)?;
+    let asked = both(named::ship(zoo, &similar_to.ship), trials::read(&similar_to.trials));
+    let (target, read) = asked?;
     trials::remark_other_ship(&read, target.name());
     let similarity = similar(zoo, &target, similar_to.vector, &trials::trials(&read));
     output::print(similar_to.json, &similarity, || text(&target, &similarity))

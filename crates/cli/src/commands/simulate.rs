@@ -10,7 +10,7 @@ use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Zoo};
 
 use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total};
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::output::{self, count, note};
 use crate::table::{TextTable, number};
 use crate::trials::{self, ReadTrial};
@@ -71,8 +71,8 @@ struct SimulateDocument<'a> {
 /// The model or a trial is refused, a channel is missing, or a simulation leaves the physical
 /// range.
 pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
-    let (model, law) = named::model(zoo, &simulate.model)?;
-    let read = trials::read(&simulate.trials)?;
+    let asked = both(named::model(zoo, &simulate.model), trials::read(&simulate.trials));
+    let ((model, law), read) = asked?;
     trials::remark_other_ship(&read, &model.ship);
     let files = promised(simulate, &read)?;
     let runs = simulate_all(simulate, &model, &law, &read)?;

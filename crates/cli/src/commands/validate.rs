@@ -8,7 +8,7 @@ use sistership_model::Zoo;
 use sistership_report::render_validation;
 use sistership_validation::{TrialOfShip, Validation, validate};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, both};
 use crate::files::PromisedFile;
 use crate::table::{TextTable, number, optional};
 use crate::{named, output, trials};
@@ -52,13 +52,13 @@ pub struct ValidateArguments {
 /// The model, the ship or a trial is refused.
 pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
-    let (model, law) = named::model(zoo, &asked.model)?;
-    let vessel = named::ship(zoo, &asked.ship)?;
     let inputs: Vec<PathBuf> = [&asked.model, &asked.ship].map(PathBuf::from).to_vec();
-    let page = asked.report.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
+    let page = asked.report.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose();
     let sampling = Sampling { samples: asked.draws, ..Sampling::default() };
-    sampling.check().map_err(|message| Failure::Call(format!("--draws: {message}")))?;
-    let read = if asked.trials.is_empty() { Vec::new() } else { trials::read(&asked.trials)? };
+    let checked = sampling.check().map_err(|message| Failure::Call(format!("--draws: {message}")));
+    let model = both(named::model(zoo, &asked.model), named::ship(zoo, &asked.ship));
+    let given = both(both(page, checked), trials::read(&asked.trials));
+    let (((model, law), vessel), ((page, ()), read)) = both(model, given)?;
     let of_ship: Vec<TrialOfShip<'_>> = read
         .iter()
         .map(|read| TrialOfShip { name: &read.trial.name, trial: &read.trial, fitted: false })

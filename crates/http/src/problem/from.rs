@@ -44,9 +44,14 @@ impl From<StoreError> for Problem {
 
 impl From<FileError> for Problem {
     fn from(error: FileError) -> Self {
-        let field = (!error.field.is_empty()).then(|| error.field.clone());
-        let fault = Fault { field, row: error.line, column: None, message: error.message.clone() };
-        Self::new(StatusCode::UNPROCESSABLE_ENTITY, error.to_string()).with(fault)
+        let fault = |error: &FileError| Fault {
+            field: (!error.field.is_empty()).then(|| error.field.clone()),
+            row: error.line,
+            column: None,
+            message: error.message.clone(),
+        };
+        let errors = std::iter::once(&error).chain(&error.further).map(fault).collect();
+        Self { errors, ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, error.to_string()) }
     }
 }
 
@@ -252,6 +257,7 @@ mod tests {
             line: Some(3),
             field: "name".into(),
             message: "is taken".into(),
+            further: Vec::new(),
         };
         assert_eq!(Problem::from(file).errors[0].row, Some(3));
         let stale =

@@ -121,3 +121,17 @@ fn no_construct_takes_more_than_its_share() {
         assert!(took < Duration::from_secs(4), "{what}: {took:?}: {read:?}");
     }
 }
+
+#[test]
+fn a_thousand_faults_are_told_in_time() {
+    let began = Instant::now();
+    let fields: String = (0..90_000).map(|k| format!("f{k}: 1\n")).collect();
+    let error = crate::Vessel::parse("v", &format!("kind: vessel\n{fields}")).unwrap_err();
+    assert!(error.further.len() < 40 && error.to_string().len() < 20_000);
+    let values: String = (0..90_000).map(|k| format!("    f{k}: 1\n")).collect();
+    let head = "kind: vessel\nname: a\ntitle: A\ncategory: tanker\nsources: { s: { citation: C } }";
+    let text = format!("{head}\nparticulars:\n  source: s\n  values:\n{values}");
+    let error = crate::Vessel::parse("v", &text).unwrap_err();
+    assert_eq!(error.further.len(), MOST_FAULTS - 1);
+    assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
+}

@@ -96,6 +96,7 @@ fn entry<T>(file: &'static File<'static>) -> Result<(String, Entry<T>), FileErro
         line: None,
         field: String::new(),
         message: "is no text".to_owned(),
+        further: Vec::new(),
     };
     let path = file.path().to_str().ok_or_else(no_text)?;
     let name = file.path().file_stem().and_then(|stem| stem.to_str()).ok_or_else(no_text)?;

@@ -34,7 +34,11 @@ fn the_fault_is_named_with_its_place() {
             "means something else in formulas",
         ),
         ("n: { kind: propeller }", "2n: { kind: propeller }", "letters, digits and underscores"),
-        ("n: { kind: propeller }", "n: { kind: sail }", "unknown variant `sail`"),
+        (
+            "n: { kind: propeller }",
+            "n: { kind: sail }",
+            "actuators.n.kind: is `sail`; there are `propeller`",
+        ),
         (
             "n: { kind: propeller }",
             "n: { kind: propeller, angle: plain }",
@@ -76,7 +80,7 @@ fn the_fault_is_named_with_its_place() {
             "{ port: { when: [v < 0], meaning: drifting } }",
             "submodels.port: breaks the port/starboard",
         ),
-        ("actuators:", "actors:", "unknown field `actors`"),
+        ("actuators:", "actors:", "actors: is no field"),
     ];
     for (from, to, message) in cases {
         let error = refused(from, to);

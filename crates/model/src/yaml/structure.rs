@@ -1,0 +1,187 @@
+//! Everything that is wrong with the shape of a document, by the schema of its type: the parser
+//! itself stops at the first.
+
+use schemars::JsonSchema;
+use serde_json::{Map, Value};
+
+use super::MOST_FAULTS;
+
+/// A dotted path and what is wrong there.
+pub type ShapeFault = (String, String);
+
+/// Where a text does not have the shape of its type, of many places the first; nothing where the schema finds nothing, or the
+/// text is no YAML.
+pub fn faults<T: JsonSchema>(text: &str) -> Vec<ShapeFault> {
+    let Ok(document) = serde_yaml::from_str::<Value>(text) else { return Vec::new() };
+    let schema = schemars::schema_for!(T);
+    let shape = Shape { root: schema.as_value() };
+    shape.faults(schema.as_value(), &document, "")
+}
+
+/// The keywords that schemas derived from types use.
+struct Shape<'a> {
+    root: &'a Value,
+}
+
+impl Shape<'_> {
+    fn faults(&self, schema: &Value, value: &Value, path: &str) -> Vec<ShapeFault> {
+        if let Some(target) = schema["$ref"].as_str() {
+            let target = target.strip_prefix('#').and_then(|pointer| self.root.pointer(pointer));
+            return target.map_or_else(Vec::new, |schema| self.faults(schema, value, path));
+        }
+        if let Some(words) = words(schema) {
+            let is_known = words.contains(&value);
+            return fault(!is_known, path, || unknown(value, words.iter().copied()));
+        }
+        let choice = schema["anyOf"].as_array().or_else(|| schema["oneOf"].as_array());
+        if let Some(choice) = choice {
+            return self.of_choice(choice, value, path);
+        }
+        if !has_type(schema, value) {
+            let message = || format!("is {}; {} is asked for", kind(value), expected(schema));
+            return fault(true, path, message);
+        }
+        match value {
+            Value::Object(fields) => self.of_object(schema, fields, path),
+            Value::Array(items) => {
+                let of = |(place, item)| self.faults(&schema["items"], item, &below(path, place));
+                items.iter().enumerate().flat_map(of).take(MOST_FAULTS).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// What may be one of several: the faults of the one that its tag names, or that comes nearest.
+    fn of_choice(&self, choice: &[Value], value: &Value, path: &str) -> Vec<ShapeFault> {
+        let each = choice.iter().map(|schema| self.faults(schema, value, path));
+        let mut each: Vec<Vec<ShapeFault>> = each.collect();
+        if each.iter().any(Vec::is_empty) {
+            return Vec::new();
+        }
+        let tags = choice.iter().filter_map(|schema| self.tag(schema));
+        let tags: Vec<(&str, &Value)> = tags.collect();
+        if let Some(&(name, _)) = tags.first()
+            && let Some(given) = value.get(name)
+        {
+            let at = tags.iter().position(|(_, word)| *word == given);
+            return match at.filter(|_| tags.len() == each.len()) {
+                Some(at) => each.swap_remove(at),
+                None => vec![(below(path, name), unknown(given, tags.iter().map(|tag| tag.1)))],
+            };
+        }
+        let deepest = |faults: &Vec<ShapeFault>| faults.iter().map(|fault| fault.0.len()).max();
+        each.into_iter().max_by_key(deepest).unwrap_or_default()
+    }
+
+    /// The field by whose word a choice is told from others, and that word.
+    fn tag<'v>(&'v self, schema: &'v Value) -> Option<(&'v str, &'v Value)> {
+        let target = schema["$ref"].as_str().and_then(|target| target.strip_prefix('#'));
+        let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(schema);
+        let mut fields = schema["properties"].as_object()?.iter();
+        fields.find_map(|(name, field)| Some((name.as_str(), field.get("const")?)))
+    }
+
+    fn of_object(
+        &self,
+        schema: &Value,
+        fields: &Map<String, Value>,
+        path: &str,
+    ) -> Vec<ShapeFault> {
+        let (known, others) = (&schema["properties"], &schema["additionalProperties"]);
+        let names = known.as_object().into_iter().flat_map(Map::keys);
+        let names: Vec<&str> = names.map(String::as_str).collect();
+        let mut found = Vec::new();
+        for (name, value) in fields {
+            if found.len() >= MOST_FAULTS {
+                break;
+            }
+            let at = below(path, name);
+            match known.get(name) {
+                Some(schema) => found.extend(self.faults(schema, value, &at)),
+                None if *others == Value::Bool(false) => {
+                    found.push((at, format!("is no field; there are {}", names.join(", "))));
+                }
+                None if others.is_object() => found.extend(self.faults(others, value, &at)),
+                None => {}
+            }
+        }
+        let required = schema["required"].as_array().into_iter().flatten();
+        let missing = required.filter_map(Value::as_str).filter(|name| !fields.contains_key(*name));
+        found.extend(missing.map(|name| (below(path, name), "is missing".to_owned())));
+        found
+    }
+}
+
+fn fault(is_wrong: bool, path: &str, message: impl Fn() -> String) -> Vec<ShapeFault> {
+    if is_wrong { vec![(path.to_owned(), message())] } else { Vec::new() }
+}
+
+fn below(path: &str, name: impl std::fmt::Display) -> String {
+    if path.is_empty() { name.to_string() } else { format!("{path}.{name}") }
+}
+
+/// The words of which one is asked for, if any are; such as are described stand one by one.
+fn words(schema: &Value) -> Option<Vec<&Value>> {
+    let one = schema.get("const").map(|word| vec![word]);
+    let described = || schema["oneOf"].as_array()?.iter().map(|one| one.get("const")).collect();
+    let all = || schema["enum"].as_array().map(|words| words.iter().collect());
+    one.or_else(all).or_else(described)
+}
+
+fn unknown<'v>(value: &Value, words: impl Iterator<Item = &'v Value>) -> String {
+    let known: Vec<String> = words.map(said).collect();
+    format!("is {}; there are {}", said(value), known.join(", "))
+}
+
+fn types(schema: &Value) -> Vec<&str> {
+    match &schema["type"] {
+        Value::String(one) => vec![one],
+        Value::Array(all) => all.iter().filter_map(Value::as_str).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn has_type(schema: &Value, value: &Value) -> bool {
+    let is = |name: &&str| match *name {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "integer" => value.is_i64() || value.is_u64(),
+        // YAML has numbers that JSON has not: they come as null.
+        "number" => value.is_number() || value.is_null(),
+        "boolean" => value.is_boolean(),
+        _ => value.is_null(),
+    };
+    let types = types(schema);
+    types.is_empty() || types.iter().any(is)
+}
+
+fn expected(schema: &Value) -> String {
+    let named = |name: &&str| match *name {
+        "object" => "a mapping",
+        "array" => "a list",
+        "string" => "text",
+        "integer" => "a whole number",
+        "number" => "a number",
+        "boolean" => "true or false",
+        _ => "nothing",
+    };
+    types(schema).iter().map(named).collect::<Vec<_>>().join(" or ")
+}
+
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Object(_) => "a mapping".to_owned(),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Null => "empty".to_owned(),
+        other => said(other),
+    }
+}
+
+/// A value as a person reads it.
+fn said(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("`{text}`"),
+        other => other.to_string(),
+    }
+}
