@@ -148,7 +148,7 @@ fn climb(
             progress(begin + span * share, &format!("{named}: {what}"))
         };
         let begun = Instant::now();
-        let settings = settings_on(search.settings, rung, None);
+        let settings = settings_on(&search.entrants[entrant].settings(search.settings), rung, None);
         let request = request(search, entrant, &settings);
         let weighed = weigh((&request, known), extent, &told);
         let weighed = on_rung(rung, weighed)?;
@@ -177,7 +177,8 @@ fn descend(
     let named = search.entrants[entrant].name();
     let told =
         |fraction: f64, what: &str| progress(begin + share * fraction, &format!("{named}: {what}"));
-    let settings = settings_on(search.settings, Rung::Trajectory, ridge_of(tried, entrant));
+    let own = search.entrants[entrant].settings(search.settings);
+    let settings = settings_on(&own, Rung::Trajectory, ridge_of(tried, entrant));
     let (begun, place) = (Instant::now(), tried.len());
     let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
         let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
@@ -317,11 +318,12 @@ fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineErr
     let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
     let lines = lines.map(|(place, one)| line(search, one, least, place == best)).collect();
     let entrant = tried[best].entrant;
+    let own = search.entrants[entrant].settings(search.settings);
     let settings = match tried[best].rung {
-        Rung::Weak => settings_of(search.settings, tried[best].weighed.ridge),
+        Rung::Weak => settings_of(&own, tried[best].weighed.ridge),
         rung => {
             let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
-            settings_on(search.settings, rung, ridge_of(&tried[..below], entrant))
+            settings_on(&own, rung, ridge_of(&tried[..below], entrant))
         }
     };
     let refinement = tried[best].refinement.take();

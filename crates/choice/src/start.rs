@@ -52,7 +52,8 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     let similarity = similar_with(zoo, target, None, &fitted, champions);
-    let entrants = entrants(zoo, target, &sources(asked, &similarity), &fitted);
+    let with_estimate = fitted.len() < SEARCH.few;
+    let entrants = entrants(zoo, target, (&sources(asked, &similarity), with_estimate), &fitted);
     let winner = search(&Search { target, entrants: &entrants, trials, settings }, progress)?;
     let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
     Ok(Start { entrant, settings: winner.settings, similarity, ladder: winner.ladder, refinement })

@@ -52,11 +52,14 @@ pub fn both<A, B>(a: Result<A, Failure>, b: Result<B, Failure>) -> Result<(A, B)
 
 /// All of many, or every reason why not.
 pub fn all<T>(each: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>, Failure> {
-    each.fold(Ok(Vec::new()), |all, one| {
-        let (mut all, one) = both(all, one)?;
-        all.push(one);
-        Ok(all)
-    })
+    let mut all = Ok(Vec::new());
+    for one in each {
+        all = both(all, one).map(|(mut all, one)| {
+            all.push(one);
+            all
+        });
+    }
+    all
 }
 
 impl From<FileError> for Failure {

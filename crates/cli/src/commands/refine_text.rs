@@ -21,13 +21,11 @@ pub fn text(
 ) -> String {
     let ranked = ranking
         .map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
-    let head = format!(
-        "{} refined from {} ({}) by `{}`\n\n",
-        refinement.ship,
-        source.name,
-        worth(source.status),
-        refinement.method
-    );
+    let from = match refinement.source == source.name {
+        true => format!("{} ({})", source.name, worth(source.status)),
+        false => refinement.source.clone(),
+    };
+    let head = format!("{} refined from {from} by `{}`\n\n", refinement.ship, refinement.method);
     let restart = refinement
         .settings
         .restart_s

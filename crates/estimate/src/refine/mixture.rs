@@ -14,6 +14,7 @@ use super::blocks::Blocks;
 use super::envelope::OperatingEnvelope;
 use super::measure::PriorMeasure;
 use super::outcome::RefineError;
+use super::settings::{Prior, Settings};
 use super::thresholds::{MIXTURE, Misfit};
 
 /// What estimates are made of.
@@ -91,6 +92,19 @@ pub(super) fn mixed(
     Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
 }
 
+/// What the source is called where the estimate stands in its place.
+pub(super) const NAME: &str = "the estimate from particulars";
+
+/// Whether it does.
+pub(super) fn is_alone(settings: &Settings) -> bool {
+    settings.prior == Prior::Mixture && settings.mixture_positions == [ESTIMATE]
+}
+
+/// What the estimate says, named as such.
+pub(super) fn alone(envelope: OperatingEnvelope) -> OperatingEnvelope {
+    OperatingEnvelope { mixed: Some(words(&[1.0; 4])), ..envelope }
+}
+
 /// The estimate from the ship's particulars, and its law.
 ///
 /// # Errors
@@ -151,6 +165,9 @@ fn moved(
 
 /// The shares for people.
 fn words(shares: &[f64; 4]) -> String {
+    if shares.iter().all(|share| *share == 1.0) {
+        return "the prior is the estimate from particulars in place of the source".to_owned();
+    }
     let one = |axis: Axis| format!("{axis} {:.2}", shares[axis as usize]);
     let shares = [Axis::X, Axis::Y, Axis::N].map(one).join(", ");
     format!(

@@ -154,7 +154,11 @@ fn with_candidates<T>(
         steer_as_recorded(&mut transferred, request.target, &whole, window);
     }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
-    let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
+    let source = match mixture::is_alone(&settings) {
+        true => mixture::NAME,
+        false => request.source.name.as_str(),
+    };
+    let (law, watch) = (request.law, Some(watch));
     let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.economical);
     let deviations = standard_deviations(&training);
     let problem = Problem {
@@ -214,6 +218,7 @@ fn starting(
         let (estimated, own) = mixture::estimated(target, model.speed_m_s)?;
         let of = (whole, &SourceEnvelopes::default());
         (model, envelope) = across::begun((&estimated, own), law, target, approach, of)?;
+        envelope = Arc::new(mixture::alone(Arc::unwrap_or_clone(envelope)));
     } else if is_mixture {
         envelope = Arc::new(mixture::mixed(&envelope, target, model.speed_m_s, (whole, position))?);
     }
