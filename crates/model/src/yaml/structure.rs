@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde_json::{Map, Value};
 
-use super::MOST_FAULTS;
+use super::{MOST_FAULTS, read};
 
 /// A dotted path and what is wrong there.
 pub type ShapeFault = (String, String);
@@ -12,7 +12,8 @@ pub type ShapeFault = (String, String);
 /// Where a text does not have the shape of its type, of many places the first; nothing where the schema finds nothing, or the
 /// text is no YAML.
 pub fn faults<T: JsonSchema>(text: &str) -> Vec<ShapeFault> {
-    let Ok(document) = serde_yaml::from_str::<Value>(text) else { return Vec::new() };
+    // By the door: what may not be parsed is not.
+    let Ok(document) = read::<Value>(text) else { return Vec::new() };
     let schema = schemars::schema_for!(T);
     let shape = Shape { root: schema.as_value() };
     shape.faults(schema.as_value(), &document, "")

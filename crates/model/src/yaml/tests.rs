@@ -135,3 +135,12 @@ fn a_thousand_faults_are_told_in_time() {
     assert_eq!(error.further.len(), MOST_FAULTS - 1);
     assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
 }
+
+#[test]
+fn what_may_not_be_parsed_is_not_parsed_for_its_shape() {
+    let began = Instant::now();
+    let text = format!("kind: vessel\nname: {}", "{a: ".repeat(50_000));
+    let error = crate::Vessel::parse("v", &text).unwrap_err();
+    assert!(error.further.is_empty() && error.message.contains("deep"), "{error}");
+    assert!(began.elapsed() < Duration::from_secs(2), "{:?}", began.elapsed());
+}
