@@ -18,7 +18,8 @@ use super::thresholds::THRESHOLDS;
 /// The name of time among the variables: what begins or ends is told by it.
 const TIME: &str = "t";
 
-/// What is left of each acceleration in which something is unexplained, by what it depends on.
+/// What is left of each acceleration in which something is unexplained or from which it comes, by
+/// what it depends on.
 pub(super) fn of_remainder(
     trials: &[&Trial],
     residuals: &[ResidualSeries],
@@ -36,6 +37,8 @@ pub(super) fn of_remainder(
     let mut channels: Vec<&str> = residuals.iter().map(|series| &*series.channel).collect();
     channels.sort_unstable();
     channels.dedup();
+    // What it comes from is read first.
+    channels.sort_by_key(|channel| !is_origin(channel));
     channels
         .into_iter()
         .filter(|channel| is_left(channel) || is_origin(channel))
@@ -209,6 +212,22 @@ mod tests {
         let told = of_remainder(&[&first, &second], &[one, other], (&[psi], &[])).remove(0);
         let time = &told.variables[0];
         assert!(time.variable == "t" && time.at.iter().all(|t| *t < 480.0), "{time:?}");
+    }
+
+    #[test]
+    fn the_origin_is_asked_first() {
+        let (trial, yaw) = case(|delta, _, _| delta);
+        let sway = ResidualSeries { channel: "v".into(), ..yaw.clone() };
+        let origin = RemainderOrigin {
+            of: OriginKind::Acceleration,
+            channel: "v".into(),
+            evidence: 9.0,
+            first_in: 1,
+            trials: 1,
+        };
+        let told = of_remainder(&[&trial], &[yaw, sway], (&[stretch()], &[origin]));
+        let channels: Vec<&str> = told.iter().map(|one| &*one.channel).collect();
+        assert_eq!(channels, ["v", "r"]);
     }
 
     #[test]

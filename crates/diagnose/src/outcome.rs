@@ -39,7 +39,7 @@ pub struct Diagnosis {
     /// Where what no effect explains comes from, the most evident first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub origins: Vec<RemainderOrigin>,
-    /// On what depends what is left there, by acceleration.
+    /// On what depends what is left there, by acceleration, that of the first origin first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub depends_on: Vec<RemainderDependence>,
     /// How small each effect that was not found would still have been shown, with a probability of
