@@ -187,7 +187,7 @@ fn descend(
     };
     let is_taken = |all: &[Weighed]| {
         note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
-        Ok(chosen_of(tried) == Some(place))
+        Ok(chosen_of(search, tried) == Some(place))
     };
     let request = request(search, entrant, &settings);
     let made = refine_wanted((&request, known), is_taken, &told);
@@ -232,8 +232,9 @@ fn on_rung(rung: Rung, weighed: Result<Vec<Weighed>, RefineError>) -> Result<Wei
 }
 
 /// The place of what is taken of all that was tried.
-fn chosen_of(tried: &[Tried]) -> Option<usize> {
-    chosen(&tried.iter().map(|one| &one.weighed).collect::<Vec<_>>())
+fn chosen_of(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
+    let has_source = |one: &Tried| search.entrants[one.entrant].source_law.is_some();
+    chosen(&tried.iter().map(|one| (&one.weighed, has_source(one))).collect::<Vec<_>>())
 }
 
 /// The weak form that an entrant had.
@@ -309,7 +310,7 @@ fn leading(tried: &[Tried]) -> Vec<usize> {
 }
 
 fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {
-    let best = chosen_of(&tried).ok_or_else(|| {
+    let best = chosen_of(search, &tried).ok_or_else(|| {
         let reasons: Vec<String> =
             tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
         RefineError::Diverged(reasons.join("; "))
