@@ -335,6 +335,9 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
     let entrant = &search.entrants[tried.entrant];
     let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
     let outcome = match chosen {
+        true if entrant.source_law.is_some() => {
+            "the simplest with a source within one standard error of the least error".to_owned()
+        }
         true => "the simplest within one standard error of the least error".to_owned(),
         false => format!("{ratio:.2} times the least error"),
     };
