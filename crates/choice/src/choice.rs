@@ -45,11 +45,11 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
 /// What was weighed, and whether a source holds it where no trial reaches.
 pub type Candidate<'a> = (&'a Weighed, bool);
 
-/// The place of what is taken: of all that is within one standard error of the least error, one with
-/// a source before one without, then that with the fewest coefficients fitted, and among equals the
-/// lesser error (Breiman et al. 1984, Classification and regression trees, section 3.4.3). Without a
-/// source nothing holds a model between and beyond the trials, which errors on trials left out do not
-/// tell (docs/evidence/plain.md). `None` where every simulation diverged.
+/// The place of what is taken: of all that is within one standard error of the least error, one
+/// with a source before one without, then that with the fewest coefficients fitted, and among
+/// equals the lesser error (Breiman et al. 1984, Classification and regression trees, section
+/// 3.4.3). Without a source nothing holds a model between and beyond the trials, which errors on
+/// trials left out do not tell (docs/evidence/plain.md). `None` where every simulation diverged.
 pub fn chosen(tried: &[Candidate<'_>]) -> Option<usize> {
     let sails = |place: &usize| tried[*place].0.error.is_some_and(f64::is_finite);
     let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();

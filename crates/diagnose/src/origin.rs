@@ -2,8 +2,8 @@
 //! instrument.
 //!
 //! A force in one direction shows in every reading that follows from it, in the heading before the
-//! sway velocity where the ship turns easily. So each acceleration alone, and each instrument alone,
-//! is taken to be more random than it is known to be, and the one that makes the trials most
+//! sway velocity where the ship turns easily. So each acceleration alone, and each instrument
+//! alone, is taken to be more random than it is known to be, and the one that makes the trials most
 //! probable comes first: the likelihood of a Gauss-Markov model by prediction errors (Maybeck 1979,
 //! Stochastic models, estimation and control, vol. 1, section 5.6; Schweppe 1965, IEEE Trans.
 //! Inform. Theory 11, 61-70), maximised over one standard deviation.
@@ -38,8 +38,8 @@ struct Alternative {
     gains: Vec<f64>,
 }
 
-/// Origins by their evidence, the most evident first: those above `least`. Of many trials that leave
-/// something, those are asked that leave most.
+/// Origins by their evidence, the most evident first: those above `least`. Of many trials that
+/// leave something, those are asked that leave most.
 pub(super) fn origins(
     settled: &ConvergedChoice<'_>,
     remaining: &[Unexplained],

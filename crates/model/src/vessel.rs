@@ -340,7 +340,8 @@ mod tests {
     #[test]
     fn every_value_that_is_wrong_is_told() {
         let told = refused(
-            "kind: vessel\nname: a\ntitle: A\ncategory: tanker!\nsources: { s: { citation: C } }\nparticulars:\n  source: s\n  values:\n    lpp_m: -100\n    lenght_m: 3\n    \
+            "kind: vessel\nname: a\ntitle: A\ncategory: tanker!\nsources: { s: { citation: C } }\n\
+             particulars:\n  source: s\n  values:\n    lpp_m: -100\n    lenght_m: 3\n    \
              beam_m: { value: 20, source: t }\n",
         );
         let all = told.join("\n");

@@ -23,8 +23,8 @@ pub const MAX_BYTES: usize = 8 << 20;
 /// whichever of them do.
 pub const MAX_ITEMS: usize = 400_000;
 
-/// Faults of one document that are told: each is looked for in the text, and a text may have hundreds
-/// of thousands.
+/// Faults of one document that are told: each is looked for in the text, and a text may have
+/// hundreds of thousands.
 pub const MOST_FAULTS: usize = 20;
 
 /// What is wrong with a text.

@@ -16,8 +16,8 @@ use crate::units::Kind;
 /// Reads a manifest with everything that it declares; `file_name` is only for messages.
 ///
 /// # Errors
-/// Names line and field of everything that is wrong: the YAML, an unknown channel or unit, a path that leaves
-/// the folder, a file named twice, impossible smoothing, a declaration that cannot be.
+/// Names line and field of everything that is wrong: the YAML, an unknown channel or unit, a path
+/// that leaves the folder, a file named twice, impossible smoothing, a declaration that cannot be.
 pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
     let written: Written =
         sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;

@@ -1,8 +1,9 @@
 //! Each ship of the zoo in turn is a stranger, of which particulars alone are known: what do the
 //! other ships' models, carried over, say of its manoeuvres, and is the most similar one the best?
 //! `cargo run --release -p sistership-tests --example strangers`; `-- misfit` prints how far
-//! sources and estimates are from the truth in accelerations, `-- work` and `-- judgement` what one, two
-//! and four trials make of each prior, `-- drawn 3001 3041` the same of ships that these seeds draw. docs/evidence/strangers.md has what came out.
+//! sources and estimates are from the truth in accelerations, `-- work` and `-- judgement` what
+//! one, two and four trials make of each prior, `-- drawn 3001 3041` the same of ships that these
+//! seeds draw. docs/evidence/strangers.md has what came out.
 
 #![allow(clippy::unwrap_used)]
 

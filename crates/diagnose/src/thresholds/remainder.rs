@@ -37,8 +37,8 @@ pub(super) const REMAINDER: RemainderThresholds = RemainderThresholds {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OriginThresholds {
     /// `f_o`: factors on a standard deviation that are tried, dimensionless. Source: derived: two
-    /// neighbours are apart by a doubling, between which the log likelihood of `n` readings moves by at
-    /// most `n/6`, the same for all; what is 32 times as random says nothing of a trial any more.
+    /// neighbours are apart by a doubling, between which the log likelihood of `n` readings moves by
+    /// at most `n/6`, the same for all; what is 32 times as random says nothing of a trial any more.
     pub factors: [f64; 5],
     /// `n_o`: most trials that are asked, a count. Source: as many as are asked for changes.
     pub asked: usize,

@@ -92,12 +92,10 @@ pub(super) fn mixed(
     Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
 }
 
-/// What the source is called where the estimate stands in its place.
-pub(super) const NAME: &str = "the estimate from particulars";
-
-/// Whether it does.
-pub(super) fn is_alone(settings: &Settings) -> bool {
-    settings.prior == Prior::Mixture && settings.mixture_positions == [ESTIMATE]
+/// What a source is called: the estimate where that stands in its place.
+pub(super) fn source_name<'a>(settings: &Settings, source: &'a str) -> &'a str {
+    let is_alone = settings.prior == Prior::Mixture && settings.mixture_positions == [ESTIMATE];
+    if is_alone { "the estimate from particulars" } else { source }
 }
 
 /// What the estimate says, named as such.

@@ -154,10 +154,7 @@ fn with_candidates<T>(
         steer_as_recorded(&mut transferred, request.target, &whole, window);
     }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
-    let source = match mixture::is_alone(&settings) {
-        true => mixture::NAME,
-        false => request.source.name.as_str(),
-    };
+    let source = mixture::source_name(&settings, &request.source.name);
     let (law, watch) = (request.law, Some(watch));
     let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.economical);
     let deviations = standard_deviations(&training);

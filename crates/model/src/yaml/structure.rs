@@ -9,8 +9,8 @@ use super::{MOST_FAULTS, read};
 /// A dotted path and what is wrong there.
 pub type ShapeFault = (String, String);
 
-/// Where a text does not have the shape of its type, of many places the first; nothing where the schema finds nothing, or the
-/// text is no YAML.
+/// Where a text does not have the shape of its type, of many places the first; nothing where the
+/// schema finds nothing, or the text is no YAML.
 pub fn faults<T: JsonSchema>(text: &str) -> Vec<ShapeFault> {
     // By the door: what may not be parsed is not.
     let Ok(document) = read::<Value>(text) else { return Vec::new() };
