@@ -41,11 +41,13 @@ const SHOWN: usize = 2;
 const NEW: usize = 3;
 
 /// A neuron's answer to its sum, and the slope there.
+#[inline(always)]
 pub fn neuron(sum: f64) -> (f64, f64) {
     let root = 1.0 / (1.0 + sum * sum).sqrt();
     (sum * root, root * root * root)
 }
 
+#[inline(always)]
 fn gate(sum: f64) -> (f64, f64) {
     let (answer, slope) = neuron(sum);
     (0.5 + 0.5 * answer, 0.5 * slope)
@@ -60,7 +62,7 @@ impl CellState {
 
 impl Cell {
     /// Blocks of neurons.
-    fn blocks(self) -> usize {
+    pub(super) fn blocks(self) -> usize {
         match self {
             Self::Rnn => 1,
             Self::Lstm => 4,
@@ -79,6 +81,15 @@ impl Cell {
 
     fn answer_of(self, block: usize, sum: f64) -> (f64, f64) {
         if self == Self::Lstm && block != NEW { gate(sum) } else { neuron(sum) }
+    }
+
+    /// Answers of a block's neurons in place of their sums.
+    #[inline(always)]
+    pub(super) fn answers<const N: usize>(self, block: usize, sums: &mut [f64; N]) {
+        match self == Self::Lstm && block != NEW {
+            true => sums.iter_mut().for_each(|sum| *sum = gate(*sum).0),
+            false => sums.iter_mut().for_each(|sum| *sum = neuron(*sum).0),
+        }
     }
 
     /// One step.

@@ -14,6 +14,7 @@ mod scales;
 mod sequence;
 mod simulated;
 mod training;
+mod windows;
 
 pub(crate) use adam::Adam;
 pub use cell::Cell;

@@ -71,20 +71,9 @@ impl Recurrent {
         Self { shape, numbers }
     }
 
-    fn parts(&self) -> (&[f64], &[f64]) {
+    /// The numbers of the cell, and of what stands above it.
+    pub(super) fn parts(&self) -> (&[f64], &[f64]) {
         self.numbers.split_at(self.shape.cell.numbers(self.shape.inputs, self.shape.width))
-    }
-
-    /// A step with the state that is carried on.
-    pub fn step(&self, inputs: &[f64], state: &mut CellState) -> Vec<f64> {
-        let (cell, head) = self.parts();
-        *state = self.shape.cell.forward(cell, inputs, state).0;
-        head::forward(head, &state.answer, self.shape.outputs).0
-    }
-
-    /// Nothing remembered.
-    pub fn empty(&self) -> CellState {
-        CellState::empty(self.shape.width)
     }
 
     /// Where the past that is seen at a step begins.
@@ -98,7 +87,7 @@ impl Recurrent {
     /// The outputs after the given steps, from nothing remembered.
     pub fn unrolled<'a>(&self, inputs: impl Iterator<Item = &'a [f64]>) -> Unrolled {
         let (cell, head) = self.parts();
-        let (mut state, mut steps) = (self.empty(), Vec::new());
+        let (mut state, mut steps) = (CellState::empty(self.shape.width), Vec::new());
         for inputs in inputs {
             let (next, step) = self.shape.cell.forward(cell, inputs, &state);
             state = next;

@@ -1,9 +1,9 @@
 //! Simulation by a network that was trained.
 
 use super::motion::Motion;
-use super::network::Memory;
 use super::simulated::Simulated;
 use super::training::Fit;
+use super::windows::Windows;
 
 impl Fit {
     /// Simulates from a sample to another by Euler's method, the first `given` samples as recorded:
@@ -17,17 +17,10 @@ impl Fit {
         foundation: &mut dyn FnMut(usize, &[f64; 3]) -> [f64; 3],
     ) -> Vec<([f64; 3], [f64; 3])> {
         let mut run = Simulated::begin(motion, own.start, given.clamp(1, own.len()));
-        let (mut inputs, mut state) = (Vec::with_capacity(own.len()), self.network.empty());
+        let mut windows = Windows::new(&self.network);
         for (step, k) in own.clone().enumerate() {
             let velocities = run.velocities[step];
-            inputs.push(self.scales.inputs(&velocities, &motion.known[k]));
-            let outputs = match self.network.shape.memory {
-                Memory::All => self.network.step(&inputs[step], &mut state),
-                Memory::Steps(_) => {
-                    let seen = &inputs[self.network.sees_from(step)..];
-                    self.network.unrolled(seen.iter().map(Vec::as_slice)).outputs
-                }
-            };
+            let outputs = windows.step(&self.scales.inputs(&velocities, &motion.known[k]));
             if step + 1 >= run.velocities.len() && k + 1 < own.end {
                 let law = foundation(k, &velocities);
                 let scales = &self.scales.accelerations;
