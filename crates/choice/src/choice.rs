@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 use sistership_estimate::refine::Weighed;
 
+use crate::thresholds::SEARCH;
+
 /// Below this an error is no error: the logarithm of less would decide alone.
 const LEAST: f64 = 1e-9;
 
@@ -42,27 +44,29 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
     Some(relative * weighed.error?)
 }
 
-/// What was weighed, and whether a source holds it where no trial reaches.
-pub type Candidate<'a> = (&'a Weighed, bool);
-
-/// The place of what is taken: of all that is within one standard error of the least error, one
-/// with a source before one without, then that with the fewest coefficients fitted, and among
-/// equals the lesser error (Breiman et al. 1984, Classification and regression trees, section
-/// 3.4.3). Without a source nothing holds a model between and beyond the trials, which errors on
-/// trials left out do not tell (docs/evidence/plain.md). `None` where every simulation diverged.
-pub fn chosen(tried: &[Candidate<'_>]) -> Option<usize> {
-    let sails = |place: &usize| tried[*place].0.error.is_some_and(f64::is_finite);
+/// The place of what is taken: of all that is within one standard error of the least error, that
+/// with the least sum of its error and so many times ([`SEARCH`]`.elsewhere`) its variance where no
+/// trial reaches ([`Weighed`]`.variance`). A law with more coefficients than the trials hold, and a
+/// strength of the prior that does not hold them, are as good on trials like those that were
+/// sailed; elsewhere they scatter. The rule of one standard error (Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3) counts coefficients in this place, which
+/// says less where a prior holds them. `None` where every simulation diverged.
+pub fn chosen(tried: &[&Weighed]) -> Option<usize> {
+    let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
     let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();
-    let logs: Vec<LogError> = tried.iter().map(|one| LogError::of(&one.0.each)).collect();
+    let logs: Vec<LogError> = tried.iter().map(|one| LogError::of(&one.each)).collect();
     let least = |a: &usize, b: &usize| logs[*a].all.total_cmp(&logs[*b].all);
     let best = sailed.iter().copied().min_by(least)?;
     let alike = |place: &usize| {
         let scatter = logs[*place].standard_error(&logs[best].without);
         *place == best || scatter.is_some_and(|scatter| logs[*place].all - logs[best].all < scatter)
     };
-    let rank = |place: &usize| (!tried[*place].1, tried[*place].0.coefficients);
+    let anywhere = |place: &usize| {
+        let variance = tried[*place].variance.unwrap_or(f64::INFINITY);
+        logs[*place].all.exp() + SEARCH.elsewhere * variance
+    };
     let alike = sailed.iter().copied().filter(alike);
-    alike.min_by(|a, b| rank(a).cmp(&rank(b)).then(least(a, b)))
+    alike.min_by(|a, b| anywhere(a).total_cmp(&anywhere(b)).then(least(a, b)))
 }
 
 #[cfg(test)]
@@ -73,23 +77,24 @@ mod tests {
     fn entry(coefficients: usize, errors: &[f64]) -> Weighed {
         let each = errors.iter().enumerate().map(|(k, error)| (k.to_string(), *error)).collect();
         let error = Some(errors.iter().sum::<f64>() / errors.len() as f64);
-        Weighed { step: String::new(), error, each, coefficients, ridge: None, reason: None }
+        let variance = Some(0.01 * coefficients as f64);
+        Weighed {
+            step: String::new(),
+            error,
+            each,
+            variance,
+            coefficients,
+            ridge: None,
+            reason: None,
+        }
     }
 
     fn choice(tried: &[Weighed]) -> Option<usize> {
-        chosen(&tried.iter().map(|one| (one, true)).collect::<Vec<_>>())
+        chosen(&tried.iter().collect::<Vec<_>>())
     }
 
     #[test]
-    fn of_what_is_alike_a_source_is_kept() {
-        let (small, large) = (entry(10, &[1.0, 1.2, 0.9, 1.1]), entry(20, &[1.1, 1.1, 1.0, 0.9]));
-        assert_eq!(chosen(&[(&small, false), (&large, true)]), Some(1));
-        let better = entry(30, &[0.5, 0.6, 0.4, 0.5]);
-        assert_eq!(chosen(&[(&better, false), (&large, true)]), Some(0));
-    }
-
-    #[test]
-    fn what_is_not_told_apart_stays_simple() {
+    fn of_what_is_not_told_apart_the_steadiest_is_taken() {
         let simple = entry(0, &[1.0, 1.2, 0.9, 1.1]);
         let alike = entry(20, &[0.5, 1.5, 0.6, 1.4]);
         let better = entry(20, &[0.5, 0.7, 0.4, 0.6]);

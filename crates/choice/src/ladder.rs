@@ -41,6 +41,9 @@ pub struct Line {
     pub error: Option<f64>,
     /// Its standard error over the trials; none below two.
     pub standard_error: Option<f64>,
+    /// Jackknife variance of what it simulates under rudders that no trial had, on the same scales;
+    /// none where it is not known or a fold does not sail.
+    pub variance: Option<f64>,
     /// Wall time until it was weighed, s; weak forms are weighed side by side.
     pub cost_s: f64,
     /// Whether it was taken.

@@ -7,53 +7,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
-use sistership_model::Vessel;
-use sistership_model::trial::Trial;
 
-use crate::choice::{chosen, standard_error};
-use crate::entrant::Entrant;
-use crate::ladder::{Ladder, Line, Rung};
+use crate::ladder::Rung;
+use crate::taken::{Winner, taken};
 use crate::thresholds::SEARCH;
+use crate::tried::{Search, Tried, chosen_of, on_rung, request, ridge_of, settings_on};
 use sistership_bands::Sampling;
 use sistership_estimate::refine::{
-    Extent, Family, MonotoneProgress, Progress, RefineError, Refinement, Request, Settings,
-    SourceEnvelopes, Weighed, refine_wanted, weigh,
+    Extent, MonotoneProgress, Progress, RefineError, Settings, SourceEnvelopes, Weighed,
+    refine_wanted, weigh,
 };
-
-/// What is searched.
-#[derive(Debug, Clone, Copy)]
-pub struct Search<'a> {
-    /// The ship.
-    pub target: &'a Vessel,
-    /// What enters.
-    pub entrants: &'a [Entrant],
-    /// Every trial; those that the settings keep out have no say.
-    pub trials: &'a [&'a Trial],
-    /// Settings but the method.
-    pub settings: &'a Settings,
-}
-
-/// What was taken, and how it is refined explicitly.
-#[derive(Debug, Clone)]
-pub struct Winner {
-    /// Its place among the entrants.
-    pub entrant: usize,
-    /// Settings that name its method.
-    pub settings: Settings,
-    /// What was tried.
-    pub ladder: Ladder,
-    /// The refinement that naming all of it gives, where the search has made it already.
-    pub refinement: Option<Refinement>,
-}
-
-/// A candidate with where it came from.
-struct Tried {
-    entrant: usize,
-    rung: Rung,
-    weighed: Weighed,
-    refinement: Option<Refinement>,
-    cost_s: f64,
-}
 
 /// Searches the best entrant and estimator.
 ///
@@ -99,7 +62,7 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
     descend((search, &known), &next, (0.5, 0.5), &mut tried, progress)?;
-    taken(search, tried)
+    taken(search, tried, progress)
 }
 
 /// Weighs each source as carried over, by its own law where that is fitted: what another law says
@@ -187,7 +150,7 @@ fn descend(
     };
     let is_taken = |all: &[Weighed]| {
         note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
-        Ok(chosen_of(search, tried) == Some(place))
+        Ok(chosen_of(tried) == Some(place))
     };
     let request = request(search, entrant, &settings);
     let made = refine_wanted((&request, known), is_taken, &told);
@@ -202,74 +165,6 @@ fn descend(
         }
     }
     Ok(())
-}
-
-/// An entrant's refinement by some settings.
-fn request<'a>(search: &Search<'a>, entrant: usize, settings: &'a Settings) -> Request<'a> {
-    let entrant = &search.entrants[entrant];
-    Request {
-        target: search.target,
-        source: &entrant.source,
-        source_law: entrant.source_law.as_deref(),
-        law: &entrant.law,
-        trials: search.trials,
-        settings,
-    }
-}
-
-/// What an entrant gives on a rung; one that cannot be fitted is out with the reason.
-fn on_rung(rung: Rung, weighed: Result<Vec<Weighed>, RefineError>) -> Result<Weighed, RefineError> {
-    let (of_source, of_fit) = (0, 1);
-    let wanted = if rung == Rung::CarriedOver { of_source } else { of_fit };
-    match weighed {
-        Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
-        Err(error) => Ok(Weighed::refused(error.to_string())),
-        Ok(all) => {
-            let no_fit = || Weighed::refused("the trials allow no fit".to_owned());
-            Ok(all.into_iter().nth(wanted).unwrap_or_else(no_fit))
-        }
-    }
-}
-
-/// The place of what is taken of all that was tried.
-fn chosen_of(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
-    let has_source = |one: &Tried| search.entrants[one.entrant].source_law.is_some();
-    chosen(&tried.iter().map(|one| (&one.weighed, has_source(one))).collect::<Vec<_>>())
-}
-
-/// The weak form that an entrant had.
-fn ridge_of(tried: &[Tried], entrant: usize) -> Option<(Family, f64)> {
-    tried.iter().rev().find(|one| one.entrant == entrant)?.weighed.ridge
-}
-
-/// Settings by which an entrant is fitted on a rung. Carried over, the prior is so strong that the
-/// source stays; in weak form few strengths are tried; trajectories begin near the best of those.
-fn settings_on(settings: &Settings, rung: Rung, ridge: Option<(Family, f64)>) -> Settings {
-    let mut settings = Settings { method: rung.method(), ..settings.clone() };
-    let (families, strengths) = match (rung, ridge) {
-        (Rung::CarriedOver, _) => (vec![Family::Own], vec![SEARCH.kept]),
-        (Rung::Weak, _) | (Rung::Trajectory, None) => (Vec::new(), SEARCH.strengths.to_vec()),
-        (Rung::Trajectory, Some((family, lambda))) => {
-            (vec![family], SEARCH.near.map(|factor| factor * lambda).to_vec())
-        }
-    };
-    if settings.families.is_empty() {
-        settings.families = families;
-    }
-    if settings.strengths.is_empty() {
-        settings.strengths = strengths;
-    }
-    settings
-}
-
-/// Settings that give a weak form and no other: the others have been tried already.
-fn settings_of(settings: &Settings, ridge: Option<(Family, f64)>) -> Settings {
-    let mut settings = settings.clone();
-    if let Some((family, lambda)) = ridge {
-        settings.families = vec![family];
-        settings.strengths = vec![lambda];
-    }
-    settings_on(&settings, Rung::Weak, None)
 }
 
 /// Entrants with their errors, the least first; those that did not sail are left out.
@@ -307,49 +202,4 @@ fn leading(tried: &[Tried]) -> Vec<usize> {
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
     near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
-}
-
-fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {
-    let best = chosen_of(search, &tried).ok_or_else(|| {
-        let reasons: Vec<String> =
-            tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
-        RefineError::Diverged(reasons.join("; "))
-    })?;
-    let lines = tried.iter().enumerate();
-    let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
-    let lines = lines.map(|(place, one)| line(search, one, least, place == best)).collect();
-    let entrant = tried[best].entrant;
-    let own = search.entrants[entrant].settings(search.settings);
-    let settings = match tried[best].rung {
-        Rung::Weak => settings_of(&own, tried[best].weighed.ridge),
-        rung => {
-            let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
-            settings_on(&own, rung, ridge_of(&tried[..below], entrant))
-        }
-    };
-    let refinement = tried[best].refinement.take();
-    Ok(Winner { entrant, settings, ladder: Ladder { lines }, refinement })
-}
-
-fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
-    let entrant = &search.entrants[tried.entrant];
-    let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
-    let outcome = match chosen {
-        true if entrant.source_law.is_some() => {
-            "the simplest with a source within one standard error of the least error".to_owned()
-        }
-        true => "the simplest within one standard error of the least error".to_owned(),
-        false => format!("{ratio:.2} times the least error"),
-    };
-    Line {
-        source: entrant.source_name().map(str::to_owned),
-        law: entrant.law.name.clone(),
-        rung: tried.rung,
-        coefficients: tried.weighed.coefficients,
-        error: tried.weighed.error,
-        standard_error: standard_error(&tried.weighed),
-        cost_s: tried.cost_s,
-        chosen,
-        reason: tried.weighed.reason.clone().unwrap_or(outcome),
-    }
 }

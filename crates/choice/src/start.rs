@@ -7,8 +7,9 @@ use sistership_model::{Model, Vessel, Zoo};
 
 use crate::entrant::{Entrant, entrants};
 use crate::ladder::Ladder;
-use crate::search::{Search, search};
+use crate::search::search;
 use crate::thresholds::SEARCH;
+use crate::tried::Search;
 use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings};
 use sistership_sources::source::{Similarity, similar_with};
 
@@ -38,8 +39,8 @@ pub struct Start {
     pub similarity: Similarity,
     /// What was tried.
     pub ladder: Ladder,
-    /// The refinement itself, where the search has made it already.
-    pub refinement: Option<Refinement>,
+    /// The refinement itself.
+    pub refinement: Refinement,
 }
 
 /// Finds the best start.

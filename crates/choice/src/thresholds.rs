@@ -27,6 +27,9 @@ pub(super) struct SearchThresholds {
     /// Most sources that enter, by rank of correlation, a count. Source: chosen; each costs a fit
     /// for every law, and correlation has ranked them.
     pub sources: usize,
+    /// `k_v`: weight of the variance where no trial reaches beside the error on trials left out,
+    /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
+    pub elsewhere: f64,
     /// `n_c`: samples of the trials on which the noise model is learned, a count. Source: memory;
     /// `docs/evidence/plain.md`.
     pub calibration: usize,
@@ -42,5 +45,6 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     near: [3.16, 1.0, 0.316],
     kept: 1e9,
     sources: 5,
+    elsewhere: 5.0,
     calibration: 30_000,
 };

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use rand_chacha::ChaCha8Rng;
 use sistership_choice::{Asked, best_start};
 use sistership_dynamics::Trajectory;
-use sistership_estimate::refine::{Request, Settings, refine};
+use sistership_estimate::refine::Settings;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};
 
@@ -47,21 +47,7 @@ pub fn refined(
         entrant.source_name().unwrap_or("no source"),
         start.settings.method.name()
     );
-    let model = match start.refinement {
-        Some(made) => made.model,
-        None => {
-            let request = Request {
-                target,
-                source: &entrant.source,
-                source_law: entrant.source_law.as_deref(),
-                law: &entrant.law,
-                trials: &trials,
-                settings: &start.settings,
-            };
-            refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).model
-        }
-    };
-    (model, (*entrant.law).clone())
+    (start.refinement.model, (*entrant.law).clone())
 }
 
 fn named(trial: Trial, place: usize) -> Trial {

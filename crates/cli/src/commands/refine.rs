@@ -34,8 +34,8 @@ Examples:
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
 Without --source, --law and --method, every eligible source is tried under every law that was
-measured, and laws without a source; taken is the simplest within one standard error of the best on
-manoeuvres left out. The source's coefficients are the prior: with a method named, options go from
+measured, and laws without a source; of what is within one standard error of the best on manoeuvres
+left out, that is taken which single trials move least elsewhere. The source's coefficients are the prior: with a method named, options go from
 the source outwards, and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
 
 /// Refine a source model against a ship's trials.

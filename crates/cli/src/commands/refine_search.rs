@@ -71,7 +71,7 @@ pub fn searched(
         law: Some(entrant.law),
         similarity: Some(found.similarity),
         ladder: Some(found.ladder),
-        made: found.refinement,
+        made: Some(found.refinement),
     };
     Ok((start, found.settings))
 }

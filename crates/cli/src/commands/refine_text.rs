@@ -56,6 +56,7 @@ pub fn ladder(ladder: &Ladder) -> String {
         "fitted",
         "error",
         "std. error",
+        "elsewhere",
         "s",
         "taken",
         "why",
@@ -67,13 +68,14 @@ pub fn ladder(ladder: &Ladder) -> String {
             Rung::Weak => "weak",
             Rung::Trajectory => "trajectory",
         };
-        let figures = [optional(line.error), optional(line.standard_error)];
+        let figures = [line.error, line.standard_error, line.variance].map(optional);
         let taken = if line.chosen { "yes" } else { "" };
         let names = [source, line.law.clone(), rung.to_owned(), line.coefficients.to_string()];
         let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
         table.row(names.into_iter().chain(figures).chain(end));
     }
-    format!("Tried: standardised squared errors on manoeuvres left out\n{table}\n")
+    let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
+    format!("Tried: {what}\n{table}\n")
 }
 
 /// A law without roll leaves roll where it was: its errors would say nothing.

@@ -30,6 +30,15 @@ enum CandidateRefusal {
     Manoeuvre(String),
 }
 
+/// Why trials alone make a model or none.
+const NO_MODEL: &str = "a law without coefficients is no model";
+
+/// Whether a law's coefficients are all zero: what stands for the source where there is none.
+fn is_empty(model: &Model) -> bool {
+    let mut values = model.coefficients.values().peekable();
+    values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
+}
+
 /// What a candidate gives with its standard manoeuvres, or why it may not be taken.
 type Accepted = Result<(Option<Fit>, StandardManoeuvres), CandidateRefusal>;
 
@@ -44,6 +53,10 @@ pub(super) fn finish(
     variants: &[Variant],
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
+    if is_empty(&problem.transferred) {
+        let source = &mut candidates[0].option;
+        (source.error, source.reason) = (None, Some(NO_MODEL.to_owned()));
+    }
     step(progress, 0.9, "standard manoeuvres of the source, and of the best option")?;
     let first = |place: usize| sailed(problem, candidates[place].solution.as_ref(), variants);
     let (before, mut first) = rayon::join(

@@ -13,7 +13,9 @@ mod estimator;
 mod estimators;
 mod family;
 mod finish;
+mod fold_variance;
 mod gathered;
+mod helm;
 mod manoeuvres;
 mod measure;
 mod merged;
@@ -46,6 +48,7 @@ pub use blocks::{Block, Blocks};
 pub use cma_es::{CmaEs, SearchReport};
 pub use constraints::{Bound, ConstraintError, Constraints, LimitError, StraightLine};
 pub use family::Family;
+pub use helm::unsailed_rudder;
 pub use outcome::{
     CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
 };

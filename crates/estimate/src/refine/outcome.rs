@@ -175,6 +175,22 @@ pub struct Refinement {
     pub remarks: Vec<String>,
 }
 
+/// What the step of the source as it is is called.
+pub(super) const SOURCE_STEP: &str = "source";
+
+impl Refinement {
+    /// Whether the source stays as it is: nothing that was fitted is taken.
+    pub fn is_source_kept(&self) -> bool {
+        self.options.iter().any(|option| option.chosen && option.step == SOURCE_STEP)
+    }
+
+    /// Why options could not be taken.
+    pub fn refusals(&self) -> String {
+        let reasons = self.options.iter().filter_map(|option| option.reason.as_deref());
+        reasons.collect::<Vec<_>>().join("; ")
+    }
+}
+
 /// Standard manoeuvres before and after.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manoeuvres {

@@ -6,7 +6,7 @@ use sistership_model::Model;
 use super::candidate::{CandidateFit, Solution, UnchangedSource};
 use super::constraints::LimitError;
 use super::errors::CoefficientErrors;
-use super::outcome::RefineError;
+use super::outcome::{RefineError, SOURCE_STEP};
 use super::problem::Problem;
 use super::progress::{PartProgress, Progress, step};
 use super::ridge::{Choices, Fit, Fold, fit};
@@ -57,7 +57,7 @@ pub(super) fn source_candidate(
         Some(Err(reason)) => Simulated::refused(reason.to_string()),
         _ => simulate_training(problem, std::slice::from_ref(&problem.transferred), &|_| 0)?,
     };
-    Ok(CandidateFit::new(problem, ("source".into(), None), UnchangedSource, 0, simulated))
+    Ok(CandidateFit::new(problem, (SOURCE_STEP.into(), None), UnchangedSource, 0, simulated))
 }
 
 /// A ridge of a variant at its choices, each trial left out simulated by the model of its fold.

@@ -96,7 +96,11 @@ fn simulate(
     Ok(Simulated::of(trials, &runs.concat()))
 }
 
-fn sisters(ship: &Ship, models: &[Model]) -> Result<Vec<Vec<f64>>, RefineError> {
+/// The coefficients of models, as a ship with their law takes them.
+///
+/// # Errors
+/// They differ in more than their coefficients.
+pub(super) fn sisters(ship: &Ship, models: &[Model]) -> Result<Vec<Vec<f64>>, RefineError> {
     let one = |model: &Model| {
         let differ = || {
             RefineError::Law(format!("`{}` has not the coefficients of its sisters", model.name))

@@ -135,3 +135,35 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
     ignorance: 0.1,
     ridges: [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8],
 };
+
+/// Rudders that no trial had, under which the models of folds are compared.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HelmThresholds {
+    /// Records, a count. Source: docs/evidence/plain.md, which has half and double.
+    pub records: usize,
+    /// `T_h`: how long each lasts, by `L/U`, dimensionless. Source: as long as simulations of
+    /// trials left out go on.
+    pub lengths: f64,
+    /// Records that a model must sail before it is taken, a count. Source: chosen; simulated side
+    /// by side they cost as much as one.
+    pub asked: usize,
+    /// How long each of them lasts, by `L/U`, dimensionless. Source: chosen: five times as long as
+    /// simulations of trials left out go on; docs/evidence/plain.md.
+    pub asked_lengths: f64,
+    /// Samples in `L/U`, a count. Source: chosen; states are compared there, steps are those of
+    /// every simulation.
+    pub samples_a_length: f64,
+    /// Shortest and longest time for which an order is held, by `L/U`, dimensionless. Source:
+    /// chosen: a zigzag holds its rudder for two to three, and a turn is steady after five.
+    pub held: [f64; 2],
+}
+
+/// The values.
+pub(super) const HELM: HelmThresholds = HelmThresholds {
+    records: 4,
+    lengths: 10.0,
+    asked: 8,
+    asked_lengths: 50.0,
+    samples_a_length: 10.0,
+    held: [1.0, 5.0],
+};

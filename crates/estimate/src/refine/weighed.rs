@@ -6,6 +6,7 @@ use sistership_model::trial::Trial;
 
 use super::candidate::{CandidateFit, best};
 use super::family::Family;
+use super::fold_variance::fold_variance;
 use super::problem::Problem;
 use super::variant::Variant;
 
@@ -29,6 +30,10 @@ pub struct Weighed {
     pub error: Option<f64>,
     /// The same by trial.
     pub each: BTreeMap<String, f64>,
+    /// Jackknife variance of what is simulated under rudders that no trial had, on the same scales:
+    /// 0 of the source as carried over, infinite where a fold does not sail, none where folds made
+    /// no models.
+    pub variance: Option<f64>,
     /// Number of coefficients fitted; 0 of the source as carried over.
     pub coefficients: usize,
     /// Of a ridge, its family of terms and the strength of its prior.
@@ -40,9 +45,15 @@ pub struct Weighed {
 impl Weighed {
     /// What cannot be fitted.
     pub fn refused(reason: String) -> Self {
-        let each = BTreeMap::new();
-        let reason = Some(reason);
-        Self { step: String::new(), error: None, each, coefficients: 0, ridge: None, reason }
+        Self {
+            step: String::new(),
+            error: None,
+            each: BTreeMap::new(),
+            variance: None,
+            coefficients: 0,
+            ridge: None,
+            reason: Some(reason),
+        }
     }
 }
 
@@ -64,6 +75,10 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
         step: candidate.option.step.clone(),
         error: candidate.option.error.filter(|error| error.is_finite()),
         each: by_trial(problem, &candidate.each),
+        variance: match candidate.size {
+            0 => Some(0.0),
+            _ => fold_variance(problem, &candidate.left_out),
+        },
         coefficients: candidate.size,
         ridge: candidate.solution.ridge().and_then(ridge),
         reason: candidate.option.reason.clone(),

@@ -26,10 +26,3 @@ pub struct RefinementInput<'a> {
     /// The version under which the model is kept, where it is kept.
     pub version: Option<VersionLabel>,
 }
-
-impl RefinementInput<'_> {
-    /// Whether no option beat the source, so that nothing was fitted.
-    pub(crate) fn is_source_kept(&self) -> bool {
-        self.refinement.options.iter().any(|option| option.chosen && option.step == "source")
-    }
-}

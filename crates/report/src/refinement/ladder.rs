@@ -14,6 +14,7 @@ pub(crate) fn table(ladder: &Ladder) -> Table {
         Column::number("coefficients fitted", ""),
         Column::number("error", ""),
         Column::number("standard error", ""),
+        Column::number("variance elsewhere", ""),
         Column::number("took", "s"),
         Column::prose("why"),
     ];
@@ -30,6 +31,7 @@ fn row(line: &Line) -> Row {
         Cell::new(line.coefficients.to_string()),
         figure(line.error),
         figure(line.standard_error),
+        figure(line.variance),
         Cell::new(significant(line.cost_s, 2)),
         Cell::new(&line.reason),
     ];

@@ -40,7 +40,7 @@ fn replayed<'a>(
         trial: &trial.name,
         manoeuvre: trial.manoeuvre.as_deref(),
         duration_s: trial.duration_s(),
-        fitted: is_fitted(input, trial) && !input.is_source_kept(),
+        fitted: is_fitted(input, trial) && !input.refinement.is_source_kept(),
         source: SquaredError::of(trial, &source).rmse(),
         refined: SquaredError::of(trial, &refined).rmse(),
         source_stopped: stopped(&source),

@@ -87,7 +87,7 @@ const WITHOUT_SOURCE: &str = " No ship was the source: the comparison is with th
                               measure of what a similar ship would have given.";
 
 fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
-    if input.is_source_kept() {
+    if input.refinement.is_source_kept() {
         return "No refinement beat the source on manoeuvres left out: the source model is kept as \
             it is.".into();
     }

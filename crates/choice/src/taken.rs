@@ -1,0 +1,134 @@
+//! What is taken of all that was tried: the choice that also sails the standard manoeuvres.
+
+use sistership_estimate::refine::{
+    Progress, RefineError, Refinement, Settings, refine, unsailed_rudder,
+};
+
+use crate::choice::standard_error;
+use crate::ladder::{Ladder, Line, Rung};
+use crate::tried::{Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on};
+
+/// What was taken, and how it is refined explicitly.
+#[derive(Debug, Clone)]
+pub struct Winner {
+    /// Its place among the entrants.
+    pub entrant: usize,
+    /// Settings that name its method.
+    pub settings: Settings,
+    /// What was tried.
+    pub ladder: Ladder,
+    /// The refinement that naming all of it gives.
+    pub refinement: Refinement,
+}
+
+/// Refines the choice by its own settings. Where nothing that was fitted can be taken then, for no
+/// such model keeps the constraints and sails the standard manoeuvres, it is out, and the next
+/// choice is refined: the source as it is, or a law without coefficients, is not what was chosen.
+/// So it is where the model leaves the physical range under rudders at random, as long as another
+/// choice does not.
+///
+/// # Errors
+/// It was cancelled, a setting is refused, or nothing is left.
+pub(super) fn taken(
+    search: &Search<'_>,
+    mut tried: Vec<Tried>,
+    progress: Progress<'_>,
+) -> Result<Winner, RefineError> {
+    let mut spare = None;
+    loop {
+        let Some(best) = chosen_of(&tried) else {
+            return spare.ok_or_else(|| nothing_left(&tried));
+        };
+        let settings = settings_that_give(search, &tried, best);
+        let entrant = tried[best].entrant;
+        let made = match tried[best].refinement.take() {
+            Some(made) => Ok(made),
+            None => refined(search, (entrant, &settings), progress),
+        };
+        let reason = match fitted(made, tried[best].rung)? {
+            Err(reason) => reason,
+            Ok(refinement) => {
+                let law = &search.entrants[entrant].law;
+                let unsailed = unsailed_rudder(&refinement.model, law, search.trials);
+                let ladder = ladder(search, &tried, best);
+                let winner = Winner { entrant, settings, ladder, refinement };
+                let Some(reason) = unsailed else { return Ok(winner) };
+                spare.get_or_insert(winner);
+                reason
+            }
+        };
+        let weighed = &mut tried[best].weighed;
+        (weighed.error, weighed.reason) = (None, Some(reason));
+    }
+}
+
+fn nothing_left(tried: &[Tried]) -> RefineError {
+    let reasons: Vec<String> = tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
+    RefineError::Diverged(reasons.join("; "))
+}
+
+/// Settings that name a rung's method, and of a weak form or of what trajectories begin with the
+/// strength.
+fn settings_that_give(search: &Search<'_>, tried: &[Tried], place: usize) -> Settings {
+    let (entrant, rung) = (tried[place].entrant, tried[place].rung);
+    let own = search.entrants[entrant].settings(search.settings);
+    if rung == Rung::Weak {
+        return settings_of(&own, tried[place].weighed.ridge);
+    }
+    let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
+    settings_on(&own, rung, ridge_of(&tried[..below], entrant))
+}
+
+fn refined(
+    search: &Search<'_>,
+    (entrant, settings): (usize, &Settings),
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
+    let named = search.entrants[entrant].name();
+    let told =
+        |fraction: f64, what: &str| progress(0.9 + 0.1 * fraction, &format!("{named}: {what}"));
+    refine(&request(search, entrant, settings), &told)
+}
+
+/// A refinement with something fitted in it, or why there is none; of a source as carried over
+/// nothing else is asked.
+fn fitted(
+    made: Result<Refinement, RefineError>,
+    rung: Rung,
+) -> Result<Result<Refinement, String>, RefineError> {
+    match made {
+        Ok(made) if rung != Rung::CarriedOver && made.is_source_kept() => Ok(Err(made.refusals())),
+        Ok(made) => Ok(Ok(made)),
+        Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
+        Err(error) => Ok(Err(error.to_string())),
+    }
+}
+
+fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
+    let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
+    let lines = tried.iter().enumerate();
+    Ladder { lines: lines.map(|(k, one)| line(search, one, least, k == best)).collect() }
+}
+
+fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
+    let entrant = &search.entrants[tried.entrant];
+    let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
+    let outcome = match chosen {
+        true => "within one standard error of the least error, the least with what single trials \
+                 move it elsewhere"
+            .to_owned(),
+        false => format!("{ratio:.2} times the least error"),
+    };
+    Line {
+        source: entrant.source_name().map(str::to_owned),
+        law: entrant.law.name.clone(),
+        rung: tried.rung,
+        coefficients: tried.weighed.coefficients,
+        error: tried.weighed.error,
+        standard_error: standard_error(&tried.weighed),
+        variance: tried.weighed.variance.filter(|variance| variance.is_finite()),
+        cost_s: tried.cost_s,
+        chosen,
+        reason: tried.weighed.reason.clone().unwrap_or(outcome),
+    }
+}

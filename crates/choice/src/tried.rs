@@ -1,0 +1,111 @@
+//! What is tried: entrants on rungs, the settings by which each is fitted there, and what it gives.
+
+use sistership_model::Vessel;
+use sistership_model::trial::Trial;
+
+use crate::choice::chosen;
+use crate::entrant::Entrant;
+use crate::ladder::Rung;
+use crate::thresholds::SEARCH;
+use sistership_estimate::refine::{Family, RefineError, Refinement, Request, Settings, Weighed};
+
+/// What is searched.
+#[derive(Debug, Clone, Copy)]
+pub struct Search<'a> {
+    /// The ship.
+    pub target: &'a Vessel,
+    /// What enters.
+    pub entrants: &'a [Entrant],
+    /// Every trial; those that the settings keep out have no say.
+    pub trials: &'a [&'a Trial],
+    /// Settings but the method.
+    pub settings: &'a Settings,
+}
+
+/// A candidate with where it came from.
+pub(super) struct Tried {
+    pub entrant: usize,
+    pub rung: Rung,
+    pub weighed: Weighed,
+    /// Where it has been made already.
+    pub refinement: Option<Refinement>,
+    pub cost_s: f64,
+}
+
+/// An entrant's refinement by some settings.
+pub(super) fn request<'a>(
+    search: &Search<'a>,
+    entrant: usize,
+    settings: &'a Settings,
+) -> Request<'a> {
+    let entrant = &search.entrants[entrant];
+    Request {
+        target: search.target,
+        source: &entrant.source,
+        source_law: entrant.source_law.as_deref(),
+        law: &entrant.law,
+        trials: search.trials,
+        settings,
+    }
+}
+
+/// What an entrant gives on a rung; one that cannot be fitted is out with the reason.
+pub(super) fn on_rung(
+    rung: Rung,
+    weighed: Result<Vec<Weighed>, RefineError>,
+) -> Result<Weighed, RefineError> {
+    let (of_source, of_fit) = (0, 1);
+    let wanted = if rung == Rung::CarriedOver { of_source } else { of_fit };
+    match weighed {
+        Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
+        Err(error) => Ok(Weighed::refused(error.to_string())),
+        Ok(all) => {
+            let no_fit = || Weighed::refused("the trials allow no fit".to_owned());
+            Ok(all.into_iter().nth(wanted).unwrap_or_else(no_fit))
+        }
+    }
+}
+
+/// The place of what is taken of all that was tried.
+pub(super) fn chosen_of(tried: &[Tried]) -> Option<usize> {
+    chosen(&tried.iter().map(|one| &one.weighed).collect::<Vec<_>>())
+}
+
+/// The weak form that an entrant had.
+pub(super) fn ridge_of(tried: &[Tried], entrant: usize) -> Option<(Family, f64)> {
+    tried.iter().rev().find(|one| one.entrant == entrant)?.weighed.ridge
+}
+
+/// Settings by which an entrant is fitted on a rung. Carried over, the prior is so strong that the
+/// source stays; in weak form few strengths are tried; trajectories begin near the best of those.
+pub(super) fn settings_on(
+    settings: &Settings,
+    rung: Rung,
+    ridge: Option<(Family, f64)>,
+) -> Settings {
+    let mut settings = Settings { method: rung.method(), ..settings.clone() };
+    let (families, strengths) = match (rung, ridge) {
+        (Rung::CarriedOver, _) => (vec![Family::Own], vec![SEARCH.kept]),
+        (Rung::Weak, _) | (Rung::Trajectory, None) => (Vec::new(), SEARCH.strengths.to_vec()),
+        (Rung::Trajectory, Some((family, lambda))) => {
+            (vec![family], SEARCH.near.map(|factor| factor * lambda).to_vec())
+        }
+    };
+    if settings.families.is_empty() {
+        settings.families = families;
+    }
+    if settings.strengths.is_empty() {
+        settings.strengths = strengths;
+    }
+    settings
+}
+
+/// Settings that give a weak form and no other: the others have been tried already.
+pub(super) fn settings_of(settings: &Settings, ridge: Option<(Family, f64)>) -> Settings {
+    let mut settings = settings.clone();
+    if let Some((family, lambda)) = ridge {
+        settings.families = vec![family];
+        settings.strengths = vec![lambda];
+    }
+    settings_on(&settings, Rung::Weak, None)
+}

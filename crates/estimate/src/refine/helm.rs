@@ -1,0 +1,121 @@
+//! Records of a rudder that no trial had: what models that agree on the trials are asked beside
+//! them, and what a model must sail before it is taken.
+
+use std::collections::BTreeMap;
+
+use sistership_dynamics::recorded::{Recorded, ReplaySettings, replay_all};
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::vessel::Steering;
+use sistership_model::{Model, particulars};
+
+use super::thresholds::HELM;
+use sistership_sources::transfer::{approach_of, ready};
+
+/// Why a model does not sail wherever its rudder may be: a record of rudders to random angles, and
+/// where its simulation stops. None where it sails, or where a rudder does not tell all that its
+/// law takes.
+pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<String> {
+    let helms = helms(model, trials, (HELM.asked, HELM.asked_lengths))?;
+    let ship = ready(model, law, trials).ok()?;
+    let all: Vec<Recorded<'_>> =
+        helms.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
+    let runs = replay_all(&ship, &all, &ReplaySettings::default()).ok()?;
+    let stopped =
+        helms.iter().zip(&runs).find_map(|(helm, run)| Some((helm, run.stopped.as_ref()?)));
+    stopped.map(|(helm, stopped)| format!("does not sail {} at random: {stopped}", helm.name))
+}
+
+/// So many records of so many lengths: rudders to angles within the gear's limit, each held for
+/// some lengths, from straight ahead at the speed and revolutions of the trials' approach, in their
+/// depth and without wind; none where the approach or the length is not known.
+pub(super) fn helms(
+    model: &Model,
+    trials: &[&Trial],
+    (records, lengths): (usize, f64),
+) -> Option<Vec<Trial>> {
+    let approach = approach_of(trials)?;
+    let lpp_m = particulars::value(&model.particulars, "lpp_m")?;
+    let interval_s = lpp_m / approach.speed_m_s / HELM.samples_a_length;
+    let count = (lengths * HELM.samples_a_length) as usize;
+    let constants = [
+        (Channel::U, Some(approach.speed_m_s)),
+        (Channel::V, Some(0.0)),
+        (Channel::R, Some(0.0)),
+        (Channel::N, approach.n_rps),
+        (Channel::WindSpeed, Some(0.0)),
+        (Channel::WindFrom, Some(0.0)),
+    ];
+    let constants = constants.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
+    let constants: BTreeMap<Channel, Vec<f64>> =
+        constants.map(|(channel, value)| (channel, vec![value; count])).collect();
+    let steering = &model.steering;
+    let helm = |record: usize| {
+        let mut channels = constants.clone();
+        channels.insert(Channel::Delta, rudder(steering, interval_s, count, record * count));
+        Trial {
+            name: format!("rudder {}", record + 1),
+            t_s: (0..count).map(|sample| sample as f64 * interval_s).collect(),
+            channels,
+            depth_m: trials.first().and_then(|trial| trial.depth_m),
+            ..Trial::default()
+        }
+    };
+    Some((0..records).map(helm).collect())
+}
+
+/// Angles of a rudder, rad, that follows its orders at its gear's rate; the orders are those of a
+/// sequence from a place on.
+fn rudder(steering: &Steering, interval_s: f64, count: usize, mut place: usize) -> Vec<f64> {
+    let limit = steering.limit_deg.to_radians();
+    let step = steering.rate_deg_s.to_radians() * interval_s;
+    let [shortest, longest] = HELM.held;
+    let (mut angle, mut order, mut until) = (0.0_f64, 0.0, 0.0);
+    let sample = |sample: usize| {
+        if sample as f64 >= until {
+            place += 1;
+            order = limit * (2.0 * radical_inverse(place, 2) - 1.0);
+            let lengths = shortest + (longest - shortest) * radical_inverse(place, 3);
+            until += HELM.samples_a_length * lengths;
+        }
+        angle += (order - angle).clamp(-step, step);
+        angle
+    };
+    (0..count).map(sample).collect()
+}
+
+/// The digits of a number in a base, in reverse order behind the point: over many numbers in a row
+/// they fill the unit interval evenly (Halton 1960, Numerische Mathematik 2, 84, section 2).
+fn radical_inverse(mut number: usize, base: usize) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0 / base as f64);
+    while number > 0 {
+        value += digit * (number % base) as f64;
+        number /= base;
+        digit /= base as f64;
+    }
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_reversed() {
+        let eighths: Vec<f64> = (1..8).map(|k| 8.0 * radical_inverse(k, 2)).collect();
+        assert_eq!(eighths, [4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0]);
+        assert!((radical_inverse(5, 3) - 7.0 / 9.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rudder_moves_at_its_gears_rate_within_its_limit() {
+        let steering = Steering { limit_deg: 20.0, rate_deg_s: 3.0, ..Steering::default() };
+        let angles = rudder(&steering, 2.0, 400, 0);
+        let degrees = |angle: &f64| angle.to_degrees();
+        let most = angles.iter().map(degrees).fold(0.0, |most: f64, angle| most.max(angle.abs()));
+        assert!((10.0..20.0 + 1e-9).contains(&most), "{most}");
+        let moves = angles.windows(2).map(|pair| (pair[1] - pair[0]).abs().to_degrees());
+        assert!(moves.fold(0.0, f64::max) < 6.0 + 1e-9);
+        assert_ne!(angles, rudder(&steering, 2.0, 400, 400));
+    }
+}
