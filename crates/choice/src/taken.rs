@@ -132,3 +132,33 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
         reason: tried.weighed.reason.clone().unwrap_or(outcome),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_estimate::refine::{Method, Request};
+    use sistership_estimate::testing::{mariner, trials};
+    use sistership_model::Zoo;
+
+    #[test]
+    fn a_source_that_is_kept_is_not_what_was_chosen() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<_> = trials.iter().collect();
+        let settings = Settings { method: Method::Weak, ..Settings::default() };
+        let request = Request {
+            target: zoo.vessel("mariner").unwrap(),
+            source: &model,
+            source_law: None,
+            law: &law,
+            trials: &trials,
+            settings: &settings,
+        };
+        let made = refine(&request, &|_, _| true).unwrap();
+        assert!(made.is_source_kept(), "the trials are the source's own");
+        assert!(fitted(Ok(made.clone()), Rung::Weak).unwrap().is_err());
+        assert_eq!(fitted(Ok(made.clone()), Rung::CarriedOver).unwrap(), Ok(made));
+        assert!(fitted(Err(RefineError::Cancelled), Rung::Weak).is_err());
+    }
+}

@@ -196,3 +196,36 @@ fn held(blocks: &Blocks) -> Choices {
         .map(|block| vec![RidgeChoice { lambda: SELECTION.held, alpha: 0.0 }; block.axes.len()])
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::refine::selection::{Request, refine};
+    use crate::refine::settings::{Method, Settings};
+    use crate::testing::{mariner, trials, with};
+    use sistership_model::trial::Trial;
+
+    /// What the strongest of priors leaves is no better than what it pulls to: what stands for the
+    /// source where there is none would be kept.
+    #[test]
+    fn a_law_without_coefficients_is_never_taken() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.001);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let settings = Settings {
+            method: Method::Weak,
+            strengths: vec![SELECTION.held],
+            ..Settings::default()
+        };
+        let zoo = sistership_model::Zoo::embedded().unwrap();
+        let kept = |source: &Model| {
+            let (target, settings) = (zoo.vessel("mariner").unwrap(), &settings);
+            let request =
+                Request { target, source, source_law: None, law: &law, trials: &trials, settings };
+            refine(&request, &|_, _| true).map(|made| made.is_source_kept())
+        };
+        assert_eq!(kept(&model), Ok(true));
+        assert_ne!(kept(&with(&model, |_| 0.0)), Ok(true));
+    }
+}

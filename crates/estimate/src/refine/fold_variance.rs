@@ -54,3 +54,37 @@ fn mean_of(helm: &Trial, runs: &[Replay]) -> Trial {
     let channels = RECORDED.iter().map(|&(channel, place)| (channel, column(place)));
     Trial { channels: channels.collect(), ..helm.clone() }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::refine::settings::Settings;
+    use crate::testing::{mariner, trials, with};
+
+    #[test]
+    fn folds_that_differ_by_twice_as_much_have_four_times_the_variance() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let problem = Problem::of_model(&model, &law, &trials, Settings::default());
+        let fold = |by: f64| with(&model, |name| if name == "N_delta" { 1.0 + by } else { 1.0 });
+        let variance =
+            |apart: f64| fold_variance(&problem, &[fold(-apart), fold(apart), fold(0.0)]);
+        assert_eq!(variance(0.0), Some(0.0));
+        let (once, twice) = (variance(0.005).unwrap(), variance(0.01).unwrap());
+        assert!(once > 0.0 && (twice / once - 4.0).abs() < 0.2, "{once} {twice}");
+        assert_eq!(fold_variance(&problem, &[fold(0.0)]), None);
+    }
+
+    #[test]
+    fn a_fold_that_does_not_sail_is_infinitely_far() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let problem = Problem::of_model(&model, &law, &trials, Settings::default());
+        let runs_away = with(&model, |name| if name == "N_v" { -30.0 } else { 1.0 });
+        let folds = [model.clone(), runs_away];
+        assert_eq!(fold_variance(&problem, &folds), Some(f64::INFINITY));
+    }
+}

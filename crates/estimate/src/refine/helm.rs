@@ -98,7 +98,20 @@ fn radical_inverse(mut number: usize, base: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::testing::{mariner, trials, with};
+
+    #[test]
+    fn what_leaves_the_physical_range_is_told_with_its_record() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        assert_eq!(unsailed_rudder(&model, &law, &trials), None);
+        let runs_away = with(&model, |name| if name == "N_v" { -30.0 } else { 1.0 });
+        let told = unsailed_rudder(&runs_away, &law, &trials).unwrap();
+        assert!(told.starts_with("does not sail rudder 1 at random: stopped at "), "{told}");
+    }
 
     #[test]
     fn digits_are_reversed() {
