@@ -108,7 +108,7 @@ mod tests {
         let trials = trials(&model, &law, 0.0);
         let trials: Vec<&Trial> = trials.iter().collect();
         assert_eq!(unsailed_rudder(&model, &law, &trials), None);
-        let runs_away = with(&model, |name| if name == "N_v" { -30.0 } else { 1.0 });
+        let runs_away = with(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
         let told = unsailed_rudder(&runs_away, &law, &trials).unwrap();
         assert!(told.starts_with("does not sail rudder 1 at random: stopped at "), "{told}");
     }
