@@ -114,9 +114,7 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
     let entrant = &search.entrants[tried.entrant];
     let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
     let outcome = match chosen {
-        true => "within one standard error of the least error, the least with what single trials \
-                 move it elsewhere"
-            .to_owned(),
+        true => "of what is alike, the least with five times its variance elsewhere".to_owned(),
         false => format!("{ratio:.2} times the least error"),
     };
     Line {

@@ -11,10 +11,10 @@ pub(crate) fn table(ladder: &Ladder) -> Table {
         Column::text("source", ""),
         Column::text("law", ""),
         Column::text("estimator", ""),
-        Column::number("coefficients fitted", ""),
+        Column::number("fitted", ""),
         Column::number("error", ""),
-        Column::number("standard error", ""),
-        Column::number("variance elsewhere", ""),
+        Column::number("std. error", ""),
+        Column::number("elsewhere", ""),
         Column::number("took", "s"),
         Column::prose("why"),
     ];
