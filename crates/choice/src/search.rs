@@ -23,9 +23,7 @@ use sistership_estimate::refine::{
 /// # Errors
 /// It was cancelled, a setting is refused, or nothing could be simulated to its end.
 pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
-    let held_out = &search.settings.held_out;
-    let fitted = search.trials.iter().filter(|trial| !held_out.contains(&trial.name)).count();
-    let settings = searched_by(search.settings, fitted);
+    let settings = searched_by(search.settings, search.fitted().len());
     climbed(&Search { settings: &settings, ..*search }, progress)
 }
 
@@ -61,7 +59,7 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     next.extend(alone);
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
-    descend((search, &known), &next, (0.5, 0.5), &mut tried, progress)?;
+    descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
     taken(search, tried, progress)
 }
 

@@ -49,7 +49,7 @@ pub(super) fn taken(
             Err(reason) => reason,
             Ok(refinement) => {
                 let law = &search.entrants[entrant].law;
-                let unsailed = unsailed_rudder(&refinement.model, law, search.trials);
+                let unsailed = unsailed_rudder(&refinement.model, law, &search.fitted());
                 let ladder = ladder(search, &tried, best);
                 let winner = Winner { entrant, settings, ladder, refinement };
                 let Some(reason) = unsailed else { return Ok(winner) };

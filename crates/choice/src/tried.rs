@@ -22,6 +22,14 @@ pub struct Search<'a> {
     pub settings: &'a Settings,
 }
 
+impl<'a> Search<'a> {
+    /// The trials that have a say.
+    pub(super) fn fitted(&self) -> Vec<&'a Trial> {
+        let held_out = &self.settings.held_out;
+        self.trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect()
+    }
+}
+
 /// A candidate with where it came from.
 pub(super) struct Tried {
     pub entrant: usize,

@@ -40,18 +40,6 @@ pub fn forward(numbers: &[f64], answer: &[f64], outputs: usize) -> (Vec<f64>, He
     (out, HeadStep { inputs, slopes })
 }
 
-/// The outputs alone.
-pub fn outputs(numbers: &[f64], answer: &[f64], outputs: usize) -> Vec<f64> {
-    let width = answer.len();
-    let (layers, last) = numbers.split_at(2 * width * (width + 1));
-    let mut inputs = answer.to_vec();
-    for weights in layers.chunks(width * (width + 1)) {
-        let one = |row: &[f64]| neuron(row[width] + dot(row, &inputs)).0 - neuron(row[width]).0;
-        inputs = weights.chunks_exact(width + 1).map(one).collect();
-    }
-    last.chunks_exact(width).take(outputs).map(|row| dot(row, &inputs)).collect()
-}
-
 fn dot(row: &[f64], inputs: &[f64]) -> f64 {
     row.iter().zip(inputs).map(|(w, x)| w * x).sum()
 }

@@ -22,6 +22,8 @@ type Lanes = [f64; LANES];
 /// The cells under way.
 pub struct Windows<'a> {
     network: &'a Recurrent,
+    /// How many are under way.
+    cells: usize,
     /// Steps taken.
     steps: usize,
     /// By so many cells as are computed together.
@@ -45,27 +47,23 @@ impl<'a> Windows<'a> {
             Memory::Steps(steps) => steps.max(1),
             Memory::All => 1,
         };
-        let group = |_| Group::empty(network);
-        Self { network, steps: 0, groups: (0..cells.div_ceil(LANES)).map(group).collect() }
+        let groups = (0..cells.div_ceil(LANES)).map(|_| Group::empty(network)).collect();
+        Self { network, cells, steps: 0, groups }
     }
 
     /// The outputs after one more step.
     pub fn step(&mut self, inputs: &[f64]) -> Vec<f64> {
-        let cells = match self.network.shape.memory {
-            Memory::Steps(steps) => steps.max(1),
-            Memory::All => usize::MAX,
-        };
-        let begun = self.steps % cells;
-        if cells < usize::MAX {
+        if self.network.shape.memory != Memory::All {
+            let begun = self.steps % self.cells;
             self.groups[begun / LANES].forget(begun % LANES);
         }
         widest(Step { windows: self, inputs });
-        let seen = self.network.sees_from(self.steps) % cells;
+        let seen = self.network.sees_from(self.steps) % self.cells;
         self.steps += 1;
         let answers = &self.groups[seen / LANES].answers;
         let answer: Vec<f64> = answers.iter().map(|lanes| lanes[seen % LANES]).collect();
         let (_, head) = self.network.parts();
-        head::outputs(head, &answer, self.network.shape.outputs)
+        head::forward(head, &answer, self.network.shape.outputs).0
     }
 }
 

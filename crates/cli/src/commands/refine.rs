@@ -35,8 +35,9 @@ Examples:
 
 Without --source, --law and --method, every eligible source is tried under every law that was
 measured, and laws without a source; of what is within one standard error of the best on manoeuvres
-left out, that is taken which single trials move least elsewhere. The source's coefficients are the prior: with a method named, options go from
-the source outwards, and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
+left out, that is taken which has the least error together with what single trials move elsewhere.
+The source's coefficients are the prior: with a method named, options go from the source outwards,
+and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
 
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]

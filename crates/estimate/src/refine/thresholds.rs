@@ -139,10 +139,10 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
 /// Rudders that no trial had, under which the models of folds are compared.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HelmThresholds {
-    /// Records, a count. Source: docs/evidence/plain.md, which has half and double.
+    /// Records, a count. Source: chosen; half and double are not measured yet.
     pub records: usize,
     /// `T_h`: how long each lasts, by `L/U`, dimensionless. Source: as long as simulations of
-    /// trials left out go on.
+    /// trials left out go on; half and double are not measured yet.
     pub lengths: f64,
     /// Records that a model must sail before it is taken, a count. Source: chosen; simulated side
     /// by side they cost as much as one.
