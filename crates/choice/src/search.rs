@@ -17,20 +17,25 @@ use sistership_estimate::refine::{
     Extent, MonotoneProgress, Progress, RefineError, Settings, SourceEnvelopes, Weighed,
     refine_wanted, weigh,
 };
+use sistership_sources::transfer::approach_of;
 
 /// Searches the best entrant and estimator.
 ///
 /// # Errors
 /// It was cancelled, a setting is refused, or nothing could be simulated to its end.
 pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
-    let settings = searched_by(search.settings, search.fitted().len());
+    let settings = searched_by(search);
     climbed(&Search { settings: &settings, ..*search }, progress)
 }
 
 /// What the search sets beside what is asked of it.
-fn searched_by(settings: &Settings, fitted: usize) -> Settings {
+fn searched_by(search: &Search<'_>) -> Settings {
+    let (settings, fitted) = (search.settings, search.fitted());
+    let length_s = search.target.particular("lpp_m").zip(approach_of(&fitted));
+    let restart_s = length_s.map(|(l, approach)| SEARCH.restart * l / approach.speed_m_s);
     Settings {
-        in_parts: settings.in_parts || fitted < SEARCH.few,
+        restart_s: settings.restart_s.or(restart_s),
+        in_parts: settings.in_parts || fitted.len() < SEARCH.few,
         steering_from_trials: true,
         steering_above_noise: true,
         recorded_terms: true,

@@ -30,6 +30,9 @@ pub(super) struct SearchThresholds {
     /// `k_v`: weight of the variance where no trial reaches beside the error on trials left out,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub elsewhere: f64,
+    /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
+    /// `docs/evidence/plain.md`, which has half and double; as long as trajectories are fitted.
+    pub restart: f64,
     /// `n_c`: samples of the trials on which the noise model is learned, a count. Source: memory;
     /// `docs/evidence/plain.md`.
     pub calibration: usize,
@@ -46,5 +49,6 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     kept: 1e9,
     sources: 5,
     elsewhere: 5.0,
+    restart: 5.0,
     calibration: 30_000,
 };

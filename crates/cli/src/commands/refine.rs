@@ -74,7 +74,7 @@ pub struct RefineArguments {
     #[arg(long, value_name = "NAME", num_args = 1..)]
     held_out: Vec<String>,
     /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship
-    /// lengths sailed.
+    /// lengths at the approach speed, and every five where everything is tried.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
     /// Time over which accelerations are differenced; where absent, that of sailing a tenth of its

@@ -177,7 +177,8 @@ pub struct Settings {
     #[schemars(length(max = 100), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
     pub strengths: Vec<f64>,
     /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the
-    /// time in which the ship sails its length; longer than a trial runs it whole.
+    /// time in which the ship sails its length, or five times where the default search compares;
+    /// longer than a trial runs it whole.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
     /// Most folds; with more manoeuvres than that, several are left out together.

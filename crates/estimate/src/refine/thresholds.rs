@@ -141,14 +141,14 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
 pub(super) struct HelmThresholds {
     /// Records, a count. Source: chosen; half and double are not measured yet.
     pub records: usize,
-    /// `T_h`: how long each lasts, by `L/U`, dimensionless. Source: as long as simulations of
-    /// trials left out go on; half and double are not measured yet.
+    /// `T_h`: how long each lasts, by `L/U`, dimensionless. Source: [`SelectionThresholds::restart`];
+    /// half and double are not measured yet.
     pub lengths: f64,
     /// Records that a model must sail before it is taken, a count. Source: chosen; simulated side
     /// by side they cost as much as one.
     pub asked: usize,
-    /// How long each of them lasts, by `L/U`, dimensionless. Source: chosen: five times as long as
-    /// simulations of trials left out go on; docs/evidence/plain.md.
+    /// How long each of them lasts, by `L/U`, dimensionless. Source: chosen, five times
+    /// [`Self::lengths`]; docs/evidence/plain.md.
     pub asked_lengths: f64,
     /// Samples in `L/U`, a count. Source: chosen; states are compared there, steps are those of
     /// every simulation.

@@ -1,0 +1,79 @@
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use bytes::Bytes;
+use sistership_store::testing::{TestDatabase, TestS3};
+use sistership_store::{NewTrial, Store, SystemClock};
+
+use super::{Findings, fsck};
+use crate::archive::Archive;
+use crate::catalogue::Catalogue;
+use crate::seed;
+
+mod damage;
+mod garbage;
+
+/// An archive with the zoo, one trial of the Mariner, and all that a job may leave.
+async fn archive(database: &TestDatabase) -> Archive {
+    filled(Archive::open(&database.url, database.folder.path()).await.unwrap()).await
+}
+
+async fn filled(archive: Archive) -> Archive {
+    seed::seed(&archive.store, &Catalogue::default()).await.unwrap();
+    let key = archive.objects.put(Bytes::from_static(b"samples")).await.unwrap();
+    archive.store.trials().insert(&trial(&key)).await.unwrap();
+    archive
+}
+
+fn trial(key: &str) -> NewTrial {
+    let text = |text: &str| text.to_owned();
+    NewTrial {
+        ship: text("mariner"),
+        sha256: text(key),
+        name: text("turn.csv"),
+        manifest: text("{}"),
+        conventions: text("{}"),
+        manoeuvre: None,
+        sample_rows: 1,
+        duration_s: 1.0,
+        warnings: text("[]"),
+        object_key: text(key),
+    }
+}
+
+async fn found(archive: &Archive) -> Findings {
+    fsck(archive).await.unwrap()
+}
+
+async fn databases() -> Vec<TestDatabase> {
+    [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten().collect()
+}
+
+/// An archive, and what must live as long as it does.
+struct Place {
+    archive: Archive,
+    _database: TestDatabase,
+    _s3: Option<TestS3>,
+}
+
+/// Each database with samples in a folder, and with samples in a bucket.
+async fn places() -> Vec<Place> {
+    let mut places = Vec::new();
+    for database in databases().await {
+        places.push(Place { archive: archive(&database).await, _database: database, _s3: None });
+    }
+    for database in databases().await {
+        let s3 = TestS3::start().await;
+        let (store, objects) = (
+            Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap(),
+            s3.objects("fleet"),
+        );
+        places.push(Place {
+            archive: filled(Archive { store, objects }).await,
+            _database: database,
+            _s3: Some(s3),
+        });
+    }
+    places
+}
