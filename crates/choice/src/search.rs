@@ -39,6 +39,7 @@ fn searched_by(search: &Search<'_>) -> Settings {
         steering_from_trials: true,
         steering_above_noise: true,
         recorded_terms: true,
+        recorded_revolutions: true,
         posterior_by_folds: true,
         folds_pooled: true,
         economical: true,

@@ -12,7 +12,7 @@ use sistership_dynamics::state::{RECORDED, StateVector};
 use sistership_model::Model;
 use sistership_model::trial::Trial;
 
-use super::helm::helms;
+use super::helm::{Helm, helms};
 use super::problem::Problem;
 use super::simulated::sisters;
 use super::thresholds::HELM;
@@ -24,8 +24,8 @@ use sistership_sources::transfer::ready_for_sisters;
 /// tell all that the law takes.
 pub(super) fn fold_variance(problem: &Problem<'_>, folds: &[Model]) -> Option<f64> {
     let first = folds.first().filter(|_| folds.len() > 1)?;
-    let asked = (HELM.records, HELM.lengths);
-    let helms = helms(&problem.transferred, &problem.whole, asked)?;
+    let asked = Helm::random(HELM.records);
+    let helms = helms(&problem.transferred, &problem.whole, (&asked, HELM.lengths))?;
     let ship = ready_for_sisters(first, problem.law, &problem.whole).ok()?;
     let coefficients = sisters(&ship, folds).ok()?;
     let each = |trial| coefficients.iter().map(move |one| Recorded { trial, coefficients: one });

@@ -12,27 +12,73 @@ use sistership_model::{Model, particulars};
 use super::thresholds::HELM;
 use sistership_sources::transfer::{approach_of, ready};
 
-/// Why a model does not sail wherever its rudder may be: a record of rudders to random angles, and
-/// where its simulation stops. None where it sails, or where a rudder does not tell all that its
-/// law takes.
+/// What a rudder is ordered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Helm {
+    /// Angles at random within the gear's limit, each held for some lengths: a record of so many.
+    Random(usize),
+    /// An angle throughout, by the gear's limit: a turn.
+    Held(f64),
+}
+
+impl Helm {
+    /// So many records at random.
+    pub(super) fn random(records: usize) -> Vec<Self> {
+        (0..records).map(Self::Random).collect()
+    }
+
+    /// All that a model must sail before it is taken.
+    fn asked() -> Vec<Self> {
+        let held = HELM.turns.into_iter().flat_map(|angle| [angle, -angle]).map(Self::Held);
+        Self::random(HELM.asked).into_iter().chain(held).collect()
+    }
+
+    fn name(self, steering: &Steering) -> String {
+        match self {
+            Self::Random(record) => format!("rudder {} at random", record + 1),
+            Self::Held(share) => {
+                format!("a rudder of {:.1} deg throughout", share * steering.limit_deg)
+            }
+        }
+    }
+
+    /// Angles, rad, of a rudder that follows its orders at its gear's rate.
+    fn angles(self, steering: &Steering, interval_s: f64, count: usize) -> Vec<f64> {
+        let limit = steering.limit_deg.to_radians();
+        let step = steering.rate_deg_s.to_radians() * interval_s;
+        let orders = match self {
+            Self::Random(record) => orders_at_random(count, record * count),
+            Self::Held(share) => vec![share; count],
+        };
+        let mut angle = 0.0_f64;
+        let moved = |order: &f64| {
+            angle += (limit * order - angle).clamp(-step, step);
+            angle
+        };
+        orders.iter().map(moved).collect()
+    }
+}
+
+/// Why a model does not sail wherever its rudder may be: what the rudder was ordered, and where its
+/// simulation stops. None where it sails, or where a rudder does not tell all that its law takes.
 pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<String> {
-    let helms = helms(model, trials, (HELM.asked, HELM.asked_lengths))?;
+    let helms = helms(model, trials, (&Helm::asked(), HELM.asked_lengths))?;
     let ship = ready(model, law, trials).ok()?;
     let all: Vec<Recorded<'_>> =
         helms.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
     let runs = replay_all(&ship, &all, &ReplaySettings::default()).ok()?;
     let stopped =
         helms.iter().zip(&runs).find_map(|(helm, run)| Some((helm, run.stopped.as_ref()?)));
-    stopped.map(|(helm, stopped)| format!("does not sail {} at random: {stopped}", helm.name))
+    stopped.map(|(helm, stopped)| format!("does not sail {}: {stopped}", helm.name))
 }
 
-/// So many records of so many lengths: rudders to angles within the gear's limit, each held for
-/// some lengths, from straight ahead at the speed and revolutions of the trials' approach, in their
-/// depth and without wind; none where the approach or the length is not known.
+/// A record of so many lengths for each order, from straight ahead at the speed and revolutions of
+/// the trials' approach, in their depth and without wind; none where the approach or the length is
+/// not known.
 pub(super) fn helms(
     model: &Model,
     trials: &[&Trial],
-    (records, lengths): (usize, f64),
+    (helms, lengths): (&[Helm], f64),
 ) -> Option<Vec<Trial>> {
     let approach = approach_of(trials)?;
     let lpp_m = particulars::value(&model.particulars, "lpp_m")?;
@@ -50,36 +96,32 @@ pub(super) fn helms(
     let constants: BTreeMap<Channel, Vec<f64>> =
         constants.map(|(channel, value)| (channel, vec![value; count])).collect();
     let steering = &model.steering;
-    let helm = |record: usize| {
+    let record = |helm: &Helm| {
         let mut channels = constants.clone();
-        channels.insert(Channel::Delta, rudder(steering, interval_s, count, record * count));
+        channels.insert(Channel::Delta, helm.angles(steering, interval_s, count));
         Trial {
-            name: format!("rudder {}", record + 1),
+            name: helm.name(steering),
             t_s: (0..count).map(|sample| sample as f64 * interval_s).collect(),
             channels,
             depth_m: trials.first().and_then(|trial| trial.depth_m),
             ..Trial::default()
         }
     };
-    Some((0..records).map(helm).collect())
+    Some(helms.iter().map(record).collect())
 }
 
-/// Angles of a rudder, rad, that follows its orders at its gear's rate; the orders are those of a
-/// sequence from a place on.
-fn rudder(steering: &Steering, interval_s: f64, count: usize, mut place: usize) -> Vec<f64> {
-    let limit = steering.limit_deg.to_radians();
-    let step = steering.rate_deg_s.to_radians() * interval_s;
+/// Orders by the gear's limit, sample by sample: those of a sequence from a place on.
+fn orders_at_random(count: usize, mut place: usize) -> Vec<f64> {
     let [shortest, longest] = HELM.held;
-    let (mut angle, mut order, mut until) = (0.0_f64, 0.0, 0.0);
+    let (mut order, mut until) = (0.0, 0.0);
     let sample = |sample: usize| {
         if sample as f64 >= until {
             place += 1;
-            order = limit * (2.0 * radical_inverse(place, 2) - 1.0);
+            order = 2.0 * radical_inverse(place, 2) - 1.0;
             let lengths = shortest + (longest - shortest) * radical_inverse(place, 3);
             until += HELM.samples_a_length * lengths;
         }
-        angle += (order - angle).clamp(-step, step);
-        angle
+        order
     };
     (0..count).map(sample).collect()
 }
@@ -123,12 +165,15 @@ mod tests {
     #[test]
     fn a_rudder_moves_at_its_gears_rate_within_its_limit() {
         let steering = Steering { limit_deg: 20.0, rate_deg_s: 3.0, ..Steering::default() };
-        let angles = rudder(&steering, 2.0, 400, 0);
+        let angles = Helm::Random(0).angles(&steering, 2.0, 400);
         let degrees = |angle: &f64| angle.to_degrees();
         let most = angles.iter().map(degrees).fold(0.0, |most: f64, angle| most.max(angle.abs()));
         assert!((10.0..20.0 + 1e-9).contains(&most), "{most}");
         let moves = angles.windows(2).map(|pair| (pair[1] - pair[0]).abs().to_degrees());
         assert!(moves.fold(0.0, f64::max) < 6.0 + 1e-9);
-        assert_ne!(angles, rudder(&steering, 2.0, 400, 400));
+        assert_ne!(angles, Helm::Random(1).angles(&steering, 2.0, 400));
+        let held = Helm::Held(-0.5).angles(&steering, 2.0, 400);
+        assert!((held[0].to_degrees() + 6.0).abs() < 1e-9);
+        assert!((held[399].to_degrees() + 10.0).abs() < 1e-9);
     }
 }

@@ -120,6 +120,20 @@ pub(super) fn estimated(
     Ok((estimate.model, law))
 }
 
+/// Lets an estimate make its approach speed at other revolutions. With `s` their ratio, `k_0/s^2`,
+/// `k_1/s` and `k_2` give the thrust `k_0 (nD)^2 + k_1 u_P nD + k_2 u_P^2` that they gave before, at
+/// every speed and at `s` times the revolutions: the pitch is estimated, the revolutions are read.
+pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
+    let Some(own) = estimate.revolutions_rps.replace(n_rps) else { return };
+    let ratio = n_rps / own;
+    for (name, by) in [("k_0", ratio.powi(2)), ("k_1", ratio)] {
+        if let Some(quantity) = estimate.parameters.get_mut(name) {
+            quantity.value /= by;
+            quantity.note = Some("for the revolutions of the trials".to_owned());
+        }
+    }
+}
+
 /// The estimate's share at a position: none at 0, that of the least variance at a half, all at 1.
 fn at(position: f64, misfit: Misfit) -> f64 {
     let learned = share(misfit);
@@ -178,6 +192,9 @@ fn words(shares: &[f64; 4]) -> String {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use sistership_dynamics::Ship;
+    use sistership_dynamics::plant::Work;
+    use sistership_dynamics::state::{StateVector, at};
     use sistership_model::Zoo;
     use sistership_sources::transfer::transfer;
 
@@ -210,6 +227,23 @@ mod tests {
             assert!(before > 0.0, "{axis}: the estimate says the same");
             assert!(said.distance(&mixed, axis) < 0.3 * before, "{axis}");
         }
+    }
+
+    #[test]
+    fn an_estimate_makes_its_speed_at_the_revolutions_of_the_trials() {
+        let zoo = Zoo::embedded().unwrap();
+        let (mut model, law) = estimated(zoo.vessel("kcs").unwrap(), Some(12.0)).unwrap();
+        let gained = |model: &Model, n_rps: f64| {
+            let ship = Ship::new(model, law).unwrap();
+            let state = StateVector::from_fn(|place, _| if place == at::U { 12.0 } else { 0.0 });
+            ship.rate_with(&state, &ship.inputs(0.0, n_rps), &mut Work::default())[at::U]
+        };
+        let own = model.revolutions_rps.unwrap();
+        let before = gained(&model, 0.9 * own);
+        turn_at(&mut model, 1.3 * own);
+        assert_eq!(model.revolutions_rps, Some(1.3 * own));
+        assert!(gained(&model, 1.3 * own).abs() < 1e-6 && before < -1e-3);
+        assert!((gained(&model, 1.3 * 0.9 * own) - before).abs() < 1e-9);
     }
 
     #[test]

@@ -212,7 +212,12 @@ fn starting(
         across::begun((source, own), law, target, approach, (whole, known))?;
     if is_mixture && position == mixture::ESTIMATE {
         // By its own manoeuvres, not those of the source.
-        let (estimated, own) = mixture::estimated(target, model.speed_m_s)?;
+        let (mut estimated, own) = mixture::estimated(target, model.speed_m_s)?;
+        if let Some(n_rps) = approach.and_then(|approach| approach.n_rps)
+            && request.settings.recorded_revolutions
+        {
+            mixture::turn_at(&mut estimated, n_rps);
+        }
         let of = (whole, &SourceEnvelopes::default());
         (model, envelope) = across::begun((&estimated, own), law, target, approach, of)?;
         envelope = Arc::new(mixture::alone(Arc::unwrap_or_clone(envelope)));

@@ -201,6 +201,10 @@ pub struct Settings {
     /// none. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_terms: bool,
+    /// An estimate that stands in the source's place makes the approach speed at the revolutions that
+    /// the trials record, not at those that its own propeller needs. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub recorded_revolutions: bool,
     /// The posterior is as wide as models are apart that each missed some of the trials, where that
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -258,6 +262,7 @@ impl Default for Settings {
             steering_from_trials: false,
             steering_above_noise: false,
             recorded_terms: false,
+            recorded_revolutions: false,
             posterior_by_folds: false,
             folds_pooled: false,
             economical: false,

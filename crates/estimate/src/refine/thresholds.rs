@@ -147,6 +147,9 @@ pub(super) struct HelmThresholds {
     /// Records that a model must sail before it is taken, a count. Source: chosen; simulated side
     /// by side they cost as much as one.
     pub asked: usize,
+    /// Angles of turns that it must sail besides, to both sides, by the gear's limit, dimensionless.
+    /// Source: between those of the standard manoeuvres; docs/evidence/plain.md.
+    pub turns: [f64; 3],
     /// How long each of them lasts, by `L/U`, dimensionless. Source: chosen, five times
     /// [`Self::lengths`]; docs/evidence/plain.md.
     pub asked_lengths: f64,
@@ -163,6 +166,7 @@ pub(super) const HELM: HelmThresholds = HelmThresholds {
     records: 4,
     lengths: 10.0,
     asked: 8,
+    turns: [0.25, 0.5, 0.75],
     asked_lengths: 50.0,
     samples_a_length: 10.0,
     held: [1.0, 5.0],
