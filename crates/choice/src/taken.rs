@@ -62,8 +62,14 @@ pub(super) fn taken(
     }
 }
 
+/// Every reason once, in the order of the ladder.
 fn nothing_left(tried: &[Tried]) -> RefineError {
-    let reasons: Vec<String> = tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
+    let mut reasons: Vec<&str> = Vec::new();
+    for reason in tried.iter().filter_map(|one| one.weighed.reason.as_deref()) {
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
     RefineError::Diverged(reasons.join("; "))
 }
 

@@ -35,6 +35,17 @@ impl Equations {
         }
     }
 
+    /// What its rows are, for people.
+    pub fn rows(self) -> String {
+        match self {
+            Self::Differences(None) => "differences of samples".to_owned(),
+            Self::Differences(Some(difference_s)) => {
+                format!("differences over {difference_s:.2} s")
+            }
+            Self::Windows(windows) => format!("windows of {:.2} s", windows.length_s),
+        }
+    }
+
     /// Whether a row is a difference of samples; then the mean of all rows says nothing of the
     /// coefficients.
     pub fn are_differences(self) -> bool {

@@ -224,8 +224,9 @@ fn moments(
     let least = if problem.measure.is_source() { 1.0 } else { equations.least_samples(widest) };
     if samples < least {
         let message = format!(
-            "{samples:.0} samples are too few for {widest} coefficients an axis; give at least \
-             {least}"
+            "the trials give {samples:.0} {} for {widest} coefficients an axis, at least {least} \
+             are needed: give more or longer trials",
+            equations.rows()
         );
         return Err(RefineError::Data(message));
     }
