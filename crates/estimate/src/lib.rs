@@ -1,6 +1,5 @@
 //! From trials to models: refinement of a source model by several estimators.
 
 pub mod refine;
-mod steering;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;

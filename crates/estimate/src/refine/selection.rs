@@ -27,7 +27,7 @@ use super::thresholds::SELECTION;
 use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
-use crate::steering::{RateWindow, measured_rate};
+use sistership_sources::steering::{RateWindow, measured_rate};
 use sistership_sources::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.

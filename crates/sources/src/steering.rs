@@ -40,7 +40,7 @@ const STEERING: SteeringThresholds = SteeringThresholds {
 
 /// Over which time a rate is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RateWindow {
+pub enum RateWindow {
     /// By the time of sailing a length alone: what versions made before the other was there have.
     OfLength,
     /// As long as the readings' noise asks for besides.
@@ -49,7 +49,7 @@ pub(crate) enum RateWindow {
 
 /// The gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no movement
 /// is long enough to show it. `length_s` is the time in which the ship sails its length.
-pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Option<f64> {
+pub fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Option<f64> {
     let of = |trial: &&Trial| {
         let step_s = trial.interval_s();
         let count = ((STEERING.window * length_s / step_s).round() as usize).max(1);
