@@ -202,7 +202,8 @@ pub struct Settings {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_terms: bool,
     /// An estimate that stands in the source's place makes the approach speed at the revolutions that
-    /// the trials record, not at those that its own propeller needs. The default search sets it.
+    /// the trials record, not at those that its own propeller needs. Every new order of a `mixture`
+    /// has it, and the default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_revolutions: bool,
     /// The posterior is as wide as models are apart that each missed some of the trials, where that
@@ -280,6 +281,7 @@ impl Settings {
         if self.prior == Prior::Mixture && self.mixture_positions.is_empty() {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
+        self.recorded_revolutions |= self.prior == Prior::Mixture;
         self
     }
 
