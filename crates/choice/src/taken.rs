@@ -62,15 +62,8 @@ pub(super) fn taken(
     }
 }
 
-/// Every reason once, in the order of the ladder.
 fn nothing_left(tried: &[Tried]) -> RefineError {
-    let mut reasons: Vec<&str> = Vec::new();
-    for reason in tried.iter().filter_map(|one| one.weighed.reason.as_deref()) {
-        if !reasons.contains(&reason) {
-            reasons.push(reason);
-        }
-    }
-    RefineError::Diverged(reasons.join("; "))
+    RefineError::diverged(tried.iter().filter_map(|one| one.weighed.reason.as_deref()))
 }
 
 /// Settings that name a rung's method, and of a weak form or of what trajectories begin with the

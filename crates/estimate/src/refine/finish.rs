@@ -65,9 +65,8 @@ pub(super) fn finish(
     );
     loop {
         let Some(best) = best(&candidates) else {
-            let reasons: Vec<String> =
-                candidates.iter().filter_map(|one| one.option.reason.clone()).collect();
-            return Err(RefineError::Diverged(reasons.join("; ")));
+            let reasons = candidates.iter().filter_map(|one| one.option.reason.as_deref());
+            return Err(RefineError::diverged(reasons));
         };
         step(
             progress,

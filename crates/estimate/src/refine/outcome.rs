@@ -54,6 +54,24 @@ pub enum RefineError {
     Cancelled,
 }
 
+impl RefineError {
+    /// Nothing can be taken, for these reasons.
+    pub fn diverged<'a>(reasons: impl Iterator<Item = &'a str>) -> Self {
+        Self::Diverged(each_once(reasons))
+    }
+}
+
+/// Reasons in their order; many options share one.
+fn each_once<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
+    let mut told: Vec<&str> = Vec::new();
+    for reason in reasons {
+        if !told.contains(&reason) {
+            told.push(reason);
+        }
+    }
+    told.join("; ")
+}
+
 impl From<UnknownParameter> for RefineError {
     fn from(error: UnknownParameter) -> Self {
         Self::Law(error.to_string())
@@ -186,8 +204,7 @@ impl Refinement {
 
     /// Why options could not be taken.
     pub fn refusals(&self) -> String {
-        let reasons = self.options.iter().filter_map(|option| option.reason.as_deref());
-        reasons.collect::<Vec<_>>().join("; ")
+        each_once(self.options.iter().filter_map(|option| option.reason.as_deref()))
     }
 }
 
