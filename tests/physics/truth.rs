@@ -4,14 +4,17 @@
 use proptest::prelude::*;
 use sistership_dynamics::StateVector;
 use sistership_dynamics::state::{at, straight};
+use sistership_tests::truth::causes;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::family;
 use sistership_tests::truth::ferry::ferry;
+use sistership_tests::truth::instruments::Instruments;
 use sistership_tests::truth::manoeuvre::{Manoeuvre, figures};
 use sistership_tests::truth::model_tanker::model_tanker;
 use sistership_tests::truth::motion::{Truth, step};
 use sistership_tests::truth::stability::growth_rate;
 use sistership_tests::truth::tanker::tanker;
+use sistership_tests::truth::trials;
 
 fn ships() -> Vec<Box<dyn Truth>> {
     vec![
@@ -19,7 +22,8 @@ fn ships() -> Vec<Box<dyn Truth>> {
         Box::new(ferry()),
         Box::new(container()),
         Box::new(model_tanker()),
-        Box::new(family::ship(1)),
+        Box::new(family::single_screw(1)),
+        Box::new(family::twin_screw(1)),
     ]
 }
 
@@ -60,6 +64,26 @@ fn the_approach_is_steady() {
         let unit = speed * speed / ship.dimensions().lpp_m;
         assert!(surge.abs() < 1e-6 * unit, "{}: {surge} m/s2", ship.dimensions().name);
         assert!(sway.abs() + yaw.abs() + roll.abs() < 1e-12, "{}", ship.dimensions().name);
+    }
+}
+
+/// Nothing hidden is nothing: a rudder that is held for a step would follow half of it late, which a
+/// diagnosis names.
+#[test]
+fn trials_with_nothing_hidden_are_those_of_the_ship() {
+    let ship = family::twin_screw(1);
+    let perfect = Instruments::PERFECT;
+    let manoeuvre = Manoeuvre::Zigzag(10.0, 10.0);
+    let plain = trials(&ship, &[manoeuvre], &perfect, 1).remove(0);
+    let course = causes::Course { manoeuvre, heading_deg: 0.0 };
+    let hidden = causes::Hidden::default();
+    let among = causes::trials(&ship, &hidden, &[course], &perfect, 1).remove(0);
+    assert_eq!(plain.t_s, among.t_s);
+    for (channel, values) in &plain.channels {
+        let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        for (here, there) in values.iter().zip(&among.channels[channel]) {
+            assert!((here - there).abs() <= 1e-9 * largest, "{channel:?}: {here} and {there}");
+        }
     }
 }
 

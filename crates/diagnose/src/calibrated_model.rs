@@ -16,6 +16,8 @@ use sistership_residual::{Nuisance, NuisanceKind, lacked_name};
 pub struct CalibratedModel {
     pub model: Model,
     pub law: Law,
+    /// Whether instruments follow the rates that the filter expects: as on its own trials.
+    pub expected_rates: bool,
 }
 
 impl CalibratedModel {
@@ -64,6 +66,7 @@ impl CalibratedModel {
         let law = law
             .with_effects(&model)
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
-        Ok(Self { model, law })
+        let expected_rates = model.uncertainty.as_ref().is_none_or(|known| known.expected_rates);
+        Ok(Self { model, law, expected_rates })
     }
 }

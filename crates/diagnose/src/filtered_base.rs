@@ -136,6 +136,7 @@ impl<'a> FilteredBase<'a> {
         let frame: VelocityFrame = self.workspace.frame();
         let columns = Columns { nuisance: Vec::new(), candidates: candidates.to_vec() };
         let system = ResidualSystem::new(&learned.model, &learned.law, columns, frame)?;
+        let system = system.with_expected_rates(learned.expected_rates);
         let records = self.workspace.records();
         let linear: Vec<Vec<Linearised>> = records
             .par_iter()

@@ -42,7 +42,7 @@ mod values;
 use std::sync::Arc;
 
 pub use as_recorded::as_recorded;
-pub use calibrate::calibrate;
+pub use calibrate::{CalibrationSettings, calibrate};
 pub use expected::{ExpectedInformation, Unknowns, forms_of};
 pub use outcome::{
     Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,

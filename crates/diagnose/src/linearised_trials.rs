@@ -113,7 +113,7 @@ impl<'a> LinearisedTrials<'a> {
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
-        let CalibratedModel { model, law } = learned;
+        let CalibratedModel { model, law, expected_rates } = learned;
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| {
             RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
@@ -128,6 +128,7 @@ impl<'a> LinearisedTrials<'a> {
             trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;
+        let system = system.with_expected_rates(*expected_rates);
         let noise = Noise::default();
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }

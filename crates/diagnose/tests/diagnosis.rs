@@ -7,7 +7,9 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, Normal};
-use sistership_diagnose::{Diagnosis, OriginKind, Request, Settings, Verdict, diagnose};
+use sistership_diagnose::{
+    CalibrationSettings, Diagnosis, OriginKind, Request, Settings, Verdict, calibrate, diagnose,
+};
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, at};
@@ -20,6 +22,10 @@ const NOISE: [f64; 6] = [2.5e-3, 3e-3, 5e-5, 3.5e-4, 0.3, 0.3];
 
 /// The Mariner with an effect hidden in it, as its own instruments record two manoeuvres.
 fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
+    recorded(zoo, hidden, NOISE)
+}
+
+fn recorded(zoo: &Zoo, hidden: Option<AppliedEffect>, noise: [f64; 6]) -> Vec<Trial> {
     let mut truth = zoo.model("mariner").unwrap();
     truth.effects.extend(hidden);
     let ship = Ship::new(&truth, zoo.law(&truth.law).unwrap()).unwrap();
@@ -36,7 +42,7 @@ fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
     let mut record = |(place, track): (usize, &sistership_dynamics::Trajectory)| {
         let mut trial = Trial { name: format!("trial-{place}"), ..Trial::default() };
         trial.t_s = track.t_s.iter().copied().step_by(5).collect();
-        for (&(channel, index), sigma) in RECORDED.iter().zip(NOISE) {
+        for (&(channel, index), sigma) in RECORDED.iter().zip(noise) {
             let normal = Normal::new(0.0, sigma).unwrap();
             let noisy = track
                 .column(index)
@@ -196,4 +202,25 @@ fn a_compass_that_swings_is_told_by_its_readings() {
     assert_eq!(diagnosis.verdict, Verdict::Unexplained);
     let first = &diagnosis.origins[0];
     assert_eq!((first.of, first.channel.as_str()), (OriginKind::Readings, "psi"), "{first:?}");
+}
+
+/// A rate gyro of which the noise is larger than what the ship changes in a sample: a delay that is
+/// read off a path with this noise in it is there on trials of the very model.
+#[test]
+fn a_noisy_gyro_is_not_late() {
+    let zoo = Zoo::embedded().unwrap();
+    let model = zoo.model("mariner").unwrap();
+    let trials = recorded(&zoo, None, [2.5e-3, 3e-3, 8e-4, 3.5e-4, 0.3, 0.3]);
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let effects = [Arc::clone(zoo.effect("time-delay").unwrap())];
+    let law = zoo.law(&model.law).unwrap();
+    let explained = |expected_rates: bool| {
+        let settings = CalibrationSettings { expected_rates, ..CalibrationSettings::default() };
+        let uncertainty = calibrate(&model, law, &effects, &trials, settings).unwrap();
+        uncertainty.false_alarm_levels["time-delay/yaw-rate"].together
+    };
+    let (expected, on_path) = (explained(true), explained(false));
+    println!("explained by chance's share: {expected}, by rates on the path {on_path}");
+    assert!(expected < 4.0, "a chi-square of one degree by its mean: {expected}");
+    assert!(on_path > 3.0 * expected.max(1.0), "{on_path}");
 }

@@ -35,6 +35,11 @@ pub struct Uncertainty {
     /// under which the first were written.
     #[serde(rename = "habits", default, skip_serializing_if = "Vec::is_empty")]
     pub systematic_errors: Vec<AppliedEffect>,
+    /// Whether what instruments would say later was learned from the rates that the filter expects;
+    /// by those on the recorded path, whose noise is that of the readings, where absent. Later
+    /// trials are read in the same way.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub expected_rates: bool,
     /// How much each form of an effect explained of these trials, which do not have it: by
     /// `effect/form`.
     #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -268,6 +268,7 @@ impl FilterState {
             self.error.resize(width, 0.0);
             self.error[0] = linear.reading[k * linear.channels.len() + i];
             self.by_columns(linear, k, i);
+            self.by_rates(linear, k, i);
             self.gain.clear();
             self.gain.resize(order, 0.0);
             let one = [1.0];
@@ -313,6 +314,30 @@ impl FilterState {
                 *error -= value;
             }
         }
+    }
+
+    /// Where instruments follow rates, these are those of the state that is expected.
+    #[inline(always)]
+    fn by_rates(&mut self, linear: &Linearised, k: usize, channel: usize) {
+        for response in linear.by_rate.iter().filter(|response| response.channel == channel) {
+            let faster = self.faster(linear, k, response.state);
+            let place = response.column.map_or(0, |column| 1 + column);
+            if let Some(error) = self.error.get_mut(place) {
+                *error -= response.by[k] * faster;
+            }
+        }
+    }
+
+    /// By how much a state changes faster where the filter expects the ship than on the path.
+    #[inline(always)]
+    fn faster(&self, linear: &Linearised, k: usize, state: usize) -> f64 {
+        let (n, axes) = (linear.sizes.states, linear.sizes.axes);
+        let interval = k.min(linear.samples.len().saturating_sub(2));
+        let row = &linear.jacobian[(interval * n + state) * n..][..n];
+        let expected = |state: usize| self.deviations[state * self.width];
+        let by_states: f64 =
+            row.iter().enumerate().map(|(state, slope)| slope * expected(state)).sum();
+        by_states + if state < axes { expected(n + state) } else { 0.0 }
     }
 }
 

@@ -40,7 +40,7 @@ pub use filter::{Discrepancies, errors, filter, filter_first, responses, whitene
 pub use gram::Gram;
 pub use likelihood::deviances;
 pub use linearise::linearise;
-pub use linearised::{Detail, Linearised};
+pub use linearised::{Detail, Linearised, RateResponse};
 pub use noise::{Instrument, Noise, floor, scatter, sparseness};
 pub use record::TrialReadings;
 pub use smoother::{Smoothed, smoothed};

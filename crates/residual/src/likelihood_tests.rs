@@ -38,6 +38,7 @@ fn part(samples: usize, every: usize, channels: &[(Channel, usize)], measured: b
         by_state: None,
         by_column: if measured { numbers.some(readings, 0.1) } else { Vec::new() },
         measured: if measured { vec![0] } else { Vec::new() },
+        by_rate: Vec::new(),
         channels: channels.to_vec(),
         every,
     }

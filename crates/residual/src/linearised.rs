@@ -27,10 +27,29 @@ pub struct Linearised {
     pub by_column: Vec<f64>,
     /// Those columns.
     pub measured: Vec<usize>,
+    /// What of `reading` and of `by_column` goes with the rate of a state.
+    pub by_rate: Vec<RateResponse>,
     /// The recorded channels with their places among the states.
     pub channels: Vec<(Channel, usize)>,
     /// Of samples, how many go with one reading.
     pub every: usize,
+}
+
+/// An instrument says more, or more by a column, as a state changes faster: one that is late does.
+///
+/// The rate on the path holds the noise of the very reading that is predicted, so that it would
+/// correlate with the prediction error of a model that is right; the rate at the state that the
+/// filter expects does not (errors in variables: Soderstrom 2007, Automatica 43, 939-958).
+#[derive(Debug, Clone, PartialEq)]
+pub struct RateResponse {
+    /// Place of the channel among those that are recorded.
+    pub channel: usize,
+    /// Column; none for what the instrument says with parameters as they are.
+    pub column: Option<usize>,
+    /// State.
+    pub state: usize,
+    /// What is said more by a unit of the rate (and of the column), at each sample.
+    pub by: Vec<f64>,
 }
 
 /// How much of a linearisation is wanted.
@@ -61,7 +80,7 @@ impl Linearised {
         Self { jacobian: other.jacobian.clone(), by_state: other.by_state.clone(), ..self }
     }
 
-    /// All columns at given parameters, as one column.
+    /// All columns at given parameters, as one column, with rates as they are on the path.
     pub fn along(&self, parameters: &[f64]) -> Self {
         let weighted =
             |row: &[f64]| row.iter().zip(parameters).map(|(value, by)| value * by).sum::<f64>();
@@ -77,6 +96,7 @@ impl Linearised {
                 .collect(),
             by_column: self.by_column.chunks_exact(self.measured.len().max(1)).map(said).collect(),
             measured: if self.measured.is_empty() { Vec::new() } else { vec![0] },
+            by_rate: Vec::new(),
             samples: self.samples.clone(),
             t_s: self.t_s.clone(),
             jacobian: self.jacobian.clone(),
@@ -115,8 +135,27 @@ impl Linearised {
             accelerations: self.in_pieces(&pieces, weights),
             by_column,
             measured: seen.into_iter().map(|(own, _)| own).collect(),
+            by_rate: self.rates_in_pieces(&pieces, weights),
             ..self.clone()
         }
+    }
+
+    fn rates_in_pieces(
+        &self,
+        pieces: &[Piece],
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Vec<RateResponse> {
+        let of = |(column, &(from, copy)): (usize, &Piece)| {
+            let weight = |t: &f64| copy.map_or(1.0, |copy| weights(*t)[copy]);
+            let weighted = |response: &RateResponse| {
+                let by = response.by.iter().zip(&self.t_s).map(|(by, t)| by * weight(t)).collect();
+                RateResponse { column: Some(column), by, ..response.clone() }
+            };
+            let own = self.by_rate.iter().filter(move |response| response.column == Some(from));
+            own.map(weighted).collect::<Vec<_>>()
+        };
+        let said = self.by_rate.iter().filter(|response| response.column.is_none()).cloned();
+        said.chain(pieces.iter().enumerate().flat_map(of)).collect()
     }
 
     fn in_pieces(&self, pieces: &[Piece], weights: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
@@ -157,6 +196,12 @@ mod tests {
             by_state: Some(vec![1.0; 3]),
             by_column: vec![5.0, 6.0, 7.0],
             measured: vec![1],
+            by_rate: vec![RateResponse {
+                channel: 0,
+                column: Some(1),
+                state: 0,
+                by: vec![-1.0; 3],
+            }],
             channels: vec![(Channel::U, 0)],
             every: 1,
         }
@@ -170,6 +215,8 @@ mod tests {
         assert_eq!(cut.accelerations, [1.0, 2.0, 0.0, 3.0, 0.0, 4.0]);
         assert_eq!(cut.measured, [1, 2]);
         assert_eq!(cut.by_column, [5.0, 0.0, 0.0, 6.0, 0.0, 7.0]);
+        let rates: Vec<_> = cut.by_rate.iter().map(|rate| (rate.column, &rate.by[..])).collect();
+        assert_eq!(rates, [(Some(1), &[-1.0, 0.0, 0.0][..]), (Some(2), &[0.0, -1.0, -1.0][..])]);
         // Together they are what was cut.
         let (whole, again) = (part().along(&[0.5, 2.0]), cut.along(&[0.5, 2.0, 2.0]));
         assert_eq!(whole.accelerations, again.accelerations);

@@ -65,6 +65,9 @@ impl<'a> PathLineariser<'a> {
             self.linearise(samples, &mut here);
             if let Some(instruments) = &mut instruments {
                 instruments.at(&self.block);
+                if block == 0 && self.system.expected_rates {
+                    out.by_rate = instruments.by_rate(&self.block, &out, &recorded);
+                }
             }
             for (lane, &k) in samples.iter().enumerate() {
                 let last = if lane > 0 { Some(&here[lane - 1]) } else { before.as_ref() };
@@ -94,6 +97,7 @@ impl<'a> PathLineariser<'a> {
             by_state: (!self.system.says.is_empty()).then(Vec::new),
             by_column: Vec::new(),
             measured: self.measuring(),
+            by_rate: Vec::new(),
             channels: recorded.iter().map(|&c| self.system.channels[c]).collect(),
             every: self.path.record.every,
         }

@@ -107,6 +107,10 @@ pub(super) fn of_instruments(place: usize) -> usize {
     INSTRUMENTS.iter().position(|&known| known == place).unwrap_or(0)
 }
 
+pub(super) fn rate_of_instruments(place: usize) -> usize {
+    INSTRUMENTS.len() + of_instruments(place)
+}
+
 /// Central differences; at the ends one-sided.
 fn slope(t_s: &[f64], values: &[f64], k: usize) -> f64 {
     let (before, after) = (k.saturating_sub(1), (k + 1).min(values.len() - 1));

@@ -34,6 +34,8 @@ pub struct ResidualSystem {
     pub inputs: Vec<(String, Option<f64>)>,
     /// Velocities over the ground or through the water.
     pub frame: VelocityFrame,
+    /// Whether instruments that follow rates follow those that the filter expects.
+    pub expected_rates: bool,
     pub(super) motion: Motion,
     pub(super) regressors: Tape,
     pub(super) instruments: Tape,
@@ -89,9 +91,15 @@ impl ResidualSystem {
             axes: axes.to_vec(),
             channels,
             frame,
+            expected_rates: true,
             instruments,
             says,
         })
+    }
+
+    /// The same with the rates that the filter expects, or those on the path.
+    pub fn with_expected_rates(self, expected_rates: bool) -> Self {
+        Self { expected_rates, ..self }
     }
 
     /// Number of the filter's states without discrepancies.

@@ -54,6 +54,9 @@ pub(super) struct ResidualThresholds {
     /// derived: white noise falls to a third, and a rudder that is recorded as often as usual moves
     /// for longer.
     pub band_mean: usize,
+    /// Least of what an instrument says more by a unit of a rate and of a parameter, in units of
+    /// both. Source: derived: a delay's is 1, and what stands below is rounding.
+    pub least_rate_response: f64,
 }
 
 /// The values.
@@ -72,4 +75,5 @@ pub(super) const RESIDUAL: ResidualThresholds = ResidualThresholds {
     lag_step_s: 0.01,
     band_step: 1e-3,
     band_mean: 9,
+    least_rate_response: 1e-9,
 };

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use sistership_tests::truth::family::Hull;
+
 /// The first seed that is kept for judgement.
 const JUDGEMENT: u64 = 1000;
 
@@ -37,6 +39,8 @@ pub struct Arguments {
     pub ships: u64,
     /// The first of their seeds, which also seeds the instruments.
     pub seed: u64,
+    /// Their kind.
+    pub hull: Hull,
     /// One data set of `choice`.
     pub data: Option<String>,
     /// The program that is judged; this tree's where absent.
@@ -78,10 +82,11 @@ impl Arguments {
             "--jobs" => self.jobs = number() as usize,
             "--calls" => self.alone = value == "plain",
             "--limit" => self.limit_s = number(),
+            "--hull" => self.hull = Hull::named(&value).unwrap_or_else(|error| panic!("{error}")),
             "--data" => self.data = Some(value),
             "--program" => self.program = Some(value.into()),
             _ => panic!(
-                "there are --ships, --seed, --data, --calls, --program, --jobs and --limit, not \
+                "there are --ships, --seed, --hull, --data, --calls, --program, --jobs and --limit, not \
                  {flag}"
             ),
         }
@@ -116,6 +121,7 @@ impl Default for Arguments {
             part: None,
             ships: 50,
             seed: JUDGEMENT,
+            hull: Hull::default(),
             data: None,
             program: None,
             jobs: 1,

@@ -10,7 +10,6 @@ use sistership_model::{Model, Zoo};
 use sistership_tests::synthetic::{relative, replica};
 use sistership_tests::truth::dimensions::Dimensions;
 use sistership_tests::truth::files::particulars;
-use sistership_tests::truth::motion::Truth;
 
 use crate::arguments::Arguments;
 use crate::call::Call;
@@ -40,7 +39,9 @@ pub fn run(program: &Program, arguments: &Arguments) {
             let call = Call { zoo, ..Call::default() };
             counted(call.refine(program, &data).0.judged.ok().map(|judged| judged.error))
         };
-        [error(None), error(Some(folder))]
+        let errors = [error(None), error(Some(folder))];
+        eprintln!("ship {seed} | {errors:?}");
+        errors
     });
     let column = |place: usize| ships.iter().map(|errors| errors[place]).collect::<Vec<_>>();
     let ratios: Vec<f64> = ships.iter().map(|[without, with]| with / without).collect();

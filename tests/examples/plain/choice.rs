@@ -16,6 +16,8 @@ use crate::judge::{Judged, errors};
 use crate::program::Program;
 use crate::sources::{names, unrefined};
 
+/// The data sets.
+const NAMES: [&str; 6] = ["sr108", "esso-osaka", "tanker", "ferry", "container", "model"];
 /// Trials that a call gets of a synthetic ship.
 const TRIALS: usize = 6;
 /// The plain call may be worse than the best explicit one by so much.
@@ -37,25 +39,27 @@ pub fn run(program: &Program, arguments: &Arguments) {
         "| --- | --: | --: | --- | --: | --: | --: | --: | --: | --: | --- | --: | --: | --- | \
          --: |"
     );
-    for name in ["sr108", "esso-osaka", "tanker", "ferry", "container", "model"] {
-        if arguments.data.as_deref().is_none_or(|only| only == name) {
-            match data(name, arguments.seed) {
-                Some(data) => row(program, name, &data),
-                None => println!("| {name} | skipped: the data are not here |"),
-            }
+    let only = arguments.data.as_deref();
+    for name in only.map_or(NAMES.to_vec(), |only| vec![only]) {
+        match data(name, arguments) {
+            Some(data) => row(program, name, &data),
+            None => println!("| {name} | skipped: the data are not here |"),
         }
     }
     println!();
 }
 
-fn data(name: &str, seed: u64) -> Option<DataSet> {
+fn data(name: &str, arguments: &Arguments) -> Option<DataSet> {
+    let seed = arguments.seed;
     match name {
         "sr108" => sr108(),
         "esso-osaka" => esso_osaka(Some(0)),
         "tanker" => Some(synthetic(&tanker(), TRIALS, seed)),
         "ferry" => Some(synthetic(&ferry(), TRIALS, seed)),
         "container" => Some(synthetic(&container(), TRIALS, seed)),
-        _ => Some(synthetic(&model_tanker(), TRIALS, seed)),
+        "model" => Some(synthetic(&model_tanker(), TRIALS, seed)),
+        "drawn" => Some(synthetic(&*arguments.hull.ship(seed), TRIALS, seed)),
+        _ => panic!("--data is one of {} or drawn, not {name}", NAMES.join(", ")),
     }
 }
 

@@ -27,8 +27,10 @@ pub fn run(program: &Program, arguments: &Arguments) {
         COUNTS.map(|count| {
             let data = synthetic(ship, count, seed);
             let error = |call: &Call| call.refine(program, &data).0.judged.ok().map(|j| j.error);
-            let errors = calls.iter().map(error).collect();
-            Outcome { errors, unrefined: unrefined(program, &data) }
+            let errors: Vec<Option<f64>> = calls.iter().map(error).collect();
+            let unrefined = unrefined(program, &data);
+            eprintln!("ship {seed} | {count} | {:?} | {:?}", errors[0], unrefined.nearest);
+            Outcome { errors, unrefined }
         })
     });
     println!(

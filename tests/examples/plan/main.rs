@@ -21,7 +21,7 @@ fn main() {
     let arguments = Arguments::given();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs).build();
     let one = |seed: u64| {
-        let outcome = ship::run(&family::ship(seed), seed, arguments.budget_min);
+        let outcome = ship::run(&family::single_screw(seed), seed, arguments.budget_min);
         eprintln!("ship {seed} done");
         outcome.inspect_err(|error| println!("ship {seed}: {error}")).ok()
     };

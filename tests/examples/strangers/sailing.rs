@@ -108,7 +108,7 @@ fn orders(manoeuvre: Manoeuvre) -> Orders {
 }
 
 fn of_truth(seed: u64) -> Option<Sailed> {
-    let ship = family::ship(seed);
+    let ship = family::single_screw(seed);
     let text = truth::files::vessel(ship.dimensions());
     let instruments = Instruments::of(&ship);
     let all = figures(&ship);

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use sistership_tests::truth::family::Hull;
+
 /// Which ships.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Half {
@@ -28,6 +30,8 @@ pub struct Arguments {
     pub changes: bool,
     /// Numbers that draw ships, which take the place of those of the half.
     pub drawn: Vec<u64>,
+    /// The kind of hull that they draw.
+    pub hull: Hull,
     /// The program that is judged; this tree's where absent.
     pub program: Option<PathBuf>,
     /// Where refined models are kept.
@@ -66,6 +70,7 @@ impl Arguments {
             winds: Vec::new(),
             changes: false,
             drawn: Vec::new(),
+            hull: Hull::default(),
             program: None,
             models: None,
             jobs: 1,
@@ -88,6 +93,7 @@ impl Arguments {
                 let number = |text: &String| text.parse().expect("a number that draws a ship");
                 self.drawn = listed().iter().map(number).collect();
             }
+            "--hull" => self.hull = Hull::named(value).unwrap_or_else(|error| panic!("{error}")),
             "--program" => self.program = Some(value.into()),
             "--models" => self.models = Some(value.into()),
             "--jobs" => self.jobs = value.parse().expect("a number of jobs"),

@@ -38,14 +38,14 @@ pub struct Refined {
 /// that is straight-line unstable, a ferry with two propellers and a tanker model of 3 m for
 /// judgement.
 pub fn of(arguments: &Arguments) -> Vec<TrueShip> {
-    let drawn = |number: &u64| TrueShip { truth: Box::new(family::ship(*number)), seed: *number };
+    let drawn = |number: &u64| TrueShip { truth: arguments.hull.ship(*number), seed: *number };
     if !arguments.drawn.is_empty() {
         return arguments.drawn.iter().map(drawn).collect();
     }
     let all: Vec<TrueShip> = match arguments.half {
         Half::Work => vec![
             TrueShip { truth: Box::new(container()), seed: 11 },
-            TrueShip { truth: Box::new(family::ship(7)), seed: 13 },
+            TrueShip { truth: Box::new(family::single_screw(7)), seed: 13 },
         ],
         Half::Judgement => vec![
             TrueShip { truth: Box::new(tanker()), seed: 1011 },

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sistership_diagnose::calibrate;
+use sistership_diagnose::{CalibrationSettings, calibrate};
 use sistership_estimate::refine::{Request, Settings, refine};
 use sistership_model::{Effect, Law, Model, Trial};
 
@@ -56,7 +56,8 @@ pub fn by(
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let uncertainty = calibrate(&model, law, &library(), trials, (None, false))
+    let settings = CalibrationSettings { expected_rates: true, ..CalibrationSettings::default() };
+    let uncertainty = calibrate(&model, law, &library(), trials, settings)
         .unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);

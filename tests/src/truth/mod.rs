@@ -25,6 +25,7 @@ pub mod rudder;
 pub mod single_screw;
 pub mod stability;
 pub mod tanker;
+pub mod twin_screw;
 
 use sistership_model::Trial;
 

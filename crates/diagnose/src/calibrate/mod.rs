@@ -40,17 +40,25 @@ struct Calibration<'a> {
     trials: &'a [&'a Trial],
     /// Those on which the noise model is learned.
     noise: &'a [&'a Trial],
-    /// Whether no more is computed than needed.
-    economical: bool,
+    settings: CalibrationSettings,
+}
+
+/// How it is learned what trials leave open: by a refinement's settings of these names.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct CalibrationSettings {
+    /// Samples of the trials on which the noise model is learned; all where absent.
+    pub samples: Option<usize>,
+    /// No more is computed than needed: the noise model is searched in two rounds, and instruments
+    /// among the errors that seem to be there.
+    pub economical: bool,
+    /// Instruments that follow rates follow those that the filter expects.
+    pub expected_rates: bool,
 }
 
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
 /// library's grammar that the model lacks are learned too, as far as those trials show them; and
 /// what effects would explain of these trials, which do not have them, is kept to judge them by
 /// later.
-///
-/// Where no more is to be computed than needed (`economical`), the noise model is searched in two
-/// rounds, and instruments among the errors that seem to be there.
 ///
 /// Given a number of samples, the noise model, which is asked for again and again, is learned on
 /// trials that have about so many between them and stand for all; each trial is then linearised
@@ -63,20 +71,20 @@ pub fn calibrate(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
-    (samples, economical): (Option<usize>, bool),
+    settings: CalibrationSettings,
 ) -> Result<Uncertainty, RefineError> {
-    let places = representative(trials, samples.unwrap_or(usize::MAX));
+    let places = representative(trials, settings.samples.unwrap_or(usize::MAX));
     let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
-    let calibration = Calibration { law, effects, trials, noise: &noise, economical };
+    let calibration = Calibration { law, effects, trials, noise: &noise, settings };
     let model = &Model { uncertainty: None, ..model.clone() };
     let learned = calibration.learn(model, None)?;
     let first = calibration.left_open(&learned)?;
     let systematic_errors =
-        systematic_errors::of(model, &first, law, effects, (&noise, economical))?;
+        systematic_errors::of(model, &first, law, effects, (&noise, settings.economical))?;
     if systematic_errors.is_empty() {
         return calibration.judged(&learned);
     }
-    let found = economical.then_some(learned.found);
+    let found = settings.economical.then_some(learned.found);
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
     let erring = Model { uncertainty: Some(erring), ..model.clone() };
     calibration.judged(&calibration.learn(&erring, found)?)
@@ -101,7 +109,8 @@ impl<'a> Calibration<'a> {
     /// Shift and noise where instruments err as the model's uncertainty says, or not at all; from
     /// the noise where they were said not to, where that has been learned.
     fn learn(&self, model: &Model, start: Option<NoiseModel>) -> Result<Learned<'a>, RefineError> {
-        let &Self { law, effects, trials, noise, economical } = self;
+        let &Self { law, effects, trials, noise, settings } = self;
+        let economical = settings.economical;
         let terms = learned(model, law, effects, trials);
         let extra: Vec<_> = terms
             .iter()
@@ -109,11 +118,14 @@ impl<'a> Calibration<'a> {
             .collect();
         let nuisance = Columns::nuisance(model, law, &extra);
         let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
-        let as_it_is =
-            CalibratedModel::new(model, law, &terms, &nuisance, &vec![0.0; nuisance.len()])?;
+        let moved = |shift: &[f64]| -> Result<CalibratedModel, RefineError> {
+            let moved = CalibratedModel::new(model, law, &terms, &nuisance, shift)?;
+            Ok(CalibratedModel { expected_rates: settings.expected_rates, ..moved })
+        };
+        let as_it_is = moved(&vec![0.0; nuisance.len()])?;
         let (shift, rough) = first_shift(&as_it_is, &nuisance, &prior, (noise, start, economical))?;
         let fixed = prior.from(&shift);
-        let shifted = CalibratedModel::new(model, law, &terms, &nuisance, &shift)?;
+        let shifted = moved(&shift)?;
         let all_at_once = noise.len() == trials.len();
         let columns = if all_at_once {
             self.whole(model, &nuisance)
@@ -163,7 +175,7 @@ impl<'a> Calibration<'a> {
         };
         match &learned.kept {
             Some((all, grams)) => of(all, grams),
-            None if self.economical => {
+            None if self.settings.economical => {
                 let all = self.without_effects(learned, self.noise)?;
                 of(&all, &all.each(discrepancies)?)
             }
@@ -312,6 +324,7 @@ fn uncertainty(
         discrepancy,
         instruments: instruments(&workspace.noise, &learned.scatter),
         systematic_errors: Vec::new(),
+        expected_rates: learned.shifted.expected_rates,
         false_alarm_levels: BTreeMap::new(),
         remainder: BTreeMap::new(),
         trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),

@@ -219,6 +219,11 @@ pub struct Settings {
     /// in two rounds. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub economical: bool,
+    /// What late instruments would explain of the trials is learned from the rates that the filter
+    /// expects, not from those on the recorded path, whose noise is that of the readings: a right
+    /// model seems late by it. Every new order has it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub expected_rates: bool,
     /// The noise model of what the trials leave open is learned on whole trials of about so many
     /// samples in all, those that differ most. Where absent, on all. The default search sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -267,6 +272,7 @@ impl Default for Settings {
             posterior_by_folds: false,
             folds_pooled: false,
             economical: false,
+            expected_rates: false,
             calibration_samples: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),
@@ -282,6 +288,7 @@ impl Settings {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
         self.recorded_revolutions |= self.prior == Prior::Mixture;
+        self.expected_rates = true;
         self
     }
 

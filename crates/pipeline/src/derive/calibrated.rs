@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use sistership_diagnose::calibrate;
+use sistership_diagnose::{CalibrationSettings, calibrate};
 use sistership_estimate::refine::Refinement;
 use sistership_model::trial::Trial;
 use sistership_model::{Effect, Law};
@@ -19,8 +19,12 @@ pub fn with_uncertainty(
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    let extent = (refinement.settings.calibration_samples, refinement.settings.economical);
-    match calibrate(&refinement.model, law, effects, &fitted, extent) {
+    let settings = CalibrationSettings {
+        samples: refinement.settings.calibration_samples,
+        economical: refinement.settings.economical,
+        expected_rates: refinement.settings.expected_rates,
+    };
+    match calibrate(&refinement.model, law, effects, &fitted, settings) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks

@@ -80,11 +80,12 @@ fn sailed(ship: &dyn Truth, hidden: &Hidden, course: &Course) -> Trajectory {
         let follow =
             |angle, standing: &mut Standing| standing.after(angle, t_s / duration_s, STEP_S);
         let is_there = t_s >= hidden.since * duration_s;
+        let recorded_rad = state[at::DELTA];
         let actual_rad = match is_there {
-            true => gear.iter_mut().fold(state[at::DELTA], follow),
-            false => state[at::DELTA],
+            true => gear.iter_mut().fold(recorded_rad, follow),
+            false => recorded_rad,
         };
-        state = sea.step(t_s, &state, order_rad, actual_rad);
+        state = sea.step(t_s, &state, order_rad, actual_rad - recorded_rad);
     }
     track
 }
@@ -109,21 +110,23 @@ impl Sea<'_> {
         state
     }
 
-    fn step(&self, t_s: f64, state: &StateVector, order_rad: f64, actual_rad: f64) -> StateVector {
+    /// What the gear adds to the recorded rudder stays within a step, not where the rudder is:
+    /// held for a step it would follow by half a step late in trials without any gear.
+    fn step(&self, t_s: f64, state: &StateVector, order_rad: f64, added_rad: f64) -> StateVector {
         Method::Rk4.step(state, STEP_S, |fraction, at| {
-            let accelerations = self.accelerations(t_s + fraction * STEP_S, at, actual_rad);
+            let accelerations = self.accelerations(t_s + fraction * STEP_S, at, added_rad);
             rate_under(self.ship, at, order_rad, accelerations)
         })
     }
 
-    fn accelerations(&self, t_s: f64, state: &StateVector, actual_rad: f64) -> [f64; 4] {
+    fn accelerations(&self, t_s: f64, state: &StateVector, added_rad: f64) -> [f64; 4] {
         let share = t_s / self.duration_s;
         let [along, across] =
             self.hidden.current.map_or([0.0; 2], |current| current.seen(share, state[at::PSI]));
         let mut relative = *state;
         relative[at::U] -= along;
         relative[at::V] -= across;
-        relative[at::DELTA] = actual_rad;
+        relative[at::DELTA] += added_rad;
         let mut all = self.ship.accelerations(&relative, self.ship.revolutions_rps());
         let mut add = |more: &[f64]| all.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         if let Some(current) = self.hidden.current {

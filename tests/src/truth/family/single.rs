@@ -1,37 +1,27 @@
-//! Ships at random: particulars, form and scatter of the laws drawn by a seed.
+//! Ships with one propeller and one rudder.
 
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 
-use super::cross_flow::CrossFlow;
-use super::dimensions::Dimensions;
-use super::manoeuvre::figures;
-use super::propeller::Propeller;
-use super::resistance::Resistance;
-use super::rudder::Rudder;
-use super::single_screw::{Form, SingleScrew};
-use super::stability::growth_rate;
-use crate::synthetic::replica;
+use super::steerable;
+use crate::truth::cross_flow::CrossFlow;
+use crate::truth::dimensions::{Dimensions, GRAVITY};
+use crate::truth::propeller::Propeller;
+use crate::truth::resistance::Resistance;
+use crate::truth::rudder::Rudder;
+use crate::truth::single_screw::{Form, SingleScrew};
 
 /// Block coefficient from which on a ship is a tanker.
 const FULL: f64 = 0.74;
-/// A ship less stable than this (growth by `U/L`) is drawn again: none is built so.
-const GROWTH_AT_MOST: f64 = 0.25;
-/// Figures of a ship that sails every turn and zigzag to its end.
-const ALL_FIGURES: usize = 12;
 
-/// The ship of a seed: drawn until it turns to both sides and ends every zigzag.
-pub fn ship(seed: u64) -> SingleScrew {
-    let mut rng = replica(seed, 0);
-    loop {
-        let dimensions = dimensions(seed, &mut rng);
-        let form = form(&dimensions, &mut rng);
-        let ship = SingleScrew::new(dimensions, form);
-        if growth_rate(&ship) < GROWTH_AT_MOST && figures(&ship).len() == ALL_FIGURES {
-            return ship;
-        }
-    }
+/// The ship of a seed.
+pub fn single_screw(seed: u64) -> SingleScrew {
+    steerable(seed, |rng| {
+        let dimensions = dimensions(seed, rng);
+        let form = form(&dimensions, rng);
+        SingleScrew::new(dimensions, form)
+    })
 }
 
 /// Particulars in the ranges of merchant ships; speed by a Froude number that falls with fullness,
@@ -59,7 +49,7 @@ fn dimensions(seed: u64, rng: &mut ChaCha12Rng) -> Dimensions {
         rudder_area_m2,
         rudder_height_m: (rudder_area_m2 * aspect_ratio).sqrt(),
         propeller_diameter_m: draught_m * rng.random_range(0.50..0.70),
-        speed_m_s: froude * (super::dimensions::GRAVITY * lpp_m).sqrt(),
+        speed_m_s: froude * (GRAVITY * lpp_m).sqrt(),
         density_kg_m3: 1025.0,
         upright: None,
     }
