@@ -10,7 +10,7 @@ use super::evidence::DiscrepancyFactor;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::limits::limits;
-use super::misfit::shadow_share;
+use super::misfit::{is_as_published, shadow_share};
 use super::outcome::DetectionLimit;
 use super::placebo::is_placebo;
 use super::screening::{ScreenedEffect, screen};
@@ -305,8 +305,8 @@ impl EffectChoice {
         self.stands(search, found, settings, evidence) && held_out(found) > held_out(self.best())
     }
 
-    /// Whether the evidence for the effect that came last is enough, and more than a shadow of the
-    /// others'.
+    /// Whether all are such as authors have them, and the evidence for the one that came last is
+    /// enough, and more than a shadow of the others'.
     fn stands(
         &self,
         search: &HypothesisSearch<'_>,
@@ -315,11 +315,13 @@ impl EffectChoice {
         of_last: f64,
     ) -> bool {
         let last = found.candidates.len() - 1;
-        let evidence = self.bounded(found, &all_evidence(search, found));
-        of_last > settings.least_evidence.max(shadow(found, &evidence, last))
+        let evidence = all_evidence(search, found);
+        found.candidates.iter().all(is_as_published)
+            && of_last > settings.least_evidence.max(self.shadow(found, &evidence, last))
     }
 
-    /// The weakest of effects that are judged together, where the evidence for it is not enough.
+    /// One of effects that are judged together which has become another's, or the weakest, where the
+    /// evidence for it is not enough.
     fn needless(
         &self,
         search: &HypothesisSearch<'_>,
@@ -327,19 +329,31 @@ impl EffectChoice {
         settings: &Settings,
     ) -> Option<usize> {
         let evidence = all_evidence(search, best);
-        let bounded = self.bounded(best, &evidence);
         let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
-        weakest.filter(|&place| {
-            evidence[place] <= settings.least_evidence.max(shadow(best, &bounded, place))
-        })
+        let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
+        other.or(weakest.filter(|&place| {
+            evidence[place] <= settings.least_evidence.max(self.shadow(best, &evidence, place))
+        }))
     }
 
-    /// The evidence for each effect of a set, none more than what the set has over the model alone:
-    /// seen from where all stand, the level of the random accelerations is that of the whole set,
-    /// at which a strong effect is worth a hundred times what it explains of the trials.
-    fn bounded(&self, judged: &JudgedHypothesis, evidence: &[f64]) -> Vec<f64> {
-        let most = judged.log_evidence - self.alone.log_evidence;
-        evidence.iter().map(|evidence| evidence.min(most)).collect()
+    /// What the others of a set leave unexplained where their forms are another author's than
+    /// nature's: an effect beside them that explains no more may be that. It does not follow a
+    /// record from outside: placebos would explain as much of it.
+    ///
+    /// The others explain what the set has over the model alone but for this effect, each its share
+    /// of that. Seen from where all stand, one is worth a hundred times what it explains, for the
+    /// level of the random accelerations is that of the whole set; or next to nothing, where another
+    /// explains the same.
+    fn shadow(&self, judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
+        if is_from_outside(&judged.candidates[place]) {
+            return 0.0;
+        }
+        let of_set = judged.log_evidence - self.alone.log_evidence;
+        let explained = (of_set - evidence[place].max(0.0)).max(0.0);
+        let others = || (0..evidence.len()).filter(|other| *other != place);
+        let sum: f64 = others().map(|other| evidence[other].max(0.0)).sum();
+        let of = |other: usize| shadow_share(&judged.candidates[other]) * evidence[other].max(0.0);
+        if sum > 0.0 { others().map(of).sum::<f64>() * explained / sum } else { 0.0 }
     }
 }
 
@@ -366,15 +380,4 @@ fn fitting_first(
 fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec<f64> {
     let evidence = |place: usize| search.evidence(judged, place).unwrap_or(f64::NEG_INFINITY);
     (0..judged.candidates.len()).map(evidence).collect()
-}
-
-/// What the others leave unexplained where their forms are another author's than nature's: an
-/// effect beside them that explains no more may be that. It does not follow a record from outside:
-/// placebos would explain as much of it.
-fn shadow(judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
-    if is_from_outside(&judged.candidates[place]) {
-        return 0.0;
-    }
-    let of = |other: usize| shadow_share(&judged.candidates[other]) * evidence[other].max(0.0);
-    (0..evidence.len()).filter(|other| *other != place).map(of).sum()
 }

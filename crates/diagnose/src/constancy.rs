@@ -9,6 +9,7 @@ use super::discount::is_from_outside;
 use super::evidence::{MarginalInformation, NormalPrior};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::{JudgedHypothesis, priors};
+use super::misfit::shadow_share;
 use super::placebo::follow_records;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
@@ -35,8 +36,11 @@ pub(super) fn inconstant(
     let one =
         |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
     let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
+    // A form that is not nature's asks for another size where the ship moves otherwise, too.
+    let limit =
+        |place: usize| THRESHOLDS.constancy.limit.max(shadow_share(&judged.candidates[place]));
     let mut places: Vec<usize> =
-        (0..varies.len()).filter(|&place| varies[place] > THRESHOLDS.constancy.limit).collect();
+        (0..varies.len()).filter(|&place| varies[place] > limit(place)).collect();
     let is_outside = |place: &usize| is_from_outside(&judged.candidates[*place]);
     if places.iter().any(is_outside) && follow_records(search, judged, margin)? {
         places.retain(|place| !is_outside(place));

@@ -7,10 +7,11 @@ use sistership_model::uncertainty::{FalseAlarmLevel, Uncertainty};
 use super::thresholds::THRESHOLDS;
 use sistership_residual::EffectCandidate;
 
-/// The factor by which the information on an effect is divided.
+/// The factor by which the information on an effect is divided. `listed` are all that can be tried.
 pub(super) fn discount(
     uncertainty: Option<&Uncertainty>,
     candidate: &EffectCandidate,
+    listed: &[EffectCandidate],
     trials: usize,
 ) -> f64 {
     let Some(known) = uncertainty else { return THRESHOLDS.effect.unknown_discount };
@@ -21,14 +22,20 @@ pub(super) fn discount(
         level.each.max(together).max(1.0)
     };
     // What comes from outside was there on clean trials too where it is recorded at all: it is
-    // judged by records of other times instead.
+    // judged by records of other times instead, and by what other forces and flows would explain of
+    // these, which a law that cannot follow the ship does; an instrument that errs is none of its.
+    let of_instruments = |key: &String| {
+        let errs = |candidate: &&EffectCandidate| candidate.key() == *key;
+        listed.iter().find(errs).is_some_and(|known| !known.form.measures.is_empty())
+    };
     let own = known
         .false_alarm_levels
         .get(&candidate.key())
         .filter(|_| !is_from_outside(candidate))
         .map(of);
     own.unwrap_or_else(|| {
-        let mut all: Vec<f64> = known.false_alarm_levels.values().map(of).collect();
+        let levels = known.false_alarm_levels.iter().filter(|(key, _)| !of_instruments(key));
+        let mut all: Vec<f64> = levels.map(|(_, level)| of(level)).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(1.0)
     })

@@ -156,7 +156,7 @@ impl<'a> HypothesisSearch<'a> {
 
     /// The factor by which the information on an effect is discounted.
     pub fn discount(&self, candidate: &EffectCandidate) -> f64 {
-        discount(self.model.uncertainty.as_ref(), candidate, self.trials.len())
+        discount(self.model.uncertainty.as_ref(), candidate, &self.listed, self.trials.len())
     }
 
     /// Logarithm of the prior probability of an effect among all that can be tried.

@@ -44,7 +44,7 @@ DiagnosisSettings = TypedDict('DiagnosisSettings', {'least_evidence': 'float', '
 Discrepancy = TypedDict('Discrepancy', {'deviation': 'float', 'time_s': 'float', 'white': 'float'}, total=True)
 Drift = TypedDict('Drift', {'ratio': 'Dict[str, float]', 'reason': 'Union[str, None]', 'ship': 'str', 'trials': 'List[TrialResidual]', 'version': 'int', 'worst': 'Union[float, None]'}, total=False)
 EffectLibraryHead = TypedDict('EffectLibraryHead', {'created_us': 'int', 'sha256': 'str'}, total=True)
-EffectParameterFile = TypedDict('EffectParameterFile', {'absent': 'float', 'bounds': 'List[float]', 'meaning': 'str', 'mirror': 'Mirror', 'prior': 'PriorFile', 'start': 'Union[float, None]', 'unit': 'str'}, total=False)
+EffectParameterFile = TypedDict('EffectParameterFile', {'absent': 'float', 'bounds': 'List[float]', 'meaning': 'str', 'mirror': 'Mirror', 'prior': 'PriorFile', 'shape': 'bool', 'start': 'Union[float, None]', 'unit': 'str'}, total=False)
 EntryView = TypedDict('EntryView', {'action': 'str', 'actor': 'str', 'after': 'Union[Dict[str, Any], None]', 'at_us': 'int', 'before': 'Union[Dict[str, Any], None]', 'number': 'int', 'origin': 'str', 'previous_sha256': 'str', 'sha256': 'str', 'subject': 'str'}, total=False)
 Estimate = TypedDict('Estimate', {'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
 Estimator = Any  # The estimator.

@@ -31,6 +31,12 @@ pub(crate) struct EffectThresholds {
     /// dimensionless. Source: chosen; with a turbulence of 10 to 20 % gusts alone do it, while an
     /// anemometer's scatter about a steady wind does not.
     pub least_variation: f64,
+    /// `z_s`: how improbable the coefficients of a form may be under what authors have before they
+    /// are held for another effect's, quantile of the standard normal distribution, dimensionless.
+    /// Source: derived: one in a thousand right ones is refused. On the work half, chi-squares by
+    /// their degrees of freedom were at most 1.4 where the effect was there, and 4.5 to 15 where a
+    /// force that no effect has was taken for it; 22.5 of 6 is this limit.
+    pub shape_quantile: f64,
     /// `h`: step of numerical derivatives of what is reported, by the parameter's standard error,
     /// dimensionless. Source: derived: central differences err by its square.
     pub report_step: f64,
@@ -45,6 +51,7 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     mass_deviation: 0.08,
     placebo_shifts: [0.25, 0.5, 0.75],
     least_variation: 0.15,
+    shape_quantile: 3.09,
     report_step: 1e-3,
 };
 

@@ -55,6 +55,8 @@ pub struct EffectParameter {
     pub absent: f64,
     /// Where a search begins.
     pub start: f64,
+    /// Whether it is a coefficient of the form, and no size of the effect.
+    pub shape: bool,
     /// What it becomes in the mirror.
     pub mirror: Mirror,
 }

@@ -206,6 +206,7 @@ fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
         bounds: raw.bounds,
         absent: raw.absent,
         start,
+        shape: raw.shape,
         mirror: raw.mirror,
     })
 }

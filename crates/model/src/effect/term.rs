@@ -108,6 +108,7 @@ fn coefficient(deviation: f64, is_symmetric: bool) -> EffectParameterFile {
         bounds: [-20.0 * deviation, 20.0 * deviation],
         absent: 0.0,
         start: None,
+        shape: false,
         mirror: if is_symmetric { Mirror::Same } else { Mirror::Opposite },
     }
 }
