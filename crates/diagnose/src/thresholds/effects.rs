@@ -62,8 +62,8 @@ pub(crate) struct ConstancyThresholds {
     /// "the same size in both halves of every trial".
     pub pieces: usize,
     /// `v_p`: what the pieces may ask for beyond the common size and beyond chance, by the response
-    /// to that size: a squared share, dimensionless. Source: chosen, sizes in the halves that
-    /// differ by about a third.
+    /// to that size: a squared share, dimensionless; that of a form's misfit where it is larger.
+    /// Source: chosen, sizes in the halves that differ by about a third.
     pub limit: f64,
     /// `r_0`: least response by which that is divided, in squared deviations. Source: derived:
     /// keeps a division by zero away.
