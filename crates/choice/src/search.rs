@@ -40,7 +40,6 @@ fn searched_by(search: &Search<'_>) -> Settings {
         steering_above_noise: true,
         recorded_terms: true,
         recorded_revolutions: true,
-        expected_rates: true,
         posterior_by_folds: true,
         folds_pooled: true,
         economical: true,

@@ -66,7 +66,7 @@ impl CalibratedModel {
         let law = law
             .with_effects(&model)
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
-        let expected_rates = model.uncertainty.as_ref().is_none_or(|known| known.expected_rates);
+        let expected_rates = model.uncertainty.as_ref().is_some_and(|known| known.expected_rates);
         Ok(Self { model, law, expected_rates })
     }
 }

@@ -328,16 +328,16 @@ impl FilterState {
         }
     }
 
-    /// By how much a state changes faster where the filter expects the ship than on the path.
+    /// By how much the model has a state change faster where the filter expects the ship than on the
+    /// path. The discrepancy stays out: where it is not what the filter takes it for, its estimate
+    /// runs after the readings, and their prediction errors go with it.
     #[inline(always)]
     fn faster(&self, linear: &Linearised, k: usize, state: usize) -> f64 {
-        let (n, axes) = (linear.sizes.states, linear.sizes.axes);
+        let n = linear.sizes.states;
         let interval = k.min(linear.samples.len().saturating_sub(2));
         let row = &linear.jacobian[(interval * n + state) * n..][..n];
         let expected = |state: usize| self.deviations[state * self.width];
-        let by_states: f64 =
-            row.iter().enumerate().map(|(state, slope)| slope * expected(state)).sum();
-        by_states + if state < axes { expected(n + state) } else { 0.0 }
+        row.iter().enumerate().map(|(state, slope)| slope * expected(state)).sum()
     }
 }
 

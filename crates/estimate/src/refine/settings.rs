@@ -221,7 +221,7 @@ pub struct Settings {
     pub economical: bool,
     /// What late instruments would explain of the trials is learned from the rates that the filter
     /// expects, not from those on the recorded path, whose noise is that of the readings: a right
-    /// model seems late by it. Every new order has it.
+    /// model seems late by it. Off unless asked for: docs/evidence/diagnosis_unseen.md.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub expected_rates: bool,
     /// The noise model of what the trials leave open is learned on whole trials of about so many
@@ -288,7 +288,6 @@ impl Settings {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
         self.recorded_revolutions |= self.prior == Prior::Mixture;
-        self.expected_rates = true;
         self
     }
 
