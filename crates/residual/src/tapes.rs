@@ -91,7 +91,7 @@ impl ResidualSystem {
             axes: axes.to_vec(),
             channels,
             frame,
-            expected_rates: true,
+            expected_rates: false,
             instruments,
             says,
         })
