@@ -67,8 +67,8 @@ fn the_approach_is_steady() {
     }
 }
 
-/// Nothing hidden is nothing: a rudder that is held for a step would follow half of it late, which a
-/// diagnosis names.
+/// Nothing hidden is nothing: a rudder that is held for a step would follow half of it late, which
+/// a diagnosis names.
 #[test]
 fn trials_with_nothing_hidden_are_those_of_the_ship() {
     let ship = family::twin_screw(1);

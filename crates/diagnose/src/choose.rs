@@ -320,8 +320,8 @@ impl EffectChoice {
             && of_last > settings.least_evidence.max(self.shadow(found, &evidence, last))
     }
 
-    /// One of effects that are judged together which has become another's, or the weakest, where the
-    /// evidence for it is not enough.
+    /// One of effects that are judged together which has become another's, or the weakest, where
+    /// the evidence for it is not enough.
     fn needless(
         &self,
         search: &HypothesisSearch<'_>,
@@ -342,8 +342,8 @@ impl EffectChoice {
     ///
     /// The others explain what the set has over the model alone but for this effect, each its share
     /// of that. Seen from where all stand, one is worth a hundred times what it explains, for the
-    /// level of the random accelerations is that of the whole set; or next to nothing, where another
-    /// explains the same.
+    /// level of the random accelerations is that of the whole set; or next to nothing, where
+    /// another explains the same.
     fn shadow(&self, judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
         if is_from_outside(&judged.candidates[place]) {
             return 0.0;

@@ -86,8 +86,8 @@ impl Arguments {
             "--data" => self.data = Some(value),
             "--program" => self.program = Some(value.into()),
             _ => panic!(
-                "there are --ships, --seed, --hull, --data, --calls, --program, --jobs and --limit, not \
-                 {flag}"
+                "there are --ships, --seed, --hull, --data, --calls, --program, --jobs and --limit, \
+                 not {flag}"
             ),
         }
     }

@@ -2,12 +2,12 @@
 //! get, on trials that no call saw.
 //!
 //! `cargo run --release -p sistership-tests --example plain -- choice` (or `by-file`, `learning`,
-//! `candidates`, `coverage`, `all`); `--ships 50`, `--seed 1000` (below 1000 is for work, from 1000
-//! on for judgement), `--hull twin-screw` for ships with two propellers and rudders, `--data tanker`
-//! for one data set of `choice` (`drawn`: the ship of `--seed` and `--hull`), `--calls plain` for the plain
-//! call alone in `learning`, `--program FILE` for another program than this tree's, `--jobs 2` for
-//! calls at once where no time is measured, `--limit 300` seconds after which a call is given up.
-//! `docs/evidence/plain.md` has the results and what they mean.
+//! `candidates`, `coverage`, `all`); `--ships 50`, `--seed 1000` (below 1000 is for work, from
+//! 1000 on for judgement), `--hull twin-screw` for ships with two propellers and rudders, `--data
+//! tanker` for one data set of `choice` (`drawn`: the ship of `--seed` and `--hull`), `--calls
+//! plain` for the plain call alone in `learning`, `--program FILE` for another program than this
+//! tree's, `--jobs 2` for calls at once where no time is measured, `--limit 300` seconds after
+//! which a call is given up. `docs/evidence/plain.md` has the results and what they mean.
 
 mod arguments;
 mod call;

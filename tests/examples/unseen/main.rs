@@ -1,16 +1,17 @@
 //! The diagnosis by plain calls, on ships whose laws no law of the zoo contains, with effects in
 //! forms that no effect of the library has.
 //!
-//! `cargo run --release -p sistership-tests --example unseen -- work` (or `judgement`: other ships,
-//! with cases that are not looked at while the diagnosis is worked on); `--only wind,clean` for the
-//! cases whose labels begin so, `--ship NAME`, `--seeds 3` for as many sets of random numbers,
-//! `--sizes 1,0.5` for other shares of the size that is hidden, `--limits 0.5,1.5` for effects at
-//! shares of the detection limits that the diagnosis of clean trials states, `--winds 5,10,15` for
-//! steady winds of these speeds, `--changes true` for what begins within trials or between them,
-//! `--drawn 1401,1402` for ships that these numbers draw in place of those of the half (`--hull
-//! twin-screw`: with two propellers and rudders), `--program FILE` for another program than this tree's, `--models FOLDER` to keep the refined models there and take
-//! them again, `--jobs 2` for cases at once. `docs/evidence/diagnosis_unseen.md` has the results
-//! and what they mean.
+//! `cargo run --release -p sistership-tests --example unseen -- work` (or `judgement`: other
+//! ships, with cases that are not looked at while the diagnosis is worked on); `--only wind,clean`
+//! for the cases whose labels begin so, `--ship NAME`, `--seeds 3` for as many sets of random
+//! numbers, `--sizes 1,0.5` for other shares of the size that is hidden, `--limits 0.5,1.5` for
+//! effects at shares of the detection limits that the diagnosis of clean trials states, `--winds
+//! 5,10,15` for steady winds of these speeds, `--changes true` for what begins within trials or
+//! between them, `--drawn 1401,1402` for ships that these numbers draw in place of those of the
+//! half (`--hull twin-screw`: with two propellers and rudders), `--program FILE` for another
+//! program than this tree's, `--models FOLDER` to keep the refined models there and take them
+//! again, `--jobs 2` for cases at once. `docs/evidence/diagnosis_unseen.md` has the results and
+//! what they mean.
 
 mod arguments;
 mod cases;

@@ -162,8 +162,8 @@ pub struct EffectParameterFile {
     /// Where a search begins, if not at its absence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
-    /// Whether it is a coefficient of the form, in which authors differ by its prior, and no size of
-    /// the effect: trials that push all of these far out show something else.
+    /// Whether it is a coefficient of the form, in which authors differ by its prior, and no size
+    /// of the effect: trials that push all of these far out show something else.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub shape: bool,
     /// What it becomes when the ship is mirrored port to starboard.
