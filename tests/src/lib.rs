@@ -10,5 +10,6 @@ pub mod shape;
 pub mod shared;
 pub mod synthetic;
 pub mod truth;
+pub mod undeclared_wind;
 pub mod voyage;
 pub mod worker;

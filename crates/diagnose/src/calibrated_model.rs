@@ -18,6 +18,9 @@ pub struct CalibratedModel {
     pub law: Law,
     /// Whether instruments follow the rates that the filter expects: as on its own trials.
     pub expected_rates: bool,
+    /// From one reading to the next at least, s, as on its own trials; by the samples that are used
+    /// where absent.
+    pub reading_interval_s: Option<f64>,
 }
 
 impl CalibratedModel {
@@ -67,6 +70,8 @@ impl CalibratedModel {
             .with_effects(&model)
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
         let expected_rates = model.uncertainty.as_ref().is_some_and(|known| known.expected_rates);
-        Ok(Self { model, law, expected_rates })
+        let reading_interval_s =
+            model.uncertainty.as_ref().and_then(|known| known.reading_interval_s);
+        Ok(Self { model, law, expected_rates, reading_interval_s })
     }
 }

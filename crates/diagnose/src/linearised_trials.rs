@@ -14,7 +14,7 @@ use super::thresholds::THRESHOLDS;
 use sistership_estimate::refine::RefineError;
 use sistership_residual::{
     Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
-    TrialReadings, filter_first, floor, linearise, scatter, sparseness,
+    TrialReadings, filter_first, floor, linearise, reading_interval, scatter, sparseness,
 };
 use sistership_sources::transfer::approach_of;
 
@@ -84,11 +84,22 @@ impl<'a> LinearisedTrials<'a> {
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
         let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
-        let every = sparseness(&all.records);
-        all.records.iter_mut().for_each(|record| record.every = every);
+        read_apart(&mut all.records, learned.reading_interval_s);
         let known = learned.model.uncertainty.as_ref();
         all.noise = noise(&all.records, all.lpp_m, all.speed_m_s, known);
         Ok(all)
+    }
+
+    /// How far apart readings are whose noise is new, s; 0 where every sample is one.
+    ///
+    /// # Errors
+    /// Names what the model lacks.
+    pub fn own_reading_interval_s(
+        learned: &CalibratedModel,
+        trials: &'a [&'a Trial],
+    ) -> Result<f64, RefineError> {
+        let all = Self::every_sample(learned, Columns::default(), trials, None)?;
+        Ok(reading_interval(&all.records).unwrap_or_default())
     }
 
     /// Trials of which every sample is a reading, by instruments that are stated: what nobody has
@@ -113,7 +124,7 @@ impl<'a> LinearisedTrials<'a> {
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
-        let CalibratedModel { model, law, expected_rates } = learned;
+        let CalibratedModel { model, law, expected_rates, .. } = learned;
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| {
             RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
@@ -215,6 +226,17 @@ impl<'a> LinearisedTrials<'a> {
     }
 }
 
+/// Readings as far apart as their noise asks for, and at least as those of the model's own trials
+/// were.
+fn read_apart(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
+    let Some(as_before_s) = as_before_s else {
+        let every = sparseness(records);
+        return records.iter_mut().for_each(|record| record.every = every);
+    };
+    let interval_s = as_before_s.max(reading_interval(records).unwrap_or_default());
+    records.iter_mut().for_each(|record| record.read_every(interval_s));
+}
+
 /// Each instrument over all trials: its scatter, and what is known of it beside.
 fn noise(
     records: &[TrialReadings<'_>],
@@ -234,7 +256,7 @@ fn noise(
     ];
     let one = |channel: Channel| {
         let scatter = Instrument::of_scatter(
-            scatter(records, channel, records.first()?.every)?
+            scatter(records, channel, &|record| record.every)?
                 .max(floor(channel, lpp_m, speed_m_s)),
         );
         let known = known.and_then(|known| known.instruments.get(channel.name()));

@@ -40,6 +40,11 @@ pub struct Uncertainty {
     /// trials are read in the same way.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub expected_rates: bool,
+    /// From one reading whose noise is new to the next, s; 0 where every sample is one. Later trials
+    /// are read in the same way. Where absent, each set of trials is asked by the samples that are
+    /// used of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reading_interval_s: Option<f64>,
     /// How much each form of an effect explained of these trials, which do not have it: by
     /// `effect/form`.
     #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -41,7 +41,7 @@ pub use gram::Gram;
 pub use likelihood::deviances;
 pub use linearise::linearise;
 pub use linearised::{Detail, Linearised, RateResponse};
-pub use noise::{Instrument, Noise, floor, scatter, sparseness};
+pub use noise::{Instrument, Noise, floor, reading_interval, scatter, sparseness};
 pub use record::TrialReadings;
 pub use smoother::{Smoothed, smoothed};
 pub use tapes::ResidualSystem;

@@ -33,11 +33,20 @@ pub type Noise = BTreeMap<Channel, Instrument>;
 const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
 const GAIN: f64 = 924.0;
 
-/// What sixth differences leave of a ship's motion is far below the noise of any instrument; their
-/// median is not moved by the few samples at which something jumps.
-pub fn scatter(records: &[TrialReadings<'_>], channel: Channel, every: usize) -> Option<f64> {
-    let mut magnitudes: Vec<f64> =
-        records.iter().flat_map(|record| differences(record, channel, every)).collect();
+/// What sixth differences leave of a ship's motion is far below the noise of any instrument. Of each
+/// trial one sample in so many.
+pub fn scatter(
+    records: &[TrialReadings<'_>],
+    channel: Channel,
+    every: &dyn Fn(&TrialReadings<'_>) -> usize,
+) -> Option<f64> {
+    let of = |record| differences(record, channel, every(record));
+    deviation(records.iter().flat_map(of).collect())
+}
+
+/// The standard deviation of noise by magnitudes of its sixth differences; their median is not
+/// moved by the few samples at which something jumps.
+fn deviation(mut magnitudes: Vec<f64>) -> Option<f64> {
     if magnitudes.is_empty() {
         return None;
     }
@@ -47,25 +56,58 @@ pub fn scatter(records: &[TrialReadings<'_>], channel: Channel, every: usize) ->
     Some(*median / 0.6745 / GAIN.sqrt())
 }
 
-/// Of samples, how many go with one reading: noise must be new in each. Where readings were
-/// smoothed, or waves move the ship, velocities wander from sample to sample, and what is smooth
-/// would be taken for an acceleration.
+/// From one reading to the next, s: noise must be new in each. None where it is in every sample, as
+/// if this were white. Where readings were smoothed, or waves move the ship, velocities wander from
+/// sample to sample, and what is smooth would be taken for an acceleration.
+///
+/// White noise scatters alike at any spacing. It is compared with that of neighbours as they were
+/// recorded: the samples that a linearisation takes are further apart for slower ships, and by
+/// their spacing alone the same recorder would seem to smooth one set of trials and not another.
+pub fn reading_interval(records: &[TrialReadings<'_>]) -> Option<f64> {
+    let ratio = |channel: Channel| {
+        let recorded = |record: &TrialReadings<'_>| differences_recorded(record, channel);
+        let close = deviation(records.iter().flat_map(recorded).collect())?;
+        let apart = scatter(records, channel, &|_| RESIDUAL.sparse)?;
+        (close > 0.0).then(|| apart / close)
+    };
+    let is_smoothed = |channel: Channel| ratio(channel).is_some_and(|r| r > RESIDUAL.smoothed);
+    let interval_s = RESIDUAL.sparse as f64 * records.iter().find_map(TrialReadings::step_s)?;
+    // Times are kept to the microsecond.
+    let rounded_s = (1e6 * interval_s).round() / 1e6;
+    [Channel::U, Channel::V].into_iter().all(is_smoothed).then_some(rounded_s)
+}
+
+/// As [`reading_interval`] by the samples that are used, a count: as models of before it was kept
+/// with them read trials.
 pub fn sparseness(records: &[TrialReadings<'_>]) -> usize {
     let grows = |channel: Channel| {
-        let pair = scatter(records, channel, 1).zip(scatter(records, channel, RESIDUAL.sparse));
+        let of = |every: usize| scatter(records, channel, &|_| every);
+        let pair = of(1).zip(of(RESIDUAL.sparse));
         pair.is_some_and(|(close, apart)| close > 0.0 && apart > RESIDUAL.grows * close)
     };
     if grows(Channel::U) && grows(Channel::V) { RESIDUAL.sparse } else { 1 }
 }
 
 fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Vec<f64> {
+    let taken = |part: &Vec<usize>| part.iter().copied().step_by(every).collect();
+    sixth_differences(record, channel, &taken)
+}
+
+/// Of every sample that was recorded, also between those that are used.
+fn differences_recorded(record: &TrialReadings<'_>, channel: Channel) -> Vec<f64> {
+    let between = |part: &Vec<usize>| (part[0]..=part[part.len() - 1]).collect();
+    sixth_differences(record, channel, &between)
+}
+
+fn sixth_differences(
+    record: &TrialReadings<'_>,
+    channel: Channel,
+    taken: &dyn Fn(&Vec<usize>) -> Vec<usize>,
+) -> Vec<f64> {
     let Some(values) = record.trial.channel(channel) else { return Vec::new() };
     let difference =
         |window: &[usize]| SIXTH.iter().zip(window).map(|(c, &k)| c * values[k]).sum::<f64>().abs();
-    let of = |part: &Vec<usize>| {
-        let taken: Vec<usize> = part.iter().copied().step_by(every).collect();
-        taken.windows(7).map(difference).collect::<Vec<f64>>()
-    };
+    let of = |part| taken(part).windows(7).map(difference).collect::<Vec<f64>>();
     record.parts.iter().flat_map(of).collect()
 }
 
@@ -78,5 +120,73 @@ pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
         Channel::U | Channel::V => RESIDUAL.floor * speed_m_s,
         Channel::R | Channel::P => RESIDUAL.floor * rate,
         _ => RESIDUAL.floor,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sistership_model::Trial;
+
+    /// Pseudo-random numbers from -1/2 to 1/2.
+    fn white(count: usize) -> Vec<f64> {
+        let mut state = 1_u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24) - 0.5
+        };
+        (0..count).map(|_| next()).collect()
+    }
+
+    /// What a recorder of second order makes of it, whose time constants are so many samples.
+    fn smoothed(noise: &[f64], samples: f64) -> Vec<f64> {
+        smoothed_once(&smoothed_once(noise, samples), samples)
+    }
+
+    fn smoothed_once(noise: &[f64], samples: f64) -> Vec<f64> {
+        let mut level = 0.0;
+        let mut next = |new: &f64| {
+            level += (new - level) / samples;
+            level
+        };
+        noise.iter().map(&mut next).collect()
+    }
+
+    /// A turn at 10 Hz whose velocities have this noise.
+    fn trial(noise: &[f64]) -> Trial {
+        let t_s: Vec<f64> = (0..noise.len()).map(|k| 0.1 * k as f64).collect();
+        let with_noise = |motion: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            t_s.iter().zip(noise).map(|(t, noise)| motion(*t) + 0.01 * noise).collect()
+        };
+        let u = with_noise(&|t| 1.0 - 0.2 * (0.05 * t).sin());
+        let v = with_noise(&|t| 0.2 * (0.05 * t).cos());
+        let channels = [(Channel::U, u), (Channel::V, v)].into();
+        Trial { t_s, channels, ..Trial::default() }
+    }
+
+    fn interval_s(trial: &Trial, least_step_s: f64) -> Option<f64> {
+        reading_interval(&[TrialReadings::new(trial, least_step_s, 0.0)])
+    }
+
+    #[test]
+    fn white_noise_is_new_in_every_sample() {
+        let trial = trial(&white(4000));
+        assert_eq!([0.1, 0.2, 0.3].map(|step_s| interval_s(&trial, step_s)), [None; 3]);
+    }
+
+    /// By neighbours among the samples that are used, these are smoothed at one spacing and white
+    /// at another.
+    #[test]
+    fn smoothed_readings_are_so_at_whichever_spacing_samples_are_used() {
+        let trial = trial(&smoothed(&white(4000), 4.0));
+        let near = |step_s: f64, interval: f64| {
+            let found = interval_s(&trial, step_s).expect("smoothed");
+            assert!((found - interval).abs() < 1e-9, "{step_s}: {found}");
+        };
+        near(0.1, 0.5);
+        near(0.2, 1.0);
+        near(0.4, 2.0);
+        let used = |step_s| sparseness(&[TrialReadings::new(&trial, step_s, 0.0)]);
+        assert_eq!([used(0.1), used(0.4)], [5, 1], "which the samples that are used do not say");
     }
 }

@@ -28,6 +28,18 @@ impl<'a> TrialReadings<'a> {
         Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 
+    /// From one sample that is used to the next, s; none where no two are.
+    pub fn step_s(&self) -> Option<f64> {
+        let part = self.parts.first()?;
+        Some(self.trial.t_s[*part.get(1)?] - self.trial.t_s[part[0]])
+    }
+
+    /// One reading in so long a time, s.
+    pub fn read_every(&mut self, interval_s: f64) {
+        let samples = self.step_s().map_or(1.0, |step_s| (interval_s / step_s).round());
+        self.every = samples.max(1.0) as usize;
+    }
+
     /// How many samples are used.
     pub fn len(&self) -> usize {
         self.parts.iter().map(Vec::len).sum()

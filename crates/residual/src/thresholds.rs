@@ -23,9 +23,15 @@ pub(super) struct ResidualThresholds {
     /// `n_e`: samples of which one is read where readings were smoothed, a count. Source: chosen,
     /// as long as the parabola along which a model is linearised (five samples).
     pub sparse: usize,
-    /// `k_e`: how many times more sparse readings must scatter for that, dimensionless. Source:
-    /// chosen; of white noise it is 1.
+    /// `k_e`: how many times more sparse readings must scatter for that than the next samples that
+    /// are used, dimensionless. Source: chosen; of white noise it is 1. For models of before
+    /// [`Self::smoothed`].
     pub grows: f64,
+    /// `k_s`: how many times more sparse readings must scatter for that than neighbours as they
+    /// were recorded, dimensionless. Source: white noise has 1, Esso Osaka's velocities 2.9 to 5.0
+    /// across and 5.3 to 9.2 ahead, each trial by itself; their geometric middle
+    /// (`docs/evidence/diagnosis_unseen.md`, "Random divisions", with half and double).
+    pub smoothed: f64,
     /// `e_n`: least noise that is believed of an instrument, by the ship's length, speed or rate,
     /// or in rad: noise-free simulations are trials too, dimensionless. Source: chosen, far below
     /// any instrument's.
@@ -67,6 +73,7 @@ pub(super) const RESIDUAL: ResidualThresholds = ResidualThresholds {
     drift: 1e-3,
     sparse: 5,
     grows: 4.0,
+    smoothed: 2.0,
     floor: 1e-5,
     jump: 15.0,
     least_jump: 0.5,

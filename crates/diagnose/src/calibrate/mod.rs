@@ -23,7 +23,7 @@ use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::not_positive;
 use super::linearised_trials::LinearisedTrials;
-use super::nuisance::{lacked, learned, prior, regressor};
+use super::nuisance::{Terms, lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
 use super::thresholds::THRESHOLDS;
@@ -41,6 +41,8 @@ struct Calibration<'a> {
     /// Those on which the noise model is learned.
     noise: &'a [&'a Trial],
     settings: CalibrationSettings,
+    /// How far readings are apart on all of them, where that was asked for.
+    reading_interval_s: Option<f64>,
 }
 
 /// How it is learned what trials leave open: by a refinement's settings of these names.
@@ -53,6 +55,8 @@ pub struct CalibrationSettings {
     pub economical: bool,
     /// Instruments that follow rates follow those that the filter expects.
     pub expected_rates: bool,
+    /// How far readings are apart is asked of the samples as they were recorded, and kept.
+    pub reading_interval: bool,
 }
 
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
@@ -75,8 +79,12 @@ pub fn calibrate(
 ) -> Result<Uncertainty, RefineError> {
     let places = representative(trials, settings.samples.unwrap_or(usize::MAX));
     let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
-    let calibration = Calibration { law, effects, trials, noise: &noise, settings };
     let model = &Model { uncertainty: None, ..model.clone() };
+    let reading_interval_s =
+        settings.reading_interval.then(|| own_reading_interval_s(model, law, trials));
+    let reading_interval_s = reading_interval_s.transpose()?;
+    let calibration =
+        Calibration { law, effects, trials, noise: &noise, settings, reading_interval_s };
     let learned = calibration.learn(model, None)?;
     let first = calibration.left_open(&learned)?;
     let systematic_errors =
@@ -88,6 +96,11 @@ pub fn calibrate(
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
     let erring = Model { uncertainty: Some(erring), ..model.clone() };
     calibration.judged(&calibration.learn(&erring, found)?)
+}
+
+fn own_reading_interval_s(model: &Model, law: &Law, trials: &[&Trial]) -> Result<f64, RefineError> {
+    let as_it_is = CalibratedModel::new(model, law, &Terms::new(), &[], &[])?;
+    LinearisedTrials::own_reading_interval_s(&as_it_is, trials)
 }
 
 /// What is learned before it is asked what the trials leave open.
@@ -109,7 +122,7 @@ impl<'a> Calibration<'a> {
     /// Shift and noise where instruments err as the model's uncertainty says, or not at all; from
     /// the noise where they were said not to, where that has been learned.
     fn learn(&self, model: &Model, start: Option<NoiseModel>) -> Result<Learned<'a>, RefineError> {
-        let &Self { law, effects, trials, noise, settings } = self;
+        let &Self { law, effects, trials, noise, settings, reading_interval_s } = self;
         let economical = settings.economical;
         let terms = learned(model, law, effects, trials);
         let extra: Vec<_> = terms
@@ -120,7 +133,11 @@ impl<'a> Calibration<'a> {
         let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
         let moved = |shift: &[f64]| -> Result<CalibratedModel, RefineError> {
             let moved = CalibratedModel::new(model, law, &terms, &nuisance, shift)?;
-            Ok(CalibratedModel { expected_rates: settings.expected_rates, ..moved })
+            Ok(CalibratedModel {
+                expected_rates: settings.expected_rates,
+                reading_interval_s,
+                ..moved
+            })
         };
         let as_it_is = moved(&vec![0.0; nuisance.len()])?;
         let (shift, rough) = first_shift(&as_it_is, &nuisance, &prior, (noise, start, economical))?;
@@ -325,6 +342,7 @@ fn uncertainty(
         instruments: instruments(&workspace.noise, &learned.scatter),
         systematic_errors: Vec::new(),
         expected_rates: learned.shifted.expected_rates,
+        reading_interval_s: learned.shifted.reading_interval_s,
         false_alarm_levels: BTreeMap::new(),
         remainder: BTreeMap::new(),
         trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),

@@ -224,6 +224,11 @@ pub struct Settings {
     /// model seems late by it. Off unless asked for: docs/evidence/diagnosis_unseen.md.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub expected_rates: bool,
+    /// How far readings are apart whose noise is new is asked of the trials as they were recorded,
+    /// and kept with what they leave open, so that later trials are read alike. Every new order has
+    /// it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub reading_interval: bool,
     /// The noise model of what the trials leave open is learned on whole trials of about so many
     /// samples in all, those that differ most. Where absent, on all. The default search sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -273,6 +278,7 @@ impl Default for Settings {
             folds_pooled: false,
             economical: false,
             expected_rates: false,
+            reading_interval: false,
             calibration_samples: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),
@@ -288,6 +294,7 @@ impl Settings {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
         self.recorded_revolutions |= self.prior == Prior::Mixture;
+        self.reading_interval = true;
         self
     }
 

@@ -23,6 +23,7 @@ pub fn with_uncertainty(
         samples: refinement.settings.calibration_samples,
         economical: refinement.settings.economical,
         expected_rates: refinement.settings.expected_rates,
+        reading_interval: refinement.settings.reading_interval,
     };
     match calibrate(&refinement.model, law, effects, &fitted, settings) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
