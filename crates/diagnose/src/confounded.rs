@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::evidence::MarginalInformation;
-use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::outcome::Confounded;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use sistership_residual::{EffectCandidate, Gram};
+use sistership_residual::{Columns, EffectCandidate, Gram};
 
 /// Responses of the effects found and of all others, with the coefficients integrated out.
 pub(super) struct Responses<'a> {
@@ -22,18 +21,18 @@ pub(super) struct Responses<'a> {
 }
 
 impl<'a> Responses<'a> {
-    /// From products of all columns of a base with everything beside what was found.
+    /// From products of columns: those of coefficients, of what was found, and of the others that
+    /// are asked for.
     pub fn new(
         search: &'a HypothesisSearch<'_>,
-        base: &FilteredBase<'_>,
+        columns: &Columns,
         judged: &'a JudgedHypothesis,
-        total: &Gram,
+        (others, total): (Vec<&'a EffectCandidate>, &Gram),
     ) -> Option<Self> {
         let found: Vec<&EffectCandidate> = judged.candidates.iter().collect();
-        let others = search.others(&judged.candidates);
         let all: Vec<&EffectCandidate> = found.iter().chain(&others).copied().collect();
         let columns: Vec<Vec<usize>> =
-            all.iter().map(|candidate| base.workspace.columns().showing(candidate)).collect();
+            all.iter().map(|candidate| columns.showing(candidate)).collect();
         let select: Vec<usize> =
             (0..search.nuisance.len()).chain(columns.iter().flatten().copied()).collect();
         let mut first = 0;

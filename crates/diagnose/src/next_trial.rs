@@ -11,11 +11,12 @@ use super::as_recorded::as_recorded;
 use super::confounded::Responses;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
+use super::linearised_trials::LinearisedTrials;
 use super::outcome::{Found, NextTrial};
 use super::search::HypothesisSearch;
 use super::thresholds::{PlannedHelm, THRESHOLDS};
 use super::values::model_with;
-use sistership_residual::{Gram, filter};
+use sistership_residual::{Columns, EffectCandidate, Gram, filter};
 
 /// One that could be sailed.
 #[derive(Clone, Copy)]
@@ -37,10 +38,9 @@ pub(super) fn next_trial(
     let doubtful = doubtful
         .min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg))?;
     let place = judged.candidates.iter().position(|candidate| candidate.effect == doubtful.name)?;
+    let doubt = Doubt::new(search, base, judged, (place, doubtful));
     let ship = ship(search, judged)?;
-    let gain = |planned: &PlannedManoeuvre| {
-        Some((separated(search, base, judged, place, doubtful, &ship, planned)?, *planned))
-    };
+    let gain = |planned: &PlannedManoeuvre| Some((doubt.separated(&ship, planned)?, *planned));
     let gains: Vec<(f64, PlannedManoeuvre)> = plans(base).par_iter().filter_map(gain).collect();
     let (expected, best) = gains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let others = doubtful.confounded_with.iter().map(|other| other.name.clone());
@@ -74,24 +74,71 @@ fn ship(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Option<Ship
     Ship::new(&model_with(search.model, &judged.candidates, None), search.law).ok()
 }
 
-/// The evidence by which the nearest of the others would be behind after a planned trial.
-fn separated(
-    search: &HypothesisSearch<'_>,
-    base: &FilteredBase<'_>,
-    judged: &JudgedHypothesis,
+/// An effect that was found and those beside it, with what the trials say of these and of the
+/// coefficients: no other column has a say in what tells them apart.
+struct Doubt<'d, 'a> {
+    search: &'d HypothesisSearch<'a>,
+    base: &'d FilteredBase<'a>,
+    judged: &'d JudgedHypothesis,
     place: usize,
-    doubtful: &Found,
-    ship: &Ship,
-    planned: &PlannedManoeuvre,
-) -> Option<f64> {
-    let trial = sailed(base, ship, planned)?;
-    let gram = filtered(search, base, judged, &trial)?;
-    let mut total = base.total(judged.level.min(base.levels.len() - 1));
-    total.add(&gram);
-    let responses = Responses::new(search, base, judged, &total)?;
-    let names: Vec<&str> =
-        doubtful.confounded_with.iter().map(|other| other.name.as_str()).collect();
-    responses.behind(place, &names)
+    names: Vec<&'d str>,
+    columns: Columns,
+    total: Gram,
+}
+
+impl<'d, 'a> Doubt<'d, 'a> {
+    fn new(
+        search: &'d HypothesisSearch<'a>,
+        base: &'d FilteredBase<'a>,
+        judged: &'d JudgedHypothesis,
+        (place, doubtful): (usize, &'d Found),
+    ) -> Self {
+        let names: Vec<&str> =
+            doubtful.confounded_with.iter().map(|other| other.name.as_str()).collect();
+        let all = base.workspace.columns();
+        let is_asked = |candidate: &EffectCandidate| {
+            names.contains(&candidate.effect.as_str())
+                || judged.candidates.iter().any(|found| found.key() == candidate.key())
+        };
+        let kept: Vec<usize> =
+            (0..all.candidates.len()).filter(|&at| is_asked(&all.candidates[at])).collect();
+        let places: Vec<usize> =
+            (0..all.nuisance.len()).chain(kept.iter().flat_map(|&at| all.places(at))).collect();
+        let candidates = kept.iter().map(|&at| all.candidates[at].clone()).collect();
+        let total = base.total(judged.level.min(base.levels.len() - 1)).select(&places);
+        let columns = Columns { nuisance: all.nuisance.clone(), candidates };
+        Self { search, base, judged, place, names, columns, total }
+    }
+
+    /// The evidence by which the nearest of the others would be behind after a planned trial.
+    fn separated(&self, ship: &Ship, planned: &PlannedManoeuvre) -> Option<f64> {
+        let trial = sailed(self.base, ship, planned)?;
+        let mut total = self.total.clone();
+        total.add(&self.filtered(&trial)?);
+        let mut others = self.search.others(&self.judged.candidates);
+        others.retain(|other| self.names.contains(&other.effect.as_str()));
+        let responses = Responses::new(self.search, &self.columns, self.judged, (others, &total))?;
+        responses.behind(self.place, &self.names)
+    }
+
+    /// The products of the columns over a planned trial.
+    fn filtered(&self, trial: &Trial) -> Option<Gram> {
+        let Self { search, base, judged, columns, .. } = self;
+        let trials = [trial];
+        let workspace = LinearisedTrials::new(
+            &search.calibrated_model,
+            columns.clone(),
+            &trials,
+            search.least_step_s,
+        )
+        .ok()?;
+        let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
+        let width = 1 + workspace.columns().len();
+        let parts = workspace.linear().iter().flatten();
+        let grams: Vec<Gram> =
+            parts.map(|part| filter(part, &base.workspace.noise, discrepancies)).collect();
+        Some(Gram::sum(&grams, width))
+    }
 }
 
 /// A trial as it would be recorded, without noise.
@@ -110,28 +157,4 @@ fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> O
     };
     let model = workspace.trials.first()?;
     Some(as_recorded(&track, model, planned.heading_deg.to_radians()))
-}
-
-/// The products of all columns of a base over a planned trial.
-fn filtered(
-    search: &HypothesisSearch<'_>,
-    base: &FilteredBase<'_>,
-    judged: &JudgedHypothesis,
-    trial: &Trial,
-) -> Option<Gram> {
-    let columns = base.workspace.columns().clone();
-    let trials = [trial];
-    let workspace = super::linearised_trials::LinearisedTrials::new(
-        &search.calibrated_model,
-        columns,
-        &trials,
-        search.least_step_s,
-    )
-    .ok()?;
-    let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
-    let width = 1 + workspace.columns().len();
-    let parts = workspace.linear().iter().flatten();
-    let grams: Vec<Gram> =
-        parts.map(|part| filter(part, &base.workspace.noise, discrepancies)).collect();
-    Some(Gram::sum(&grams, width))
 }

@@ -31,7 +31,8 @@ pub(super) fn is_placebo(
         return Ok(false);
     };
     let again = |search: &HypothesisSearch<'_>| {
-        let there = search.bare(&base.taken, &search.levels)?;
+        // A hypothesis is judged at the level where it was seen or below.
+        let there = search.bare(&base.taken, &search.levels[..=judged.level])?;
         Ok(search.judge(&there, last, judged.level)?.log_evidence)
     };
     exceeds(search, judged.log_evidence, &again)

@@ -32,7 +32,8 @@ pub(super) fn apart(
     if !all.is_empty() {
         let level = best.level.min(search.levels.len() - 1);
         let base = search.base(&best.candidates, &search.levels[level..=level])?;
-        let responses = Responses::new(search, &base, best, &base.total(0));
+        let (columns, others) = (base.workspace.columns(), search.others(&best.candidates));
+        let responses = Responses::new(search, columns, best, (others, &base.total(0)));
         for (place, found) in all.iter_mut().enumerate() {
             found.confounded_with =
                 responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();

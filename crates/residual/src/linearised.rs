@@ -136,7 +136,14 @@ impl Linearised {
             by_column,
             measured: seen.into_iter().map(|(own, _)| own).collect(),
             by_rate: self.rates_in_pieces(&pieces, weights),
-            ..self.clone()
+            samples: self.samples.clone(),
+            t_s: self.t_s.clone(),
+            jacobian: self.jacobian.clone(),
+            defect: self.defect.clone(),
+            reading: self.reading.clone(),
+            by_state: self.by_state.clone(),
+            channels: self.channels.clone(),
+            every: self.every,
         }
     }
 

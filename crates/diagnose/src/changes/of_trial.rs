@@ -1,7 +1,9 @@
 //! The changes that explain a trial.
 
 use std::collections::BTreeSet;
+use std::ops::AddAssign;
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::super::coefficient_prior::CoefficientPrior;
@@ -30,6 +32,14 @@ pub(super) struct ChangeSearch<'s, 'a> {
     taken: Vec<NormalPrior>,
     /// What the laws of the effects taken leave open, by their columns.
     open: Vec<f64>,
+}
+
+/// Columns of a trial that are there beside any change, through the filter.
+struct KeptColumns {
+    place: usize,
+    /// Residual and columns by readings, by part.
+    rows: Vec<DMatrix<f64>>,
+    gram: Gram,
 }
 
 /// A window of a source, with what it makes of the trial.
@@ -75,22 +85,23 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         least_evidence: f64,
         is_asked: &(dyn Fn(&str) -> bool + Sync),
     ) -> Vec<Change> {
+        let trial = &self.kept_columns(place);
         let of_source = |source: &ChangeSource| {
             if !is_asked(&source.candidate.effect) {
                 return None;
             }
             let stretches = self.stretches(place, source)?;
-            let coarse = self.by_stretches(place, source, stretches)?;
+            let coarse = self.by_stretches(trial, source, stretches)?;
             let taken = simplest(&coarse, least_evidence)?;
             if taken.evidence <= least_evidence {
                 return None;
             }
             let fine = match taken.window.is_timed() {
-                true => self.at_times(place, source, stretches, taken.window)?,
+                true => self.at_times(trial, source, stretches, taken.window)?,
                 false => Vec::new(),
             };
             let taken = most_evident(&fine).unwrap_or(taken);
-            let is_right = self.left(place, stretches, taken)?.is_empty();
+            let is_right = self.left(trial, stretches, taken)?.is_empty();
             is_right.then(|| self.told((place, stretches), taken, (&coarse, &fine)))
         };
         let mut found: Vec<Change> = self.sources.par_iter().filter_map(of_source).collect();
@@ -112,11 +123,11 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     /// Every window of a source that begins and ends where stretches do.
     fn by_stretches<'w>(
         &self,
-        place: usize,
+        trial: &KeptColumns,
         source: &'w ChangeSource,
         stretches: Stretches,
     ) -> Option<Vec<WeighedChange<'w>>> {
-        let cut = self.information(place, source, &|t_s| stretches.hold(t_s))?;
+        let cut = self.information(trial, source, &|t_s| stretches.hold(t_s))?;
         let of = |window: Window| {
             let spread = stretches.spread(window, source.columns.len());
             weighed(source, window, cut.through(&spread), stretches)
@@ -127,7 +138,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     /// Windows of a source at times between the neighbours of one.
     fn at_times<'w>(
         &self,
-        place: usize,
+        trial: &KeptColumns,
         source: &'w ChangeSource,
         stretches: Stretches,
         about: Window,
@@ -135,7 +146,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let windows = stretches.near(about);
         let shares =
             |t_s: f64| windows.iter().map(|window| window.share(t_s, stretches.span_s)).collect();
-        let cut = self.information(place, source, &shares)?;
+        let cut = self.information(trial, source, &shares)?;
         let parameters = source.columns.len();
         let of = |(at, window): (usize, &Window)| {
             let own = (0..parameters).map(|parameter| parameter * windows.len() + at);
@@ -148,54 +159,88 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     /// with coefficients and the effects taken integrated out.
     fn information(
         &self,
-        place: usize,
+        trial: &KeptColumns,
         source: &ChangeSource,
         weights: &dyn Fn(f64) -> Vec<f64>,
     ) -> Option<MarginalInformation> {
-        let all = MarginalInformation::new(&self.gram(place, source, weights), &self.search.fixed)?;
+        let all = MarginalInformation::new(&self.gram(trial, source, weights), &self.search.fixed)?;
         let taken: Vec<usize> = (0..self.taken.len()).collect();
         let own: Vec<usize> = (taken.len()..all.right.len()).collect();
         if taken.is_empty() { Some(all) } else { all.given(&taken, &self.taken, &own) }
     }
 
-    /// A trial with coefficients and effects taken as they are, and the columns of a source cut.
+    /// A trial with some columns as they are, and the columns of a source cut.
     fn cut(
         &self,
-        place: usize,
+        (place, kept): (usize, &[usize]),
         source: &ChangeSource,
         weights: &dyn Fn(f64) -> Vec<f64>,
     ) -> Vec<Linearised> {
         let parts = self.workspace.linear()[place].iter();
-        parts.map(|part| part.cut(&self.kept, &source.columns, weights)).collect()
+        parts.map(|part| part.cut(kept, &source.columns, weights)).collect()
     }
 
-    fn gram(&self, place: usize, source: &ChangeSource, weights: &dyn Fn(f64) -> Vec<f64>) -> Gram {
-        let of = |part: &Linearised| {
-            let (rows, log_variance) = whitened(part, &self.workspace.noise, &self.discrepancies);
-            Gram::of_rows(&rows, 1 + part.sizes.columns, log_variance)
+    /// Those of coefficients and of the effects taken, which stay the same whatever changes.
+    fn kept_columns(&self, place: usize) -> KeptColumns {
+        let width = 1 + self.kept.len();
+        let mut gram = Gram::empty(width);
+        let mut whitened = |part: &Linearised| {
+            let part = part.cut(&self.kept, &[], &|_| Vec::new());
+            let (rows, log_variance) = self.whitened(&part);
+            gram.add(&Gram::of_columns(&rows, log_variance));
+            rows
         };
-        let grams: Vec<Gram> = self.cut(place, source, weights).iter().map(of).collect();
-        let width = grams.first().map_or(0, |gram| gram.products.nrows());
-        Gram::sum(&grams, width)
+        let rows = self.workspace.linear()[place].iter().map(&mut whitened).collect();
+        KeptColumns { place, rows, gram }
+    }
+
+    /// Residual and columns by readings.
+    fn whitened(&self, part: &Linearised) -> (DMatrix<f64>, f64) {
+        let (rows, log_variance) = whitened(part, &self.workspace.noise, &self.discrepancies);
+        let width = 1 + part.sizes.columns;
+        (DMatrix::from_vec(width, rows.len() / width, rows), log_variance)
+    }
+
+    /// Products of the kept columns and those of a source.
+    fn gram(
+        &self,
+        trial: &KeptColumns,
+        source: &ChangeSource,
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Gram {
+        let parts = self.cut((trial.place, &[]), source, weights);
+        let (known, own) =
+            (trial.gram.products.nrows(), parts.first().map_or(0, |part| part.sizes.columns));
+        let mut gram = Gram { products: DMatrix::zeros(known + own, known + own), ..trial.gram };
+        gram.products.view_mut((0, 0), (known, known)).copy_from(&trial.gram.products);
+        for (part, rows) in parts.iter().zip(&trial.rows) {
+            let of_source = self.whitened(part).0.rows(1, own).transpose();
+            let (cross, square) = (rows * &of_source, of_source.tr_mul(&of_source));
+            gram.products.view_mut((0, known), (known, own)).add_assign(&cross);
+            gram.products.view_mut((known, 0), (own, known)).add_assign(&cross.transpose());
+            gram.products.view_mut((known, known), (own, own)).add_assign(&square);
+        }
+        gram
     }
 
     /// What remains unexplained of a trial with a change.
     fn left(
         &self,
-        place: usize,
+        trial: &KeptColumns,
         stretches: Stretches,
         change: &WeighedChange<'_>,
     ) -> Option<Vec<Unexplained>> {
         let WeighedChange { source, window, .. } = change;
         let weight = |t_s: f64| vec![window.share(t_s, stretches.span_s)];
-        let gram = self.gram(place, source, &weight);
+        let gram = self.gram(trial, source, &weight);
         let parameters = self.fitted(&gram, &self.search.fixed, source)?;
         let changed = parameters.iter().skip(self.kept.len()).map(|size| source.misfit * size);
         let open: Vec<f64> = self.open.iter().copied().chain(changed).collect();
-        let parts = self.cut(place, source, &weight);
+        let place = trial.place;
+        let parts = self.cut((place, &self.kept), source, &weight);
         let clean = self.search.model.uncertainty.as_ref().map(|known| &known.remainder);
-        let trial = (self.workspace, self.workspace.trials[place].name.as_str());
-        Some(in_trial(trial, &parts, &self.discrepancies, (&parameters, &open), clean))
+        let named = (self.workspace, self.workspace.trials[place].name.as_str());
+        Some(in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean))
     }
 
     /// Coefficients, effects taken and the change, fitted together on the trial.

@@ -6,19 +6,22 @@
 //! detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593).
 //! The model alone is a rival, too, with any other level of the random accelerations.
 
+mod weighed;
+
 use std::collections::BTreeMap;
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use sistership_model::effect::{ActsOn, EffectParameter};
 
 use super::evidence::MarginalInformation;
 use super::filtered_base::FilteredBase;
-use super::hypothesis::priors;
 use super::outcome::{DetectionLimit, LimitedBy};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::acts_on;
 use sistership_residual::EffectCandidate;
+use weighed::{View, WeighedCandidate};
 
 /// Of every listed effect and of each of its parameters whose absence is zero, from a base without
 /// effects at one of its levels; none where the information is not positive.
@@ -30,8 +33,8 @@ pub(super) fn limits(
 ) -> Vec<DetectionLimit> {
     let all = Detection::new(search, base, level, least_evidence);
     let of = |all: &Detection<'_>| {
-        let listed = (0..all.candidates.len()).filter(|&place| all.is_listed(place));
-        listed.flat_map(|place| all.of_candidate(place)).collect()
+        let listed = (0..all.candidates.len()).into_par_iter().filter(|&at| all.is_listed(at));
+        listed.flat_map_iter(|place| all.of_candidate(place)).collect()
     };
     all.as_ref().map(of).unwrap_or_default()
 }
@@ -42,9 +45,12 @@ struct Detection<'a> {
     candidates: Vec<&'a EffectCandidate>,
     /// Places of each in the information.
     places: Vec<Vec<usize>>,
-    information: DMatrix<f64>,
-    /// The same under coefficients that are known.
-    of_known: DMatrix<f64>,
+    /// Divided by false-alarm levels.
+    discounted: View<'a>,
+    /// As the trials say it.
+    plain: View<'a>,
+    /// As they would say it of coefficients that are known.
+    of_known: View<'a>,
     /// The model alone at each level of the discrepancy.
     alone: Vec<AloneLevel>,
     level: usize,
@@ -57,13 +63,6 @@ struct AloneLevel {
     log_evidence: f64,
     /// What an effect that is there takes of it: half the square of its size by this.
     information: DMatrix<f64>,
-}
-
-/// What is expected of the evidence for an effect: mean and standard deviation.
-#[derive(Debug, Clone, Copy)]
-struct ExpectedEvidence {
-    mean: f64,
-    deviation: f64,
 }
 
 impl<'a> Detection<'a> {
@@ -85,7 +84,7 @@ impl<'a> Detection<'a> {
             first += columns.len();
             (first - columns.len()..first).collect()
         };
-        let places = columns.iter().map(place).collect();
+        let places: Vec<Vec<usize>> = columns.iter().map(place).collect();
         let total = base.total(level).select(&select);
         let of_known = total.products.view_range(1 + size.., 1 + size..).into_owned();
         let at = |level: usize| {
@@ -96,12 +95,16 @@ impl<'a> Detection<'a> {
         };
         let alone: Vec<AloneLevel> = (0..base.levels.len()).map(at).collect::<Option<_>>()?;
         let information = alone.get(level)?.information.clone();
+        let view = |information: DMatrix<f64>, discount: &dyn Fn(&EffectCandidate) -> f64| {
+            View::new(search, information, (&candidates, &places), discount)
+        };
         Some(Self {
+            discounted: view(information.clone(), &|candidate| search.discount(candidate)),
+            plain: view(information, &|_| 1.0),
+            of_known: view(of_known, &|_| 1.0),
             search,
             candidates,
             places,
-            information,
-            of_known,
             alone,
             level,
             least_evidence,
@@ -121,8 +124,9 @@ impl<'a> Detection<'a> {
                 return None;
             }
             let usual = parameter.prior_mean.abs() + parameter.prior_deviation;
-            let discount = self.search.discount(candidate);
-            let size = self.limit(&self.information, (place, own), discount);
+            let is_discounted = self.search.discount(candidate) > 1.0;
+            let view = if is_discounted { &self.discounted } else { &self.plain };
+            let size = self.limit(view, (place, own));
             Some(DetectionLimit {
                 effect: candidate.effect.clone(),
                 form: candidate.form.file.name.clone(),
@@ -141,29 +145,25 @@ impl<'a> Detection<'a> {
         if shows(size) {
             return None;
         }
-        if shows(self.limit(&self.information, (place, own), 1.0)) {
+        if shows(self.limit(&self.plain, (place, own))) {
             return Some(LimitedBy::Model);
         }
-        let known = shows(self.limit(&self.of_known, (place, own), 1.0));
+        let known = shows(self.limit(&self.of_known, (place, own)));
         let reads = acts_on(self.candidates[place]) == ActsOn::Measurement;
         Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
     }
 
     /// The smallest size of one parameter that is shown, from a grid of equal ratios below the
     /// largest that is believed at all; none where no size is.
-    fn limit(
-        &self,
-        information: &DMatrix<f64>,
-        (place, own): (usize, usize),
-        discount: f64,
-    ) -> Option<f64> {
+    fn limit(&self, view: &View<'_>, (place, own): (usize, usize)) -> Option<f64> {
         let given = THRESHOLDS.limits;
         let [least, most] = self.candidates[place].form.parameters[own].bounds;
         let largest = least.abs().max(most.abs());
         let sizes = (0..given.steps).map(|k| largest * given.ratio.powi(-(k as i32)));
-        let rivals = self.rivals(information, place, own);
+        let rivals = self.rivals(view, (place, own));
+        let seen = self.seen(view, place, (place, own));
         let is_shown = |size: &f64| {
-            self.is_shown(information, (place, own), *size, discount, &rivals)
+            self.is_shown((view, place), *size, &seen, &rivals)
                 && self.beats_alone((place, own), *size)
         };
         // The largest may be beyond belief: the prior speaks against them.
@@ -172,25 +172,18 @@ impl<'a> Detection<'a> {
 
     fn is_shown(
         &self,
-        information: &DMatrix<f64>,
-        (place, own): (usize, usize),
+        (view, place): (&View<'_>, usize),
         size: f64,
-        discount: f64,
-        rivals: &[(usize, DVector<f64>)],
+        seen: &DVector<f64>,
+        rivals: &[(&WeighedCandidate<'_>, DVector<f64>)],
     ) -> bool {
-        let part = block(information, &self.places[place], &self.places[place]);
-        let seen = part.column(own) * size;
-        let candidate = self.candidates[place];
-        let Some(expected) = self.expected(candidate, &part, &seen, discount) else { return false };
+        let Some(own) = &view.weighed[place] else { return false };
+        let expected = own.expected(&(seen * size));
         let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
-        sure > self.least_evidence
-            && rivals.iter().all(|(rival, column)| {
-                let other = self.candidates[*rival];
-                let part = block(information, &self.places[*rival], &self.places[*rival]);
-                let discount = if discount > 1.0 { self.search.discount(other) } else { 1.0 };
-                let seen = column * size;
-                self.expected(other, &part, &seen, discount).is_none_or(|of| of.mean < sure)
-            })
+        let is_behind = |(rival, seen): &(&WeighedCandidate<'_>, DVector<f64>)| {
+            rival.expected(&(seen * size)).mean < sure
+        };
+        sure > self.least_evidence && rivals.iter().all(is_behind)
     }
 
     /// Whether the model alone is less probable at every level of the discrepancy.
@@ -200,72 +193,36 @@ impl<'a> Detection<'a> {
             level.log_evidence - 0.5 * size.powi(2) * level.information[(column, column)]
         };
         let here = &self.alone[self.level];
-        let part = block(&here.information, &self.places[place], &self.places[place]);
-        let seen = part.column(own) * size;
-        let expected = self.expected(self.candidates[place], &part, &seen, 1.0);
-        expected.is_some_and(|expected| {
+        let seen = self.seen(&self.plain, place, (place, own)) * size;
+        self.plain.weighed[place].as_ref().is_some_and(|weighed| {
+            let expected = weighed.expected(&seen);
             let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
             let with = alone(here) + sure;
             self.alone.iter().all(|level| with > alone(level) + self.least_evidence)
         })
     }
 
+    /// How a candidate sees a unit of a parameter.
+    fn seen(&self, view: &View<'_>, by: usize, (place, own): (usize, usize)) -> DVector<f64> {
+        let column = self.places[place][own];
+        let rows = self.places[by].iter().map(|&row| view.information[(row, column)]);
+        DVector::from_iterator(self.places[by].len(), rows)
+    }
+
     /// The others that answer to a parameter, with how they see a unit of it.
-    fn rivals(
+    fn rivals<'v>(
         &self,
-        information: &DMatrix<f64>,
-        place: usize,
-        own: usize,
-    ) -> Vec<(usize, DVector<f64>)> {
+        view: &'v View<'a>,
+        (place, own): (usize, usize),
+    ) -> Vec<(&'v WeighedCandidate<'a>, DVector<f64>)> {
         let effect = &self.candidates[place].effect;
         let others =
             (0..self.candidates.len()).filter(|&other| self.candidates[other].effect != *effect);
-        let column = |other: usize| {
-            let seen = block(information, &self.places[other], &self.places[place]);
-            (other, seen.column(own).into_owned())
+        let one = |other: usize| {
+            Some((view.weighed[other].as_ref()?, self.seen(view, other, (place, own))))
         };
-        others.map(column).collect()
+        others.filter_map(one).collect()
     }
-
-    /// The evidence for a candidate that sees so much, as the search would judge it: its
-    /// information divided by its false-alarm level, its parameters integrated out, and the
-    /// logarithm of its prior odds. With `A` the information and `P` the prior's, the gain is `g' S
-    /// g/2` and a constant, `g = A t + P m` and `S = (A + P)^-1`; chance adds `tr(S A)/2` to its
-    /// mean.
-    fn expected(
-        &self,
-        candidate: &EffectCandidate,
-        part: &DMatrix<f64>,
-        seen: &DVector<f64>,
-        discount: f64,
-    ) -> Option<ExpectedEvidence> {
-        let fixing = priors(candidate);
-        let precision = DVector::from_iterator(
-            fixing.len(),
-            fixing.iter().map(|prior| prior.deviation.powi(-2)),
-        );
-        let information = part / discount;
-        let factor = Cholesky::new(&information + DMatrix::from_diagonal(&precision))?;
-        let pulled = fixing.iter().zip(precision.iter()).map(|(prior, p)| p * prior.mean);
-        let right = seen / discount + DVector::from_iterator(fixing.len(), pulled);
-        let mean = factor.solve(&right);
-        let log_determinant: f64 = factor.l().diagonal().iter().map(|x| 2.0 * x.ln()).sum();
-        let of_prior: f64 = fixing
-            .iter()
-            .map(|prior| (prior.mean / prior.deviation).powi(2) + 2.0 * prior.deviation.ln())
-            .sum();
-        let spread = factor.solve(&information);
-        let variance = mean.dot(&(&information * &mean)) + 0.5 * (&spread * &spread).trace();
-        Some(ExpectedEvidence {
-            mean: 0.5 * (right.dot(&mean) - log_determinant - of_prior + spread.trace())
-                + self.search.log_prior(candidate),
-            deviation: variance.max(0.0).sqrt(),
-        })
-    }
-}
-
-fn block(of: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows.len(), columns.len(), |i, j| of[(rows[i], columns[j])])
 }
 
 /// The parameters of an effect that was found are not asked for again: those of all others are.
