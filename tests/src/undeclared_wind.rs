@@ -71,7 +71,7 @@ pub fn by_trajectories() -> refine::Settings {
 /// Refined by trajectories, without a source and without any effect.
 pub fn baseline(trials: &[Trial]) -> Baseline {
     let (trials, law): (Vec<&Trial>, _) = (trials.iter().collect(), windless());
-    let source = blank(&law, ZOO.vessel(SHIP).unwrap(), approach_of(&trials))
+    let source = blank(&law, ZOO.vessel(SHIP).expect("of the zoo"), approach_of(&trials))
         .unwrap_or_else(|error| panic!("{error}"));
     baseline::by(&source, &law, SHIP, &trials, &by_trajectories())
 }
@@ -100,7 +100,7 @@ pub fn names_wind(diagnosis: &Diagnosis) -> bool {
 pub fn with_placebo(trial: &Trial) -> Trial {
     let mut trial = trial.clone();
     for channel in [Channel::WindSpeed, Channel::WindFrom] {
-        let column = trial.channels.get_mut(&channel).unwrap();
+        let column = trial.channels.get_mut(&channel).expect("recorded");
         let half = column.len() / 2;
         column.rotate_left(half);
     }
