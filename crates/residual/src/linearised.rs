@@ -96,6 +96,17 @@ impl Linearised {
                 .collect(),
             by_column: self.by_column.chunks_exact(self.measured.len().max(1)).map(said).collect(),
             measured: if self.measured.is_empty() { Vec::new() } else { vec![0] },
+            ..self.without_columns()
+        }
+    }
+
+    /// The path and its filter, which are small beside the columns.
+    fn without_columns(&self) -> Self {
+        Self {
+            sizes: Sizes { columns: 0, ..self.sizes },
+            accelerations: Vec::new(),
+            by_column: Vec::new(),
+            measured: Vec::new(),
             by_rate: Vec::new(),
             samples: self.samples.clone(),
             t_s: self.t_s.clone(),
@@ -136,14 +147,7 @@ impl Linearised {
             by_column,
             measured: seen.into_iter().map(|(own, _)| own).collect(),
             by_rate: self.rates_in_pieces(&pieces, weights),
-            samples: self.samples.clone(),
-            t_s: self.t_s.clone(),
-            jacobian: self.jacobian.clone(),
-            defect: self.defect.clone(),
-            reading: self.reading.clone(),
-            by_state: self.by_state.clone(),
-            channels: self.channels.clone(),
-            every: self.every,
+            ..self.without_columns()
         }
     }
 
