@@ -103,8 +103,8 @@ fn last_digits_change_neither_that_the_wind_is_named_nor_what_it_is_worth() {
     }
 }
 
-/// A model that was fitted in as much wind as it is judged in has taken it into its coefficients, as
-/// far as these can. One division of those that `--example divisions` prints, which was missed as
+/// A model that was fitted in as much wind as it is judged in has taken it into its coefficients,
+/// as far as these can. One division of those that `--example divisions` prints, which was missed as
 /// long as readings were as far apart as each half seemed to ask for.
 #[test]
 fn the_wind_is_named_and_the_placebo_is_not_on_a_random_division() {

@@ -1,11 +1,11 @@
 //! An instrument that erred when the model was fitted errs later, too: that is not new, and what is
 //! new is found beside it.
 
-use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_diagnose::{Diagnosis, Settings};
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 
-use sistership_tests::hidden_effects::baseline::{Baseline, fitted, library, programme};
+use sistership_tests::hidden_effects::baseline::{self, Baseline, fitted, programme};
 use sistership_tests::hidden_effects::cases;
 use sistership_tests::hidden_effects::truth::{Hidden, effect, trials};
 
@@ -22,16 +22,7 @@ fn biased(more: &[AppliedEffect]) -> Hidden {
 
 fn diagnosed(baseline: &Baseline, hidden: &Hidden) -> Diagnosis {
     let trials: Vec<Trial> = trials(hidden, &cases::programme(), 77);
-    let trials: Vec<&Trial> = trials.iter().collect();
-    let (settings, effects) = (Settings::default(), library());
-    let request = Request {
-        model: &baseline.model,
-        law: &baseline.law,
-        effects: &effects,
-        trials: &trials,
-        settings: &settings,
-    };
-    diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
+    baseline::diagnosed(baseline, &trials, &Settings::default())
 }
 
 #[test]

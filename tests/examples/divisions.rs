@@ -1,5 +1,6 @@
-//! Wind that nobody declares, on random divisions of the measured Esso Osaka trials: half are fitted
-//! by a law without wind, the others diagnosed, and again with the wind of another time (a placebo).
+//! Wind that nobody declares, on random divisions of the measured Esso Osaka trials: half are
+//! fitted by a law without wind, the others diagnosed, and again with the wind of another time (a
+//! placebo).
 //!
 //! `cargo run --release -p sistership-tests --example divisions -- FIRST COUNT`; ten from the first
 //! where nothing is said, two at once. `docs/evidence/diagnosis_unseen.md` has the results.

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_diagnose::{Diagnosis, Settings};
 use sistership_estimate::refine::{self, Family, Method};
 use sistership_model::Trial;
 use sistership_model::law::Law;
@@ -11,7 +11,7 @@ use sistership_model::trial::Channel;
 use sistership_sources::transfer::{approach_of, blank};
 use sistership_store::sha256_hex;
 
-use crate::hidden_effects::baseline::{self, Baseline, library};
+use crate::hidden_effects::baseline::{self, Baseline};
 use crate::hidden_effects::truth::ZOO;
 use crate::{esso_osaka, shared};
 
@@ -78,17 +78,8 @@ pub fn baseline(trials: &[Trial]) -> Baseline {
 
 /// What a diagnosis of trials names beside a model.
 pub fn diagnosed(baseline: &Baseline, trials: &[Trial]) -> Diagnosis {
-    let trials: Vec<&Trial> = trials.iter().collect();
-    let (settings, effects) =
-        (Settings { restart_s: Some(RESTART_S), ..Settings::default() }, library());
-    let request = Request {
-        model: &baseline.model,
-        law: &baseline.law,
-        effects: &effects,
-        trials: &trials,
-        settings: &settings,
-    };
-    diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
+    let settings = Settings { restart_s: Some(RESTART_S), ..Settings::default() };
+    baseline::diagnosed(baseline, trials, &settings)
 }
 
 /// Whether the wind is among what is named.

@@ -329,8 +329,8 @@ impl FilterState {
     }
 
     /// By how much the model has a state change faster where the filter expects the ship than on
-    /// the path. The discrepancy stays out: where it is not what the filter takes it for, its estimate
-    /// runs after the readings, and their prediction errors go with it.
+    /// the path. The discrepancy stays out: where it is not what the filter takes it for, its
+    /// estimate runs after the readings, and their prediction errors go with it.
     #[inline(always)]
     fn faster(&self, linear: &Linearised, k: usize, state: usize) -> f64 {
         let n = linear.sizes.states;

@@ -33,8 +33,8 @@ pub type Noise = BTreeMap<Channel, Instrument>;
 const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
 const GAIN: f64 = 924.0;
 
-/// What sixth differences leave of a ship's motion is far below the noise of any instrument. Of each
-/// trial one sample in so many.
+/// What sixth differences leave of a ship's motion is far below the noise of any instrument. Of
+/// each trial one sample in so many.
 pub fn scatter(
     records: &[TrialReadings<'_>],
     channel: Channel,

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sistership_diagnose::{CalibrationSettings, calibrate};
+use sistership_diagnose::{self as diagnose, CalibrationSettings, Diagnosis, calibrate};
 use sistership_estimate::refine::{Request, Settings, refine};
 use sistership_model::{Effect, Law, Model, Trial};
 
@@ -62,6 +62,23 @@ pub fn by(
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }
+}
+
+/// What a diagnosis by the library finds of trials beside a model.
+pub fn diagnosed(
+    baseline: &Baseline,
+    trials: &[Trial],
+    settings: &diagnose::Settings,
+) -> Diagnosis {
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let request = diagnose::Request {
+        model: &baseline.model,
+        law: &baseline.law,
+        effects: &library(),
+        trials: &trials,
+        settings,
+    };
+    diagnose::diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Twelve clean trials: six zigzags that start to either side, and turns of three angles to both.

@@ -46,11 +46,11 @@ struct Detection<'a> {
     /// Places of each in the information.
     places: Vec<Vec<usize>>,
     /// Divided by false-alarm levels.
-    discounted: View<'a>,
+    discounted: View,
     /// As the trials say it.
-    plain: View<'a>,
+    plain: View,
     /// As they would say it of coefficients that are known.
-    of_known: View<'a>,
+    of_known: View,
     /// The model alone at each level of the discrepancy.
     alone: Vec<AloneLevel>,
     level: usize,
@@ -155,7 +155,7 @@ impl<'a> Detection<'a> {
 
     /// The smallest size of one parameter that is shown, from a grid of equal ratios below the
     /// largest that is believed at all; none where no size is.
-    fn limit(&self, view: &View<'_>, (place, own): (usize, usize)) -> Option<f64> {
+    fn limit(&self, view: &View, (place, own): (usize, usize)) -> Option<f64> {
         let given = THRESHOLDS.limits;
         let [least, most] = self.candidates[place].form.parameters[own].bounds;
         let largest = least.abs().max(most.abs());
@@ -172,15 +172,15 @@ impl<'a> Detection<'a> {
 
     fn is_shown(
         &self,
-        (view, place): (&View<'_>, usize),
+        (view, place): (&View, usize),
         size: f64,
         seen: &DVector<f64>,
-        rivals: &[(&WeighedCandidate<'_>, DVector<f64>)],
+        rivals: &[(&WeighedCandidate, DVector<f64>)],
     ) -> bool {
         let Some(own) = &view.weighed[place] else { return false };
         let expected = own.expected(&(seen * size));
         let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
-        let is_behind = |(rival, seen): &(&WeighedCandidate<'_>, DVector<f64>)| {
+        let is_behind = |(rival, seen): &(&WeighedCandidate, DVector<f64>)| {
             rival.expected(&(seen * size)).mean < sure
         };
         sure > self.least_evidence && rivals.iter().all(is_behind)
@@ -203,7 +203,7 @@ impl<'a> Detection<'a> {
     }
 
     /// How a candidate sees a unit of a parameter.
-    fn seen(&self, view: &View<'_>, by: usize, (place, own): (usize, usize)) -> DVector<f64> {
+    fn seen(&self, view: &View, by: usize, (place, own): (usize, usize)) -> DVector<f64> {
         let column = self.places[place][own];
         let rows = self.places[by].iter().map(|&row| view.information[(row, column)]);
         DVector::from_iterator(self.places[by].len(), rows)
@@ -212,9 +212,9 @@ impl<'a> Detection<'a> {
     /// The others that answer to a parameter, with how they see a unit of it.
     fn rivals<'v>(
         &self,
-        view: &'v View<'a>,
+        view: &'v View,
         (place, own): (usize, usize),
-    ) -> Vec<(&'v WeighedCandidate<'a>, DVector<f64>)> {
+    ) -> Vec<(&'v WeighedCandidate, DVector<f64>)> {
         let effect = &self.candidates[place].effect;
         let others =
             (0..self.candidates.len()).filter(|&other| self.candidates[other].effect != *effect);

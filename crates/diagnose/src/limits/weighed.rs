@@ -14,20 +14,20 @@ pub(super) struct ExpectedEvidence {
 }
 
 /// Information on all candidates, and what the evidence for each of them needs of it.
-pub(super) struct View<'a> {
+pub(super) struct View {
     pub information: DMatrix<f64>,
-    pub weighed: Vec<Option<WeighedCandidate<'a>>>,
+    pub weighed: Vec<Option<WeighedCandidate>>,
 }
 
-impl<'a> View<'a> {
+impl View {
     /// Of candidates with their places in the information, each divided by a discount.
     pub fn new(
-        search: &'a HypothesisSearch<'a>,
+        search: &HypothesisSearch<'_>,
         information: DMatrix<f64>,
-        (candidates, places): (&[&'a EffectCandidate], &[Vec<usize>]),
+        (candidates, places): (&[&EffectCandidate], &[Vec<usize>]),
         discount: &dyn Fn(&EffectCandidate) -> f64,
     ) -> Self {
-        let weighed = |(candidate, own): (&&'a EffectCandidate, &Vec<usize>)| {
+        let weighed = |(candidate, own): (&&EffectCandidate, &Vec<usize>)| {
             let part = DMatrix::from_fn(own.len(), own.len(), |i, j| information[(own[i], own[j])]);
             WeighedCandidate::new(search, candidate, &part, discount(candidate))
         };
@@ -39,9 +39,7 @@ impl<'a> View<'a> {
 /// What the evidence for a candidate needs whatever the size is that is there. With `A` the
 /// information and `P` the prior's, the gain is `g' S g/2` and a constant, `g = A t + P m` and `S =
 /// (A + P)^-1`; chance adds `tr(S A)/2` to its mean.
-pub(super) struct WeighedCandidate<'a> {
-    search: &'a HypothesisSearch<'a>,
-    candidate: &'a EffectCandidate,
+pub(super) struct WeighedCandidate {
     discount: f64,
     /// `A`.
     information: DMatrix<f64>,
@@ -49,19 +47,18 @@ pub(super) struct WeighedCandidate<'a> {
     factor: Cholesky<f64, Dyn>,
     /// `P m`.
     pulled: DVector<f64>,
-    log_determinant: f64,
-    of_prior: f64,
-    /// `S A`.
-    spread: DMatrix<f64>,
-    /// Of its square.
+    /// Twice the part of the mean that is the same for all sizes, without the odds.
+    constant: f64,
+    log_prior: f64,
+    /// Of the square of `S A`.
     trace_of_square: f64,
 }
 
-impl<'a> WeighedCandidate<'a> {
+impl WeighedCandidate {
     /// None where the information is not positive.
     fn new(
-        search: &'a HypothesisSearch<'a>,
-        candidate: &'a EffectCandidate,
+        search: &HypothesisSearch<'_>,
+        candidate: &EffectCandidate,
         part: &DMatrix<f64>,
         discount: f64,
     ) -> Option<Self> {
@@ -80,18 +77,14 @@ impl<'a> WeighedCandidate<'a> {
             .map(|prior| (prior.mean / prior.deviation).powi(2) + 2.0 * prior.deviation.ln())
             .sum();
         let spread = factor.solve(&information);
-        let trace_of_square = (&spread * &spread).trace();
         Some(Self {
-            search,
-            candidate,
             discount,
             information,
             factor,
             pulled,
-            log_determinant,
-            of_prior,
-            spread,
-            trace_of_square,
+            constant: spread.trace() - log_determinant - of_prior,
+            log_prior: search.log_prior(candidate),
+            trace_of_square: (&spread * &spread).trace(),
         })
     }
 
@@ -102,10 +95,8 @@ impl<'a> WeighedCandidate<'a> {
         let right = seen / self.discount + &self.pulled;
         let mean = self.factor.solve(&right);
         let variance = mean.dot(&(&self.information * &mean)) + 0.5 * self.trace_of_square;
-        let log_prior = self.search.log_prior(self.candidate);
-        let constant = self.spread.trace() - self.log_determinant - self.of_prior;
         ExpectedEvidence {
-            mean: 0.5 * (right.dot(&mean) + constant) + log_prior,
+            mean: 0.5 * (right.dot(&mean) + self.constant) + self.log_prior,
             deviation: variance.max(0.0).sqrt(),
         }
     }
