@@ -1,6 +1,10 @@
 //! The plain call on a ship whose law the zoo does not have: not worse than the source that it
 //! started from.
 
+use std::path::Path;
+
+use serde_json::Value;
+use sistership_branches::attach;
 use sistership_dynamics::Ship;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
@@ -8,12 +12,17 @@ use sistership_model::{Model, Trial, Vessel, Zoo};
 use sistership_sources::source::{best_source, similar};
 use sistership_sources::transfer::{approach_of, transfer};
 use sistership_tests::binary;
+use sistership_tests::truth::container::container;
+use sistership_tests::truth::dimensions::Dimensions;
 use sistership_tests::truth::ferry::ferry;
 use sistership_tests::truth::files::{vessel, write_trials, write_vessel};
 use sistership_tests::truth::instruments::Instruments;
 use sistership_tests::truth::manoeuvre::{PROGRAMME, UNSEEN};
 use sistership_tests::truth::motion::Truth;
+use sistership_tests::truth::stalled::Stalled;
+use sistership_tests::truth::tanker::tanker;
 use sistership_tests::truth::trials;
+use tempfile::TempDir;
 
 /// Trials of the call, and of its judgement.
 const TRIALS: usize = 4;
@@ -23,10 +32,9 @@ const SLACK: f64 = 1.05;
 
 /// The mean over u, v, r, psi, x, y of the standardised squared error; simulations start anew every
 /// ten lengths.
-fn error(zoo: &Zoo, model: &Model, unseen: &[Trial]) -> f64 {
+fn error(zoo: &Zoo, model: &Model, size: &Dimensions, unseen: &[Trial]) -> f64 {
     let law = zoo.law(&model.law).expect("a law of the zoo");
     let mut ship = Ship::new(model, law).unwrap_or_else(|error| panic!("{error}"));
-    let size = ferry().dimensions().clone();
     ship.set_envelope_speed(size.speed_m_s);
     let restart_s = Some(10.0 * size.length_time_s());
     let settings = ReplaySettings { restart_s, ..ReplaySettings::default() };
@@ -49,6 +57,46 @@ fn unrefined(zoo: &Zoo, seen: &[&Trial]) -> Model {
     transfer(&source, law, &target, approach_of(seen))
 }
 
+/// What the plain call makes of a ship's trials, `model.yaml` in a folder, and what it says.
+fn refined(ship: &dyn Truth, seen: &[&Trial]) -> (TempDir, Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let vessel = write_vessel(folder.path(), ship.dimensions()).display().to_string();
+    let manifest = write_trials(folder.path(), &ship.dimensions().name, seen);
+    let manifest = manifest.display().to_string();
+    let out = folder.path().join("model.yaml").display().to_string();
+    let call = ["refine", "--ship", &vessel, "--trials", &manifest, "--out", &out, "--json"];
+    (folder, binary::json(&call, 0))
+}
+
+/// The model that was written, with the weights of its branch where it has one.
+fn read(zoo: &Zoo, folder: &Path) -> Model {
+    let text = std::fs::read_to_string(folder.join("model.yaml")).expect("a model");
+    let model = Model::parse("model.yaml", &text, &|law| zoo.law(law).map(|law| (**law).clone()));
+    let mut model = model.unwrap_or_else(|error| panic!("{error}"));
+    if model.branch.is_some() {
+        let weights = std::fs::read(folder.join("model.weights.json")).expect("weights");
+        attach(&mut model, &weights).unwrap_or_else(|error| panic!("{error}"));
+    }
+    model
+}
+
+#[test]
+fn a_branch_is_taken_where_a_rudder_stalls_and_not_where_the_law_holds() {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    for (ship, is_taken) in [(&Stalled(container()) as &dyn Truth, true), (&tanker(), false)] {
+        let instruments = Instruments::of(ship);
+        let seen = trials(ship, &PROGRAMME, &instruments, 1);
+        let unseen = trials(ship, &UNSEEN, &instruments.without_noise(), 1);
+        let (folder, said) = refined(ship, &seen.iter().collect::<Vec<_>>());
+        let both = read(&zoo, folder.path());
+        let (alone, size) = (both.foundation(), ship.dimensions());
+        let [alone, with] = [&alone, &both].map(|model| error(&zoo, model, size, &unseen));
+        println!("law alone {alone:.5}, as written {with:.5}: {}", said["ladder"]["branch"]);
+        assert_eq!(both.branch.is_some(), is_taken, "{}", said["ladder"]["branch"]);
+        assert!(!is_taken || with < alone, "{with} against {alone}");
+    }
+}
+
 #[test]
 fn the_plain_call_on_a_ferry_is_not_worse_than_its_source() {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
@@ -56,18 +104,12 @@ fn the_plain_call_on_a_ferry_is_not_worse_than_its_source() {
     let instruments = Instruments::of(&ship);
     let seen = trials(&ship, &PROGRAMME[..TRIALS], &instruments, 1);
     let unseen = trials(&ship, &UNSEEN[..JUDGED], &instruments.without_noise(), 1);
-    let folder = tempfile::tempdir().expect("a folder");
     let seen: Vec<&Trial> = seen.iter().collect();
-    let vessel = write_vessel(folder.path(), ship.dimensions()).display().to_string();
-    let manifest = write_trials(folder.path(), &ship.dimensions().name, &seen);
-    let manifest = manifest.display().to_string();
-    let out = folder.path().join("model.yaml").display().to_string();
-    binary::json(&["refine", "--ship", &vessel, "--trials", &manifest, "--out", &out, "--json"], 0);
-    let text = std::fs::read_to_string(&out).expect("a model");
-    let model = Model::parse("model.yaml", &text, &|law| zoo.law(law).map(|law| (**law).clone()));
-    let model = model.unwrap_or_else(|error| panic!("{error}"));
-    let (before, after) =
-        (error(&zoo, &unrefined(&zoo, &seen), &unseen), error(&zoo, &model, &unseen));
+    let (folder, _) = refined(&ship, &seen);
+    let model = read(&zoo, folder.path());
+    let size = ship.dimensions();
+    let before = error(&zoo, &unrefined(&zoo, &seen), size, &unseen);
+    let after = error(&zoo, &model, size, &unseen);
     println!("unrefined {before:.4}, plain {after:.4} by {} ({})", model.name, model.law);
     assert!(after <= SLACK * before, "{after} against {before}");
 }

@@ -33,7 +33,34 @@ pub struct TriedKind {
     pub standard_error: f64,
 }
 
-/// Tries every kind; `told` is asked before each whether to go on.
+impl BranchChoice {
+    /// Nothing was tried, for a reason.
+    pub fn untried(reason: String) -> Self {
+        Self { tried: Vec::new(), taken: None, reason }
+    }
+}
+
+/// Which kinds are tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kinds {
+    /// Every kind.
+    Every,
+    /// One after another, boosted trees first, which cost least, until one loses by more than one
+    /// standard error of the difference.
+    WhilePromising,
+}
+
+impl Kinds {
+    fn in_order(self) -> [BranchKind; 4] {
+        let [forest, boosted, kernels, perceptron] = BranchKind::ALL;
+        match self {
+            Self::Every => BranchKind::ALL,
+            Self::WhilePromising => [boosted, forest, perceptron, kernels],
+        }
+    }
+}
+
+/// Tries kinds; `told` is asked before each whether to go on.
 ///
 /// # Errors
 /// As [`judge`]; none where it was stopped.
@@ -41,27 +68,31 @@ pub fn choose(
     model: &Model,
     law: &Law,
     trials: &[&Trial],
-    settings: &BranchSettings,
+    (settings, kinds): (&BranchSettings, Kinds),
     told: &dyn Fn(BranchKind) -> bool,
 ) -> Result<Option<BranchChoice>, TrainError> {
-    let mut tried = Vec::new();
-    for kind in BranchKind::ALL {
+    let mut tried: Vec<(BranchKind, Judgement)> = Vec::new();
+    for kind in kinds.in_order() {
         if !told(kind) {
             return Ok(None);
         }
         let training = settings.of(kind).training(model, law, trials)?;
         let Some(judged) = judge(model, law, trials, &training)? else {
             let reason = "there is one trial only, and none is left to judge on".to_owned();
-            return Ok(Some(BranchChoice { tried: Vec::new(), taken: None, reason }));
+            return Ok(Some(BranchChoice::untried(reason)));
         };
+        let over = kinds == Kinds::WhilePromising && judged.loses();
         tried.push((kind, judged));
+        if over {
+            break;
+        }
     }
     Ok(Some(decided(tried)))
 }
 
 fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
     let best = judged.iter().min_by(|(_, a), (_, b)| a.branch.total_cmp(&b.branch));
-    let reason = best.map_or_else(String::new, |(kind, judged)| because(*kind, judged));
+    let reason = best.map_or_else(String::new, |(kind, best)| because(*kind, best, judged.len()));
     let taken = best.filter(|(_, judged)| judged.wins()).map(|(kind, _)| *kind);
     let tried = |(kind, judged): &(BranchKind, Judgement)| TriedKind {
         kind: *kind,
@@ -72,18 +103,21 @@ fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
     BranchChoice { tried: judged.iter().map(tried).collect(), taken, reason }
 }
 
-/// `kernels leaves 0.21 of 0.24 on trials left out, with a standard error of 0.05: no win`
-fn because(kind: BranchKind, judged: &Judgement) -> String {
+/// `kernels` leaves 0.21 of 0.24 on trials left out, with a standard error of 0.05: no win
+fn because(kind: BranchKind, judged: &Judgement, tried: usize) -> String {
     let Judgement { foundation, branch, standard_error, trials, .. } = judged;
+    let of = if tried > 1 { "is the best of the kinds" } else { "was tried" };
     let said = format!(
-        "`{}` is the best of the kinds: on {} trials left out, error {branch:.4} with it and \
+        "`{}` {of}: on {} trials left out, error {branch:.4} with it and \
          {foundation:.4} without, the difference sure to {standard_error:.4}",
         kind.name(),
         trials.len()
     );
-    if judged.wins() {
-        said
-    } else {
-        format!("{said}: it does not win by more than that, and no branch is taken")
+    match judged.wins() {
+        true => said,
+        false if tried > 1 => {
+            format!("{said}: it does not win by more than that, and no branch is taken")
+        }
+        false => format!("{said}: it loses by more than that, and no branch is taken"),
     }
 }

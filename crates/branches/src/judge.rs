@@ -66,6 +66,11 @@ impl Judgement {
     pub fn wins(&self) -> bool {
         self.foundation - self.branch > self.standard_error
     }
+
+    /// Whether it is worse by more than one standard error.
+    pub fn loses(&self) -> bool {
+        self.branch - self.foundation > self.standard_error
+    }
 }
 
 /// Judges a training on trials left out, a part of them at a time; none where there is one trial

@@ -27,7 +27,7 @@ mod tree;
 mod version;
 mod weights;
 
-pub use choice::{BranchChoice, TriedKind, choose};
+pub use choice::{BranchChoice, Kinds, TriedKind, choose};
 pub use dependence::{InputDependence, LearnedDependence, dependence};
 pub use domain::FadedDomain;
 pub use importance::{Importance, importance};

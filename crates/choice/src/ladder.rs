@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use sistership_branches::BranchChoice;
 use sistership_estimate::refine::Method;
 
 /// How far an entrant was taken.
@@ -57,4 +58,7 @@ pub struct Line {
 pub struct Ladder {
     /// The lines.
     pub lines: Vec<Line>,
+    /// Whether a learned branch is taken beside what was chosen; none where that was not asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub branch: Option<BranchChoice>,
 }

@@ -5,6 +5,7 @@
 //! [`chosen`] takes what single trials move least elsewhere; it is refined as if a person had named
 //! its source, law and method, and where no model comes of that which sails, the next is taken.
 
+mod branch;
 mod choice;
 mod entrant;
 mod ladder;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
+use crate::branch::branch;
 use crate::entrant::{Entrant, entrants};
 use crate::ladder::Ladder;
 use crate::search::search;
@@ -57,7 +58,10 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let entrants = entrants(zoo, target, (&sources(asked, &similarity), with_estimate), &fitted);
     let winner = search(&Search { target, entrants: &entrants, trials, settings }, progress)?;
     let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
-    Ok(Start { entrant, settings: winner.settings, similarity, ladder: winner.ladder, refinement })
+    let made = (&refinement.model, &*entrant.law);
+    let branch = Some(branch(made, target.particular("lpp_m"), &fitted, progress)?);
+    let ladder = Ladder { branch, ..winner.ladder };
+    Ok(Start { entrant, settings: winner.settings, similarity, ladder, refinement })
 }
 
 /// The models of the first eligible ships; a file that does not read is no source.

@@ -106,7 +106,8 @@ fn fitted(
 fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
     let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
     let lines = tried.iter().enumerate();
-    Ladder { lines: lines.map(|(k, one)| line(search, one, least, k == best)).collect() }
+    let lines = lines.map(|(k, one)| line(search, one, least, k == best)).collect();
+    Ladder { lines, branch: None }
 }
 
 fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {

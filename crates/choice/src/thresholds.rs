@@ -36,6 +36,8 @@ pub(super) struct SearchThresholds {
     /// `n_c`: samples of the trials on which the noise model is learned, a count. Source: memory;
     /// `docs/evidence/plain.md`.
     pub calibration: usize,
+    /// `n_b`: fewest trials of which branches are tried, a count. Source: `docs/evidence/branches.md`.
+    pub branch_trials: usize,
 }
 
 /// The values.
@@ -51,4 +53,5 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     elsewhere: 5.0,
     restart: 5.0,
     calibration: 30_000,
+    branch_trials: 12,
 };

@@ -3,7 +3,8 @@
 
 use crate::aliases::AliasMove;
 use crate::error::Result;
-use crate::job::Job;
+use crate::job::{Job, NewJob};
+use crate::jobs;
 use crate::objects::Objects;
 use crate::reports::{self, NewReport, ReportHead};
 use crate::store::Store;
@@ -20,6 +21,19 @@ pub struct Refinement {
     pub moves: Vec<AliasMove>,
     /// The report on it; its `version_id` is filled in.
     pub report: Option<NewReport>,
+    /// The job that goes on from it, if one does.
+    pub next: Option<NewJob>,
+}
+
+/// What is kept of a refinement, of which the result of its job is written.
+#[derive(Debug, Clone, Copy)]
+pub struct Kept<'a> {
+    /// The version, now numbered.
+    pub version: &'a VersionHead,
+    /// The report on it.
+    pub report: Option<&'a ReportHead>,
+    /// The job that goes on from it.
+    pub next: Option<&'a Job>,
 }
 
 /// What has become of a refinement.
@@ -36,37 +50,10 @@ pub struct Committed {
 impl Store {
     /// Keeps what a refinement brings and ends its job, all or nothing: a worker that has lost the
     /// job to another (an older `fence`) leaves nothing behind. `result` writes the job's result,
-    /// JSON, from what was kept.
+    /// JSON, from what was kept. Where the version has a learned branch its weights are in
+    /// `objects`; where they are no longer there, because [`Store::remove_unreferred`] was faster,
+    /// nothing is kept.
     pub async fn commit_refinement<F>(
-        &self,
-        job: &str,
-        fence: i64,
-        refinement: &Refinement,
-        result: F,
-    ) -> Result<Committed>
-    where
-        F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
-    {
-        self.commit_refined(None, (job, fence), refinement, result).await
-    }
-
-    /// The same where the version has a learned branch, whose weights are in `objects`. Where they
-    /// are no longer there, because [`Store::remove_unreferred`] was faster, nothing is kept.
-    pub async fn commit_with_weights<F>(
-        &self,
-        objects: &Objects,
-        job: &str,
-        fence: i64,
-        refinement: &Refinement,
-        result: F,
-    ) -> Result<Committed>
-    where
-        F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
-    {
-        self.commit_refined(Some(objects), (job, fence), refinement, result).await
-    }
-
-    async fn commit_refined<F>(
         &self,
         objects: Option<&Objects>,
         (job, fence): (&str, i64),
@@ -74,7 +61,7 @@ impl Store {
         result: F,
     ) -> Result<Committed>
     where
-        F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
+        F: FnOnce(&Kept<'_>) -> String,
     {
         let mut tx = self.begin().await?;
         let version =
@@ -89,7 +76,12 @@ impl Store {
             }
             None => None,
         };
-        let result = result(&version, report.as_ref());
+        let next = match &refinement.next {
+            Some(next) => Some(jobs::insert(self, &mut tx, next).await?),
+            None => None,
+        };
+        let kept = Kept { version: &version, report: report.as_ref(), next: next.as_ref() };
+        let result = result(&kept);
         let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;
         Ok(Committed { version, report, job })

@@ -29,7 +29,7 @@ impl Store {
 
     /// Removes the objects of those keys that no trial and no version refers to, and returns these
     /// keys. None is put in meanwhile, and [`crate::Trials::insert_all_and_enqueue`] and
-    /// [`Store::commit_with_weights`] look for their objects after they have waited for this:
+    /// [`Store::commit_refinement`] look for their objects after they have waited for this:
     /// neither order leaves a trial without samples, or a branch without weights.
     pub async fn remove_unreferred(
         &self,

@@ -80,7 +80,7 @@ pub use bulks::{Bulk, BulkOutcome, Bulks, ChunkCount, NewOutcome, OutcomeCount};
 pub use chain::AuditHead;
 pub use checks::{MAX_NAME_CHARS, MAX_TEXT_BYTES};
 pub use clock::{Clock, Ids, ManualClock, SequentialIds, SystemClock, UuidIds};
-pub use commit::{Committed, Refinement};
+pub use commit::{Committed, Kept, Refinement};
 pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis};
 pub use diagnoses::{Diagnosed, Diagnoses, NewDiagnosed};
 pub use effects::{EffectLibraries, EffectLibrary};

@@ -24,6 +24,7 @@ pub mod resistance;
 pub mod rudder;
 pub mod single_screw;
 pub mod stability;
+pub mod stalled;
 pub mod tanker;
 pub mod twin_screw;
 

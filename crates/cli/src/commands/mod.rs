@@ -32,6 +32,7 @@ pub mod predict;
 mod predict_orders;
 mod predict_text;
 pub mod refine;
+mod refine_branch;
 mod refine_search;
 mod refine_settings;
 pub(crate) mod refine_text;

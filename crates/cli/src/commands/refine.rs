@@ -1,6 +1,6 @@
 //! `sistership refine`: a source model fitted to a ship's trials.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -16,6 +16,7 @@ use sistership_sources::similarity::RankedSource;
 use sistership_sources::source::{Similarity, best_source, similar};
 use sistership_sources::transfer::{approach_of, blank};
 
+use super::refine_branch::TrainedBeside;
 use super::refine_search::{Start, searched};
 use super::refine_settings::{held_out, settings_file};
 use super::refine_text;
@@ -25,6 +26,7 @@ use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
 use crate::values::{method, positive, prior};
+use crate::weights;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,7 +37,9 @@ Examples:
 
 Without --source, --law and --method, every eligible source is tried under every law that was
 measured, and laws without a source; of what is within one standard error of the best on manoeuvres
-left out, that is taken which has the least error together with what single trials move elsewhere.
+left out, that is taken which has the least error together with what single trials move elsewhere. With
+twelve trials and more learned branches are tried beside it, and one that wins on trials left out by
+more than its uncertainty is taken: its weights are written beside the model, m.weights.json for m.yaml.
 The source's coefficients are the prior: with a method named, options go from the source outwards,
 and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
 
@@ -133,6 +137,9 @@ struct RefineDocument<'a> {
     ladder: Option<&'a Ladder>,
     #[serde(flatten)]
     files: WrittenFiles<'a>,
+    /// The weights of the model's learned branch, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weights: Option<&'a Path>,
 }
 
 /// Runs the command.
@@ -144,13 +151,14 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let given = named.map(|source| named::foundation(zoo, source)).transpose();
     let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose();
     let inputs = named_files(arguments);
+    let beside = arguments.out.as_deref().map(weights::beside);
     let files = both(
-        promised(arguments.out.as_deref(), &inputs),
+        both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs)),
         promised(arguments.report.as_deref(), &inputs),
     );
     let target = both(named::ship(zoo, &arguments.ship), settings(arguments));
     let start = both(both(target, both(given, law)), both(files, trials::read(&arguments.trials)));
-    let (((target, mut settings), (given, law)), ((out, report), read)) = start?;
+    let (((target, mut settings), (given, law)), (((out, weights), report), read)) = start?;
     let given = given.map(|(model, _)| model);
     trials::remark_other_ship(&read, target.name());
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
@@ -180,19 +188,24 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         None => refined(&target, &source, laws, &settings, &read)?,
     };
     let refinement = calibrated(zoo, refinement, &law, &read);
+    let branch = TrainedBeside::new(&refinement, &law, ladder.as_ref(), &read)?;
     if let Some(out) = out {
+        let model = branch.as_ref().map_or(&refinement.model, |branch| &branch.model);
+        // Weights first: a model that is there has them.
+        branch.iter().zip(weights).try_for_each(|(branch, file)| branch.write(file))?;
         let how = format!("method {}", refinement.method);
-        out.write(model_file(zoo, &refinement.model, &how)?.as_bytes())?;
+        out.write(model_file(zoo, model, &how)?.as_bytes())?;
     }
     if let Some(report) = report {
         let chosen = (similarity.as_ref(), ladder.as_ref());
         report.write(&report_html(zoo, &target, &refinement, chosen, &read)?)?;
     }
     let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
-    let document =
-        RefineDocument { refinement: &refinement, ranking, ladder: ladder.as_ref(), files };
+    let weights = beside.as_deref().filter(|_| branch.is_some());
+    let ladder = ladder.as_ref();
+    let document = RefineDocument { refinement: &refinement, ranking, ladder, files, weights };
     output::print(arguments.json, &document, || {
-        let tried = ladder.as_ref().map_or(String::new(), refine_text::ladder);
+        let tried = ladder.map_or(String::new(), refine_text::ladder);
         let text = refine_text::text(&refinement, &source, ranking, &files);
         refine_text::warning(&refinement) + &tried + &text
     })

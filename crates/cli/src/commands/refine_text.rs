@@ -75,7 +75,8 @@ pub fn ladder(ladder: &Ladder) -> String {
         table.row(names.into_iter().chain(figures).chain(end));
     }
     let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
-    format!("Tried: {what}\n{table}\n")
+    let branch = ladder.branch.as_ref().map_or("", |choice| &choice.reason);
+    format!("Tried: {what}\n{table}\nLearned branch: {branch}\n\n")
 }
 
 /// A law without roll leaves roll where it was: its errors would say nothing.

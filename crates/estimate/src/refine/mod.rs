@@ -53,6 +53,7 @@ pub use outcome::{
     CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
 };
 pub use progress::{Iterate, MonotoneProgress, Progress, Watch};
+pub use replayed_trials::ReplayedTrials;
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
 pub use selection::{Request, refine, refine_wanted, refine_watched, weigh};

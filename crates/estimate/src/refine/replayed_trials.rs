@@ -9,13 +9,16 @@ use super::steps::step_s;
 use sistership_sources::transfer::approach_of;
 
 /// Trials with no more samples than simulations need.
-pub(super) struct ReplayedTrials {
+pub struct ReplayedTrials {
+    /// The trials, in their order.
     pub trials: Vec<Trial>,
     /// Longest step of a simulation, s.
     pub step_s: f64,
 }
 
 impl ReplayedTrials {
+    /// Of trials; with as few samples as a search needs where it is `economical`, means of what
+    /// drives the ship between them.
     pub fn new(law: &Law, lpp_m: Option<f64>, training: &[&Trial], economical: bool) -> Self {
         let step_s = lpp_m
             .zip(approach_of(training))

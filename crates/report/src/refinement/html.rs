@@ -39,6 +39,8 @@ struct RefinementPage<'a> {
     sailed: Table,
     why: Option<SourceChoice>,
     ladder: Option<Table>,
+    /// Whether a learned branch was taken, and why.
+    branch: Option<&'a str>,
     /// What to know first where the trials leave much open.
     wide: Option<String>,
     particulars: Table,
@@ -102,6 +104,7 @@ pub(crate) fn page(
         sailed: tables::sailed(&content.sailed),
         why: why(content),
         ladder: content.ladder.map(ladder::table),
+        branch: content.ladder.and_then(|ladder| Some(ladder.branch.as_ref()?.reason.as_str())),
         wide: content.wide.clone(),
         particulars: tables::particulars(&provenance.particulars),
         parameters: tables::parameters(&provenance.parameters),

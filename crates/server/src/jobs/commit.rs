@@ -4,12 +4,13 @@
 use std::sync::Arc;
 
 use serde_json::{Value, json};
+use sistership_branches::{BranchKind, BranchSettings};
 use sistership_choice::Ladder;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
 use sistership_sources::source::Similarity;
 use sistership_store::{
-    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, Version, VersionHead,
+    Expect, Job, Kept, NewJob, NewReport, NewVersion, Refinement, StoreError, Version,
 };
 
 use super::outcome::{JobError, Result, failed};
@@ -18,6 +19,7 @@ use crate::app::App;
 use sistership_pipeline::derive::{Derived, Refined};
 use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
 use sistership_pipeline::promotion::{Comparison, against_champion};
+use sistership_pipeline::request::{BRANCH, BranchJob};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.
@@ -27,6 +29,8 @@ struct Made {
     similarity: Option<Arc<Similarity>>,
     ladder: Option<Arc<Ladder>>,
     comparison: Option<Comparison>,
+    /// The branch that was found to win beside it, with the ids of its trials.
+    branch: Option<(BranchKind, Vec<String>)>,
     result: Value,
 }
 
@@ -35,10 +39,10 @@ pub(super) async fn commit(
     app: &App,
     job: &Job,
     derived: Derived,
-    prepared: Prepared,
+    (prepared, trials): (Prepared, &[String]),
 ) -> Result<()> {
     let hashes = derived.document.recipe.trials().iter().map(|t| t.sha256.clone()).collect();
-    let made = Made::new(derived, prepared)?;
+    let made = Made::new(derived, prepared, trials)?;
     let refined = Arc::clone(&made.refined);
     let comparison = against_champion(app.archive(), &made.version.model, refined, hashes).await?;
     let made = Made { comparison, ..made };
@@ -55,7 +59,7 @@ pub(super) async fn commit(
 }
 
 impl Made {
-    fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
+    fn new(derived: Derived, prepared: Prepared, trials: &[String]) -> Result<Self> {
         let Derived { document, refined, .. } = derived;
         let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
         let source = prepared.start.source.as_ref().map(named);
@@ -76,6 +80,7 @@ impl Made {
         }
         Ok(Self {
             version,
+            branch: branch(prepared.start.ladder.as_ref(), &refined, trials),
             refined: Arc::new(refined),
             similarity: prepared.start.similarity.map(Arc::new),
             ladder: prepared.start.ladder.map(Arc::new),
@@ -121,20 +126,24 @@ impl Made {
         let own = alias.map(|(alias, expect)| step(alias, expect, &reason));
         let moves = own.into_iter().chain([standing.follow(&reason)]).collect();
         let alias = alias.map(|(alias, _)| alias);
-        let refinement = Refinement { version: self.version.clone(), moves, report: Some(report) };
-        let result = |version: &VersionHead, report: Option<&ReportHead>| {
-            self.result(version, report, alias)
-        };
-        app.store().commit_refinement(&job.id, job.fence, &refinement, result).await?;
+        let (report, next) = (Some(report), self.next(standing.next)?);
+        let refinement = Refinement { version: self.version.clone(), moves, report, next };
+        let result = |kept: &Kept<'_>| self.result(kept, alias);
+        app.store().commit_refinement(None, (&job.id, job.fence), &refinement, result).await?;
         Ok(())
     }
 
-    fn result(
-        &self,
-        version: &VersionHead,
-        report: Option<&ReportHead>,
-        alias: Option<&str>,
-    ) -> String {
+    /// The job that trains the branch beside the version of this number.
+    fn next(&self, number: i64) -> Result<Option<NewJob>> {
+        let Some((kind, trials)) = self.branch.clone() else { return Ok(None) };
+        let ship = self.version.model.clone();
+        let settings = BranchSettings::default().of(kind);
+        let asked = BranchJob { ship: ship.clone(), number, trials, settings };
+        let request = serde_json::to_string(&asked).map_err(failed)?;
+        Ok(Some(NewJob { kind: BRANCH.to_owned(), ship: Some(ship), request }))
+    }
+
+    fn result(&self, Kept { version, report, next }: &Kept<'_>, alias: Option<&str>) -> String {
         let mut result = self.result.clone();
         result["model"] = json!(version.model);
         result["version"] = json!(version.number);
@@ -142,8 +151,25 @@ impl Made {
         result["alias"] = json!(alias);
         result["comparison"] = json!(self.comparison.as_ref().map(Comparison::words));
         result["report"] = json!(report.map(|report| &report.id));
+        if let Some(next) = next {
+            result["branch_job"] = json!(next.id);
+        }
         result.to_string()
     }
+}
+
+/// The kind of branch that the search took, and the ids of the trials that the refinement was
+/// fitted to.
+fn branch(
+    ladder: Option<&Ladder>,
+    refined: &Refined,
+    trials: &[String],
+) -> Option<(BranchKind, Vec<String>)> {
+    let kind = ladder?.branch.as_ref()?.taken?;
+    let held_out = &refined.refinement.settings.held_out;
+    let named = refined.ingredients.trials.iter().zip(trials);
+    let fitted = named.filter(|(trial, _)| !held_out.contains(&trial.name));
+    Some((kind, fitted.map(|(_, id)| id.clone()).collect()))
 }
 
 fn render(

@@ -10,7 +10,7 @@ use sistership_pipeline::derive::Derived;
 use sistership_pipeline::line::{CANDIDATE, Standing, step};
 use sistership_report::{BranchInput, VersionLabel, render_branch};
 use sistership_store::{
-    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead,
+    Expect, Job, Kept, NewReport, NewVersion, Refinement, StoreError, VersionHead,
 };
 
 use super::outcome::{JobError, Result, failed};
@@ -91,11 +91,10 @@ impl<'a> Made<'a> {
             format!("trained beside {}/{} in job {}", self.of.model, self.of.number, job.id);
         let moves = vec![step(CANDIDATE, Expect::Any, &reason), standing.follow(&reason)];
         let report = Some(self.report(standing.next)?);
-        let refinement = Refinement { version: self.version.clone(), moves, report };
-        let result =
-            |version: &VersionHead, report: Option<&ReportHead>| self.result(version, report);
-        let (store, objects) = (app.store(), app.objects());
-        store.commit_with_weights(objects, &job.id, job.fence, &refinement, result).await?;
+        let refinement = Refinement { version: self.version.clone(), moves, report, next: None };
+        let result = |kept: &Kept<'_>| self.result(kept);
+        let (store, objects) = (app.store(), Some(app.objects()));
+        store.commit_refinement(objects, (&job.id, job.fence), &refinement, result).await?;
         Ok(())
     }
 
@@ -122,7 +121,7 @@ impl<'a> Made<'a> {
         })
     }
 
-    fn result(&self, version: &VersionHead, report: Option<&ReportHead>) -> String {
+    fn result(&self, Kept { version, report, .. }: &Kept<'_>) -> String {
         let mut result = self.result.clone();
         result["model"] = json!(version.model);
         result["version"] = json!(version.number);

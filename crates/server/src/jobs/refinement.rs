@@ -30,5 +30,5 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     .await?
     .spelled_out()?;
     tell(&progress, 0.92, "writing the report and keeping the version")?;
-    commit(app, job, derived, prepared).await
+    commit(app, job, derived, (prepared, &asked.trials)).await
 }

@@ -61,7 +61,8 @@ const AUTO: &str = "auto";
 /// Refine a model against trials
 ///
 /// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
-/// ship's line, champion where it has none and else `candidate`, with a report.
+/// ship's line, champion where it has none and else `candidate`, with a report. Where nothing was
+/// named and a learned branch wins on trials left out, `branch_job` of the result trains it.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,

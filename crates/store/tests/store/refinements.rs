@@ -1,4 +1,4 @@
-use sistership_store::{Committed, Expect, JobState, Page, Refinement, Result};
+use sistership_store::{Committed, Expect, JobFilter, JobState, Kept, Page, Refinement, Result};
 
 use crate::jobs::{claim, let_the_lease_run_out};
 use crate::support::*;
@@ -8,14 +8,13 @@ fn refinement() -> Refinement {
         version: version("kcs"),
         moves: vec![champion(Expect::Any)],
         report: Some(report("kcs")),
+        next: None,
     }
 }
 
 async fn commit(on: &TestStore, job: &str, fence: i64) -> Result<Committed> {
-    let result = |version: &sistership_store::VersionHead, _: Option<&_>| {
-        format!(r#"{{"version":{}}}"#, version.number)
-    };
-    on.store.commit_refinement(job, fence, &refinement(), result).await
+    let result = |kept: &Kept<'_>| format!(r#"{{"version":{}}}"#, kept.version.number);
+    on.store.commit_refinement(None, (job, fence), &refinement(), result).await
 }
 
 async fn all_of_it_is_kept(on: &TestStore) {
@@ -54,22 +53,42 @@ async fn a_refused_part_leaves_the_job_running(on: &TestStore) {
     on.store.jobs().enqueue(&job("kcs")).await.unwrap();
     let running = claim(on, "a").await.unwrap();
     let refused = Refinement { moves: vec![champion(Expect::Revision(4))], ..refinement() };
-    let result = |_: &_, _: Option<&_>| "{}".to_owned();
+    let result = |_: &Kept<'_>| "{}".to_owned();
     assert_stale(
-        on.store.commit_refinement(&running.id, running.fence, &refused, result).await,
+        on.store.commit_refinement(None, (&running.id, running.fence), &refused, result).await,
         None,
     );
-    let result = |_: &_, _: Option<&_>| "{".to_owned();
+    let result = |_: &Kept<'_>| "{".to_owned();
     assert_invalid(
-        on.store.commit_refinement(&running.id, running.fence, &refinement(), result).await,
+        on.store.commit_refinement(None, (&running.id, running.fence), &refinement(), result).await,
         "result",
     );
     assert_eq!(on.store.jobs().get(&running.id).await.unwrap(), running);
     assert_not_found(on.store.versions().latest("kcs").await, "model");
 }
 
+async fn the_job_that_goes_on_comes_with_the_version_or_not_at_all(on: &TestStore) {
+    on.store.jobs().enqueue(&job("kcs")).await.unwrap();
+    let running = claim(on, "a").await.unwrap();
+    let next = Refinement { next: Some(job("kcs")), ..refinement() };
+    let all = |on: &TestStore| {
+        let store = on.store.clone();
+        async move { store.jobs().list(&JobFilter::default(), &Page::first(9)).await.unwrap().items }
+    };
+    let named = |kept: &Kept<'_>| format!(r#"{{"next":"{}"}}"#, kept.next.unwrap().id);
+    let place = (running.id.as_str(), running.fence);
+    let lost = on.store.commit_refinement(None, (place.0, place.1 - 1), &next, named).await;
+    assert_conflict(lost, "lost");
+    assert_eq!(all(on).await.len(), 1);
+    let kept = on.store.commit_refinement(None, place, &next, named).await.unwrap();
+    let jobs = all(on).await;
+    let queued = jobs.iter().find(|job| job.state == JobState::Queued).unwrap();
+    assert_eq!(kept.job.result, Some(format!(r#"{{"next":"{}"}}"#, queued.id)));
+}
+
 on_both_databases!(
     all_of_it_is_kept,
+    the_job_that_goes_on_comes_with_the_version_or_not_at_all,
     a_fenced_worker_leaves_nothing_behind,
     a_refused_part_leaves_the_job_running
 );
