@@ -61,7 +61,7 @@ fn ships() -> [(&'static str, Box<dyn Truth>); 8] {
 fn row(zoo: &Zoo, (name, ship): (&str, &dyn Truth), seen: &[&Trial], unseen: &[Trial]) {
     let alone = refined(zoo, ship, seen);
     let law = zoo.law(&alone.law).expect("a law of the zoo");
-    let asked = (&BranchSettings::default(), Kinds::WhilePromising);
+    let asked = (&BranchSettings::default(), Kinds::WhilePromising { step_s: 0.5 });
     let choice = choose(&alone, law, seen, asked, &|_| true);
     let choice = choice.unwrap_or_else(|error| panic!("{error}")).expect("it was not stopped");
     let best = choice.tried.iter().min_by(|a, b| a.branch.total_cmp(&b.branch));

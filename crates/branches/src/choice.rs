@@ -1,10 +1,11 @@
 //! Which kind of branch, if any: each is tried, and trials left out of its training decide.
 
 use serde::{Deserialize, Serialize};
+use sistership_dynamics::recorded::ReplaySettings;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model};
 
-use crate::judge::{Judgement, judge};
+use crate::judge::{Judgement, judge_in_steps};
 use crate::settings::{BranchKind, BranchSettings};
 use crate::train::TrainError;
 
@@ -41,21 +42,31 @@ impl BranchChoice {
 }
 
 /// Which kinds are tried.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kinds {
     /// Every kind.
     Every,
     /// One after another, boosted trees first, which cost least, until one loses by more than one
     /// standard error of the difference.
-    WhilePromising,
+    WhilePromising {
+        /// Longest step of the simulations, s.
+        step_s: f64,
+    },
 }
 
 impl Kinds {
+    fn step_s(self) -> f64 {
+        match self {
+            Self::Every => ReplaySettings::default().step_s,
+            Self::WhilePromising { step_s } => step_s,
+        }
+    }
+
     fn in_order(self) -> [BranchKind; 4] {
         let [forest, boosted, kernels, perceptron] = BranchKind::ALL;
         match self {
             Self::Every => BranchKind::ALL,
-            Self::WhilePromising => [boosted, forest, perceptron, kernels],
+            Self::WhilePromising { .. } => [boosted, forest, perceptron, kernels],
         }
     }
 }
@@ -77,11 +88,11 @@ pub fn choose(
             return Ok(None);
         }
         let training = settings.of(kind).training(model, law, trials)?;
-        let Some(judged) = judge(model, law, trials, &training)? else {
+        let Some(judged) = judge_in_steps(model, law, trials, &training, kinds.step_s())? else {
             let reason = "there is one trial only, and none is left to judge on".to_owned();
             return Ok(Some(BranchChoice::untried(reason)));
         };
-        let over = kinds == Kinds::WhilePromising && judged.loses();
+        let over = kinds != Kinds::Every && judged.loses();
         tried.push((kind, judged));
         if over {
             break;

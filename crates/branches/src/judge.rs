@@ -84,17 +84,34 @@ pub fn judge(
     trials: &[&Trial],
     training: &Training,
 ) -> Result<Option<Judgement>, TrainError> {
+    judge_in_steps(model, law, trials, training, ReplaySettings::default().step_s)
+}
+
+/// The same by simulations whose steps are at most so long, s.
+pub(crate) fn judge_in_steps(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+    training: &Training,
+    step_s: f64,
+) -> Result<Option<Judgement>, TrainError> {
     let folds = FOLDS.min(trials.len());
     if folds < 2 {
         return Ok(None);
     }
-    let deviations = standard_deviations(trials);
-    let part = |fold: usize| left_out(model, law, trials, training, (fold, folds), &deviations);
+    let scales = Scales { deviations: standard_deviations(trials), step_s };
+    let part = |fold: usize| left_out(model, law, trials, training, (fold, folds), &scales);
     let parts: Vec<Vec<(usize, JudgedTrial)>> =
         (0..folds).into_par_iter().map(part).collect::<Result<_, TrainError>>()?;
     let mut judged: Vec<(usize, JudgedTrial)> = parts.into_iter().flatten().collect();
     judged.sort_by_key(|(place, _)| *place);
     Ok(Some(summed(judged.into_iter().map(|(_, trial)| trial).collect())))
+}
+
+/// By what errors are divided, and in what steps simulations go.
+struct Scales {
+    deviations: BTreeMap<Channel, f64>,
+    step_s: f64,
 }
 
 /// The trials of a part, by a branch trained on the others.
@@ -104,7 +121,7 @@ fn left_out(
     trials: &[&Trial],
     training: &Training,
     (fold, folds): (usize, usize),
-    deviations: &BTreeMap<Channel, f64>,
+    scales: &Scales,
 ) -> Result<Vec<(usize, JudgedTrial)>, TrainError> {
     let (outside, inside): (Vec<_>, Vec<_>) =
         trials.iter().copied().enumerate().partition(|(place, _)| place % folds == fold);
@@ -114,8 +131,8 @@ fn left_out(
     let mut both = version::with_branch(&foundation, branch);
     joined::attach(&mut both, &weights.bytes()?).map_err(Box::<JoinError>::from)?;
     let of = |(place, trial): (usize, &Trial)| -> Result<(usize, JudgedTrial), TrainError> {
-        let (foundation, _) = simulated(&foundation, law, trial, deviations)?;
-        let (branch, share) = simulated(&both, law, trial, deviations)?;
+        let (foundation, _) = simulated(&foundation, law, trial, scales)?;
+        let (branch, share) = simulated(&both, law, trial, scales)?;
         let share = share.unwrap_or(0.0);
         Ok((place, JudgedTrial { name: trial.name.clone(), foundation, branch, share }))
     };
@@ -128,18 +145,18 @@ fn simulated(
     model: &Model,
     law: &Law,
     trial: &Trial,
-    deviations: &BTreeMap<Channel, f64>,
+    scales: &Scales,
 ) -> Result<(TrialError, Option<f64>), TrainError> {
     let mut ship = Ship::new(model, law)?;
     let speeds = trial.channel(Channel::U).into_iter().flatten();
     ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
     let restart_s = Some(RESTART_LENGTHS * ship.lpp_m() / ship.approach_speed_m_s());
-    let settings = ReplaySettings { restart_s, ..ReplaySettings::default() };
+    let settings = ReplaySettings { restart_s, step_s: scales.step_s, ..ReplaySettings::default() };
     let run = replay(&ship, trial, &settings).map_err(crate::rows::RowsError::from)?;
     let error = SquaredError::of(trial, &run);
     let error = TrialError {
         rmse: error.rmse(),
-        standardised_mse: standardised_mse(&error, deviations),
+        standardised_mse: standardised_mse(&error, &scales.deviations),
         stopped: run.stopped.as_ref().map(ToString::to_string),
     };
     Ok((error, ship.branch_share(&run.track)))

@@ -25,10 +25,11 @@ pub(super) fn branch(
         return Ok(BranchChoice::untried(few(trials.len())));
     }
     let replayed = ReplayedTrials::new(law, lpp_m, trials, true);
+    let kinds = Kinds::WhilePromising { step_s: replayed.step_s };
     let replayed: Vec<&Trial> = replayed.trials.iter().collect();
     let settings = BranchSettings::default();
     let told = |kind: BranchKind| progress(0.99, &format!("trying a branch of {}", kind.name()));
-    match choose(model, law, &replayed, (&settings, Kinds::WhilePromising), &told) {
+    match choose(model, law, &replayed, (&settings, kinds), &told) {
         Ok(choice) => choice.ok_or(RefineError::Cancelled),
         Err(error) => Ok(BranchChoice::untried(untrained(&error))),
     }
