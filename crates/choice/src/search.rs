@@ -43,6 +43,7 @@ fn searched_by(search: &Search<'_>) -> Settings {
         posterior_by_folds: true,
         folds_pooled: true,
         economical: true,
+        expected_rates: true,
         reading_interval: true,
         calibration_samples: settings.calibration_samples.or(Some(SEARCH.calibration)),
         bands: Sampling { within_steps: true, figures_only: true, ..settings.bands },

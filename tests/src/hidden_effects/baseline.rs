@@ -56,7 +56,11 @@ pub fn by(
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let settings = CalibrationSettings { reading_interval: true, ..CalibrationSettings::default() };
+    let settings = CalibrationSettings {
+        expected_rates: true,
+        reading_interval: true,
+        ..CalibrationSettings::default()
+    };
     let uncertainty = calibrate(&model, law, &library(), trials, settings)
         .unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);

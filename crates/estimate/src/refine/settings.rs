@@ -221,7 +221,7 @@ pub struct Settings {
     pub economical: bool,
     /// What late instruments would explain of the trials is learned from the rates that the filter
     /// expects, not from those on the recorded path, whose noise is that of the readings: a right
-    /// model seems late by it. Off unless asked for: docs/evidence/diagnosis_unseen.md.
+    /// model seems late by it. Every new order has it; docs/evidence/diagnosis_unseen.md.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub expected_rates: bool,
     /// How far readings are apart whose noise is new is asked of the trials as they were recorded,
@@ -294,6 +294,7 @@ impl Settings {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
         self.recorded_revolutions |= self.prior == Prior::Mixture;
+        self.expected_rates = true;
         self.reading_interval = true;
         self
     }
