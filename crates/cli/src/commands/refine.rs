@@ -157,29 +157,17 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         promised(arguments.report.as_deref(), &inputs),
     );
     let target = both(named::ship(zoo, &arguments.ship), settings(arguments));
-    let start = both(both(target, both(given, law)), both(files, trials::read(&arguments.trials)));
-    let (((target, mut settings), (given, law)), (((out, weights), report), read)) = start?;
+    let read = both(files, trials::read(&arguments.trials));
+    let all = both(both(target, both(given, law)), read)?;
+    let (((target, mut settings), (given, law)), (((out, weights), report), read)) = all;
     let given = given.map(|(model, _)| model);
     trials::remark_other_ship(&read, target.name());
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
     let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
     guard(&files, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
-    let Start { source, law, similarity, ladder, made } = match (given, law) {
-        (Some(source), law) => Start::of(source, law),
-        (None, None) if is_plain(arguments, &settings) => {
-            let (start, explicit) = searched(zoo, &target, &settings, &read)?;
-            settings = explicit;
-            start
-        }
-        (None, Some(law)) if arguments.source.is_none() => {
-            Start::of(of_law(&law, &target, &settings, &read)?, Some(law))
-        }
-        (None, law) => {
-            let (source, similarity) = chosen(zoo, &target, &settings, &read)?;
-            Start { similarity: Some(similarity), ..Start::of(source, law) }
-        }
-    };
+    let started = start(zoo, arguments, (given, law), &target, &mut settings, &read)?;
+    let Start { source, law, similarity, ladder, made } = started;
     let source_law = named::law_of(zoo, &source)?;
     let law = law.unwrap_or_else(|| source_law.clone());
     let laws = (&*source_law, &*law);
@@ -207,8 +195,35 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     output::print(arguments.json, &document, || {
         let tried = ladder.map_or(String::new(), refine_text::ladder);
         let text = refine_text::text(&refinement, &source, ranking, &files);
-        refine_text::warning(&refinement) + &tried + &text
+        let branch = weights.map_or(String::new(), refine_text::weights);
+        refine_text::warning(&refinement) + &tried + &text + &branch
     })
+}
+
+/// Where the refinement starts; where nothing is named, the search settles the settings, too.
+fn start(
+    zoo: &Zoo,
+    arguments: &RefineArguments,
+    (given, law): (Option<Model>, Option<Arc<Law>>),
+    target: &Vessel,
+    settings: &mut Settings,
+    read: &[ReadTrial],
+) -> Result<Start, Failure> {
+    match (given, law) {
+        (Some(source), law) => Ok(Start::of(source, law)),
+        (None, None) if is_plain(arguments, settings) => {
+            let (start, explicit) = searched(zoo, target, settings, read)?;
+            *settings = explicit;
+            Ok(start)
+        }
+        (None, Some(law)) if arguments.source.is_none() => {
+            Ok(Start::of(of_law(&law, target, settings, read)?, Some(law)))
+        }
+        (None, law) => {
+            let (source, similarity) = chosen(zoo, target, settings, read)?;
+            Ok(Start { similarity: Some(similarity), ..Start::of(source, law) })
+        }
+    }
 }
 
 /// Whether neither source, law, method nor another prior is named, and nothing that only some

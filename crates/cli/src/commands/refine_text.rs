@@ -1,5 +1,7 @@
 //! A refinement in words and tables.
 
+use std::path::Path;
+
 use sistership_bands::Band;
 use sistership_choice::{Ladder, Rung};
 use sistership_dynamics::manoeuvre::Figure;
@@ -45,6 +47,11 @@ pub fn text(
 pub fn warning(refinement: &Refinement) -> String {
     let wide = refinement.manoeuvres.wide_band();
     wide.map_or_else(String::new, |wide| format!("WARNING: {wide}\n\n"))
+}
+
+/// Where the weights of the model's learned branch are.
+pub fn weights(file: &Path) -> String {
+    format!("with a learned branch, weights written to {}\n", file.display())
 }
 
 /// What was tried before the model was chosen.
