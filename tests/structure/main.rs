@@ -23,7 +23,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("empirical", &["formula", "model", "dynamics", "bands"]),
     ("sources", &["formula", "model", "dynamics"]),
     ("estimate", &["formula", "model", "dynamics", "bands", "regression", "empirical", "sources"]),
-    ("choice", &["model", "branches", "bands", "sources", "estimate"]),
+    ("choice", &["model", "dynamics", "branches", "bands", "sources", "estimate"]),
     ("residual", &["formula", "model", "dynamics", "estimate"]),
     (
         "diagnose",

@@ -9,6 +9,7 @@ mod branch;
 mod choice;
 mod entrant;
 mod ladder;
+mod sailed;
 mod search;
 mod start;
 mod taken;

@@ -1,11 +1,10 @@
 //! What is taken of all that was tried: the choice that also sails the standard manoeuvres.
 
-use sistership_estimate::refine::{
-    Progress, RefineError, Refinement, Settings, refine, unsailed_rudder,
-};
+use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings, refine};
 
 use crate::choice::standard_error;
 use crate::ladder::{Ladder, Line, Rung};
+use crate::sailed::unsailed_rudder;
 use crate::tried::{Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on};
 
 /// What was taken, and how it is refined explicitly.

@@ -55,3 +55,35 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     calibration: 30_000,
     branch_trials: 12,
 };
+
+/// What a model must sail before it is taken.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SailedThresholds {
+    /// Records of rudders at random, a count. Source: chosen; simulated side by side they cost as
+    /// much as one.
+    pub records: usize,
+    /// Angles of turns, to both sides, by the gear's limit, dimensionless. Source: between those of
+    /// the standard manoeuvres; docs/evidence/plain.md.
+    pub turns: [f64; 3],
+    /// How long each of these lasts, by `L/U`, dimensionless. Source: chosen, five times as long as
+    /// models of folds are compared; docs/evidence/plain.md.
+    pub lengths: f64,
+    /// Angles of zigzags, evenly to the gear's limit, a count. Source: derived: every five degrees
+    /// of 35.
+    pub zigzags: usize,
+    /// Motions of the trials from which the rudder goes hard over and about at random, a count.
+    /// Source: docs/evidence/plain.md.
+    pub motions: usize,
+    /// For how long, by `L/U`, dimensionless. Source: as long as models of folds are compared.
+    pub motion_lengths: f64,
+}
+
+/// The values.
+pub(super) const SAILED: SailedThresholds = SailedThresholds {
+    records: 8,
+    turns: [0.25, 0.5, 0.75],
+    lengths: 50.0,
+    zigzags: 7,
+    motions: 24,
+    motion_lengths: 10.0,
+};

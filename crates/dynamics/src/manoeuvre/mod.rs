@@ -112,6 +112,18 @@ pub fn zigzag(
     switch_deg: f64,
     settings: &ManoeuvreSettings,
 ) -> Result<Zigzag, Stopped> {
-    let zigzag = Manoeuvre::Zigzag { rudder: rudder_deg, switch: switch_deg };
-    Zigzag::of(sail_together(ship, &[(zigzag, &[])], settings).remove(0)?, rudder_deg, switch_deg)
+    zigzags(ship, &[(rudder_deg, switch_deg)], settings).remove(0)
+}
+
+/// Zigzags side by side: rudder and heading at which it is reversed, deg. The errors are those of
+/// [`zigzag`], each its own.
+pub fn zigzags(
+    ship: &Ship,
+    angles: &[(f64, f64)],
+    settings: &ManoeuvreSettings,
+) -> Vec<Result<Zigzag, Stopped>> {
+    let of = |&(rudder, switch): &(f64, f64)| (Manoeuvre::Zigzag { rudder, switch }, &[] as &[_]);
+    let all: Vec<_> = angles.iter().map(of).collect();
+    let sailed = sail_together(ship, &all, settings).into_iter().zip(angles);
+    sailed.map(|(track, (rudder, switch))| Zigzag::of(track?, *rudder, *switch)).collect()
 }

@@ -1,20 +1,18 @@
 //! Records of a rudder that no trial had: what models that agree on the trials are asked beside
-//! them, and what a model must sail before it is taken.
+//! them, and what a choice asks of a model before it is taken.
 
 use std::collections::BTreeMap;
 
-use sistership_dynamics::recorded::{Recorded, ReplaySettings, replay_all};
-use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Steering;
 use sistership_model::{Model, particulars};
 
 use super::thresholds::HELM;
-use sistership_sources::transfer::{approach_of, ready};
+use sistership_sources::transfer::approach_of;
 
 /// What a rudder is ordered.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Helm {
+pub enum Helm {
     /// Angles at random within the gear's limit, each held for some lengths: a record of so many.
     Random(usize),
     /// An angle throughout, by the gear's limit: a turn.
@@ -23,14 +21,8 @@ pub(super) enum Helm {
 
 impl Helm {
     /// So many records at random.
-    pub(super) fn random(records: usize) -> Vec<Self> {
+    pub fn random(records: usize) -> Vec<Self> {
         (0..records).map(Self::Random).collect()
-    }
-
-    /// All that a model must sail before it is taken.
-    fn asked() -> Vec<Self> {
-        let held = HELM.turns.into_iter().flat_map(|angle| [angle, -angle]).map(Self::Held);
-        Self::random(HELM.asked).into_iter().chain(held).collect()
     }
 
     fn name(self, steering: &Steering) -> String {
@@ -43,14 +35,19 @@ impl Helm {
     }
 
     /// Angles, rad, of a rudder that follows its orders at its gear's rate.
-    fn angles(self, steering: &Steering, interval_s: f64, count: usize) -> Vec<f64> {
+    fn angles(
+        self,
+        steering: &Steering,
+        interval_s: f64,
+        (first_rad, count): (f64, usize),
+    ) -> Vec<f64> {
         let limit = steering.limit_deg.to_radians();
         let step = steering.rate_deg_s.to_radians() * interval_s;
         let orders = match self {
             Self::Random(record) => orders_at_random(count, record * count),
             Self::Held(share) => vec![share; count],
         };
-        let mut angle = 0.0_f64;
+        let mut angle = first_rad;
         let moved = |order: &f64| {
             angle += (limit * order - angle).clamp(-step, step);
             angle
@@ -59,55 +56,59 @@ impl Helm {
     }
 }
 
-/// Why a model does not sail wherever its rudder may be: what the rudder was ordered, and where its
-/// simulation stops. None where it sails, or where a rudder does not tell all that its law takes.
-pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<String> {
-    let helms = helms(model, trials, (&Helm::asked(), HELM.asked_lengths))?;
-    let ship = ready(model, law, trials).ok()?;
-    let all: Vec<Recorded<'_>> =
-        helms.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
-    let runs = replay_all(&ship, &all, &ReplaySettings::default()).ok()?;
-    let stopped =
-        helms.iter().zip(&runs).find_map(|(helm, run)| Some((helm, run.stopped.as_ref()?)));
-    stopped.map(|(helm, stopped)| format!("does not sail {}: {stopped}", helm.name))
+/// Where a record begins: what is held throughout or at first, and the rudder's angle, rad.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beginning {
+    /// Speeds (m/s, rad/s), heel (rad) and revolutions (1/s) at first; what drives is held.
+    pub channels: BTreeMap<Channel, f64>,
+    /// The rudder's angle, rad.
+    pub angle_rad: f64,
 }
 
 /// A record of so many lengths for each order, from straight ahead at the speed and revolutions of
 /// the trials' approach, in their depth and without wind; none where the approach or the length is
 /// not known.
-pub(super) fn helms(
+pub fn helms(
     model: &Model,
     trials: &[&Trial],
     (helms, lengths): (&[Helm], f64),
 ) -> Option<Vec<Trial>> {
     let approach = approach_of(trials)?;
-    let lpp_m = particulars::value(&model.particulars, "lpp_m")?;
-    let interval_s = lpp_m / approach.speed_m_s / HELM.samples_a_length;
-    let count = (lengths * HELM.samples_a_length) as usize;
-    let constants = [
+    let motion = [
         (Channel::U, Some(approach.speed_m_s)),
         (Channel::V, Some(0.0)),
         (Channel::R, Some(0.0)),
         (Channel::N, approach.n_rps),
-        (Channel::WindSpeed, Some(0.0)),
-        (Channel::WindFrom, Some(0.0)),
     ];
-    let constants = constants.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
-    let constants: BTreeMap<Channel, Vec<f64>> =
+    let channels = motion.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
+    let ahead = Beginning { channels: channels.collect(), angle_rad: 0.0 };
+    helms.iter().map(|helm| record(model, trials, (*helm, lengths), &ahead)).collect()
+}
+
+/// A record of an order from a beginning, so many lengths long, in the depth of the trials and
+/// without wind; none where the approach or the length is not known.
+pub fn record(
+    model: &Model,
+    trials: &[&Trial],
+    (helm, lengths): (Helm, f64),
+    begun: &Beginning,
+) -> Option<Trial> {
+    let lpp_m = particulars::value(&model.particulars, "lpp_m")?;
+    let interval_s = lpp_m / approach_of(trials)?.speed_m_s / HELM.samples_a_length;
+    let count = (lengths * HELM.samples_a_length) as usize;
+    let calm = [(Channel::WindSpeed, 0.0), (Channel::WindFrom, 0.0)];
+    let constants = begun.channels.clone().into_iter().chain(calm);
+    let mut channels: BTreeMap<Channel, Vec<f64>> =
         constants.map(|(channel, value)| (channel, vec![value; count])).collect();
-    let steering = &model.steering;
-    let record = |helm: &Helm| {
-        let mut channels = constants.clone();
-        channels.insert(Channel::Delta, helm.angles(steering, interval_s, count));
-        Trial {
-            name: helm.name(steering),
-            t_s: (0..count).map(|sample| sample as f64 * interval_s).collect(),
-            channels,
-            depth_m: trials.first().and_then(|trial| trial.depth_m),
-            ..Trial::default()
-        }
-    };
-    Some(helms.iter().map(record).collect())
+    let angles = helm.angles(&model.steering, interval_s, (begun.angle_rad, count));
+    channels.insert(Channel::Delta, angles);
+    Some(Trial {
+        name: helm.name(&model.steering),
+        t_s: (0..count).map(|sample| sample as f64 * interval_s).collect(),
+        channels,
+        depth_m: trials.first().and_then(|trial| trial.depth_m),
+        ..Trial::default()
+    })
 }
 
 /// Orders by the gear's limit, sample by sample: those of a sequence from a place on.
@@ -142,18 +143,6 @@ fn radical_inverse(mut number: usize, base: usize) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::testing::{mariner, trials, with};
-
-    #[test]
-    fn what_leaves_the_physical_range_is_told_with_its_record() {
-        let (model, law) = mariner();
-        let trials = trials(&model, &law, 0.0);
-        let trials: Vec<&Trial> = trials.iter().collect();
-        assert_eq!(unsailed_rudder(&model, &law, &trials), None);
-        let runs_away = with(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
-        let told = unsailed_rudder(&runs_away, &law, &trials).unwrap();
-        assert!(told.starts_with("does not sail rudder 1 at random: stopped at "), "{told}");
-    }
 
     #[test]
     fn digits_are_reversed() {
@@ -165,14 +154,14 @@ mod tests {
     #[test]
     fn a_rudder_moves_at_its_gears_rate_within_its_limit() {
         let steering = Steering { limit_deg: 20.0, rate_deg_s: 3.0, ..Steering::default() };
-        let angles = Helm::Random(0).angles(&steering, 2.0, 400);
+        let angles = Helm::Random(0).angles(&steering, 2.0, (0.0, 400));
         let degrees = |angle: &f64| angle.to_degrees();
         let most = angles.iter().map(degrees).fold(0.0, |most: f64, angle| most.max(angle.abs()));
         assert!((10.0..20.0 + 1e-9).contains(&most), "{most}");
         let moves = angles.windows(2).map(|pair| (pair[1] - pair[0]).abs().to_degrees());
         assert!(moves.fold(0.0, f64::max) < 6.0 + 1e-9);
-        assert_ne!(angles, Helm::Random(1).angles(&steering, 2.0, 400));
-        let held = Helm::Held(-0.5).angles(&steering, 2.0, 400);
+        assert_ne!(angles, Helm::Random(1).angles(&steering, 2.0, (0.0, 400)));
+        let held = Helm::Held(-0.5).angles(&steering, 2.0, (0.0, 400));
         assert!((held[0].to_degrees() + 6.0).abs() < 1e-9);
         assert!((held[399].to_degrees() + 10.0).abs() < 1e-9);
     }

@@ -48,7 +48,7 @@ pub use blocks::{Block, Blocks};
 pub use cma_es::{CmaEs, SearchReport};
 pub use constraints::{Bound, ConstraintError, Constraints, LimitError, StraightLine};
 pub use family::Family;
-pub use helm::unsailed_rudder;
+pub use helm::{Beginning, Helm, helms, record};
 pub use outcome::{
     CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
 };

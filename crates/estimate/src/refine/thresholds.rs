@@ -144,15 +144,6 @@ pub(super) struct HelmThresholds {
     /// `T_h`: how long each lasts, by `L/U`, dimensionless. Source: [`SelectionThresholds::restart`];
     /// half and double are not measured yet.
     pub lengths: f64,
-    /// Records that a model must sail before it is taken, a count. Source: chosen; simulated side
-    /// by side they cost as much as one.
-    pub asked: usize,
-    /// Angles of turns that it must sail besides, to both sides, by the gear's limit, dimensionless.
-    /// Source: between those of the standard manoeuvres; docs/evidence/plain.md.
-    pub turns: [f64; 3],
-    /// How long each of them lasts, by `L/U`, dimensionless. Source: chosen, five times
-    /// [`Self::lengths`]; docs/evidence/plain.md.
-    pub asked_lengths: f64,
     /// Samples in `L/U`, a count. Source: chosen; states are compared there, steps are those of
     /// every simulation.
     pub samples_a_length: f64,
@@ -162,12 +153,5 @@ pub(super) struct HelmThresholds {
 }
 
 /// The values.
-pub(super) const HELM: HelmThresholds = HelmThresholds {
-    records: 4,
-    lengths: 10.0,
-    asked: 8,
-    turns: [0.25, 0.5, 0.75],
-    asked_lengths: 50.0,
-    samples_a_length: 10.0,
-    held: [1.0, 5.0],
-};
+pub(super) const HELM: HelmThresholds =
+    HelmThresholds { records: 4, lengths: 10.0, samples_a_length: 10.0, held: [1.0, 5.0] };
