@@ -18,12 +18,12 @@ fn asked() -> Vec<Helm> {
     Helm::random(SAILED.records).into_iter().chain(held).collect()
 }
 
-/// Why a model does not sail wherever its rudder and its motion may be: what the rudder was ordered,
-/// and where its simulation stops. None where it sails, or where a rudder does not tell all that its
-/// law takes.
+/// Why a model does not sail wherever its rudder and its motion may be: what the rudder was
+/// ordered, and where its simulation stops. None where it sails, or where a rudder does not tell
+/// all that its law takes.
 pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<String> {
     let mut helms = helms(model, trials, (&asked(), SAILED.lengths))?;
-    helms.extend(from_recorded_motion(model, trials)?);
+    helms.extend(from_recorded_motion(model, trials).unwrap_or_default());
     let ship = ready(model, law, trials).ok()?;
     let all: Vec<Recorded<'_>> =
         helms.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
@@ -57,9 +57,12 @@ fn from_recorded_motion(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> 
     let one = |k: usize, helm: Helm| {
         let (trial, at) = *places.get((2 * k + 1) * places.len() / (2 * SAILED.motions))?;
         let of = |channel: Channel| Some((channel, trial.channel(channel)?[at]));
-        let motion = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Phi, Channel::N];
+        // Without all of these nothing begins there; what else was recorded begins as it was.
         let angle_rad = of(Channel::Delta)?.1;
-        let begun = Beginning { channels: motion.into_iter().filter_map(of).collect(), angle_rad };
+        let moving = [Channel::U, Channel::V, Channel::R].map(of).into_iter();
+        let moving = moving.collect::<Option<Vec<_>>>()?;
+        let others = [Channel::P, Channel::Phi, Channel::N].into_iter().filter_map(of);
+        let begun = Beginning { channels: moving.into_iter().chain(others).collect(), angle_rad };
         let record = record(model, trials, (helm, SAILED.motion_lengths), &begun)?;
         let begun = format!("from the motion of {} at {:.0} s", trial.name, trial.t_s[at]);
         Some(Trial { name: format!("{} {begun}", record.name), ..record })
@@ -84,5 +87,21 @@ mod tests {
         let runs_away = with(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
         let told = unsailed_rudder(&runs_away, &law, &trials).unwrap();
         assert!(told.starts_with("does not sail rudder 1 at random: stopped at "), "{told}");
+    }
+
+    #[test]
+    fn trials_without_a_whole_motion_leave_what_begins_straight_ahead() {
+        let (model, law) = mariner();
+        let mut trials = trials(&model, &law, 0.0);
+        let count = |trials: &[Trial]| {
+            let trials: Vec<&Trial> = trials.iter().collect();
+            from_recorded_motion(&model, &trials).map(|records| records.len())
+        };
+        assert_eq!(count(&trials), Some(3 * SAILED.motions));
+        trials[3].channels.remove(&Channel::Delta);
+        assert_eq!(count(&trials), None);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let runs_away = with(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
+        assert!(unsailed_rudder(&runs_away, &law, &trials).is_some());
     }
 }

@@ -36,7 +36,8 @@ pub(super) struct SearchThresholds {
     /// `n_c`: samples of the trials on which the noise model is learned, a count. Source: memory;
     /// `docs/evidence/plain.md`.
     pub calibration: usize,
-    /// `n_b`: fewest trials of which branches are tried, a count. Source: `docs/evidence/branches.md`.
+    /// `n_b`: fewest trials of which branches are tried, a count. Source:
+    /// `docs/evidence/branches.md`, which has a third to two thirds of it, not its double.
     pub branch_trials: usize,
 }
 

@@ -5,8 +5,8 @@ use sistership_dynamics::state::{StateVector, at};
 use super::dimensions::Dimensions;
 use super::motion::{Inertia, Truth};
 
-/// Angle at which the flow leaves the blade, rad; chosen among the 15 to 25 deg of profiles of common
-/// thickness.
+/// Angle at which the flow leaves the blade, rad; chosen among the 15 to 25 deg of profiles of
+/// common thickness.
 const STALL_RAD: f64 = 17.0 * std::f64::consts::PI / 180.0;
 /// Range over which it does, rad.
 const RANGE_RAD: f64 = 3.0 * std::f64::consts::PI / 180.0;
