@@ -51,6 +51,7 @@ impl Case<'_> {
             source_law: None,
             law: self.law,
             trials: &trials,
+            population: &[],
             settings: &self.settings,
         };
         let refined = refine(&request, &|_, _| true)

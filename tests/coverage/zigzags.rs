@@ -63,6 +63,7 @@ fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: Method) -> Turned {
         source_law: None,
         law,
         trials: &trials,
+        population: &[],
         settings: &settings,
     };
     let refined = refine(&request, &|_, _| true)

@@ -23,6 +23,7 @@ fn refined_without_wind(baseline: &Baseline, trials: &[Trial]) -> BTreeMap<Strin
         source_law: None,
         law: &baseline.law,
         trials: &trials,
+        population: &[],
         settings: &settings,
     };
     refine::refine(&request, &|_, _| true)

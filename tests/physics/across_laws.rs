@@ -60,6 +60,7 @@ fn refined(source: &Model, own: &Law, law: &Law, trials: &[Trial]) -> Refinement
         source_law: Some(own),
         law,
         trials: &trials,
+        population: &[],
         settings: &settings,
     };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))

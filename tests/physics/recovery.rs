@@ -65,6 +65,7 @@ fn coefficients_are_recovered_from_noise_free_trials() {
             source_law: None,
             law: &law,
             trials: &trials,
+            population: &[],
             settings: &settings,
         };
         let refined =

@@ -22,7 +22,20 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("validation", &["model", "dynamics"]),
     ("empirical", &["formula", "model", "dynamics", "bands"]),
     ("sources", &["formula", "model", "dynamics"]),
-    ("estimate", &["formula", "model", "dynamics", "bands", "regression", "empirical", "sources"]),
+    ("constraints", &["model", "dynamics"]),
+    (
+        "estimate",
+        &[
+            "formula",
+            "model",
+            "dynamics",
+            "bands",
+            "regression",
+            "empirical",
+            "sources",
+            "constraints",
+        ],
+    ),
     ("choice", &["model", "dynamics", "branches", "bands", "sources", "estimate"]),
     ("residual", &["formula", "model", "dynamics", "estimate"]),
     (

@@ -46,12 +46,15 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
 
 /// The place of what is taken: of all that is within one standard error of the least error, that
 /// with the least sum of its error and so many times ([`SEARCH`]`.elsewhere`) its variance where no
-/// trial reaches ([`Weighed`]`.variance`). A law with more coefficients than the trials hold, and a
-/// strength of the prior that does not hold them, are as good on trials like those that were
-/// sailed; elsewhere they scatter. The rule of one standard error (Breiman et al. 1984,
-/// Classification and regression trees, section 3.4.3) counts coefficients in this place, which
-/// says less where a prior holds them. `None` where every simulation diverged.
-pub fn chosen(tried: &[&Weighed]) -> Option<usize> {
+/// trial reaches ([`Weighed`]`.variance`); what a population holds (`true`) before all else, for what
+/// trials do not tell apart other ships do (docs/evidence/population.md). A law with more
+/// coefficients than the trials hold, and a strength of the prior that does not hold them, are as
+/// good on trials like those that were sailed; elsewhere they scatter. The rule of one standard
+/// error (Breiman et al. 1984, Classification and regression trees, section 3.4.3) counts
+/// coefficients in this place, which says less where a prior holds them. `None` where every
+/// simulation diverged.
+pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
+    let (tried, held): (Vec<&Weighed>, Vec<bool>) = all.iter().copied().unzip();
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
     let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();
     let logs: Vec<LogError> = tried.iter().map(|one| LogError::of(&one.each)).collect();
@@ -65,8 +68,11 @@ pub fn chosen(tried: &[&Weighed]) -> Option<usize> {
         let variance = tried[*place].variance.unwrap_or(f64::INFINITY);
         logs[*place].all.exp() + SEARCH.elsewhere * variance
     };
+    let by_population_first = |a: &usize, b: &usize| held[*b].cmp(&held[*a]);
     let alike = sailed.iter().copied().filter(alike);
-    alike.min_by(|a, b| anywhere(a).total_cmp(&anywhere(b)).then(least(a, b)))
+    alike.min_by(|a, b| {
+        by_population_first(a, b).then(anywhere(a).total_cmp(&anywhere(b))).then(least(a, b))
+    })
 }
 
 #[cfg(test)]
@@ -90,7 +96,16 @@ mod tests {
     }
 
     fn choice(tried: &[Weighed]) -> Option<usize> {
-        chosen(&tried.iter().collect::<Vec<_>>())
+        chosen(&tried.iter().map(|one| (one, false)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn of_what_is_not_told_apart_a_population_is_taken_first() {
+        let steady = entry(0, &[1.0, 1.2, 0.9, 1.1]);
+        let alike = entry(20, &[0.5, 1.5, 0.6, 1.4]);
+        let better = entry(0, &[0.5, 0.7, 0.4, 0.6]);
+        assert_eq!(chosen(&[(&steady, false), (&alike, true)]), Some(1));
+        assert_eq!(chosen(&[(&better, false), (&steady, true)]), Some(0));
     }
 
     #[test]

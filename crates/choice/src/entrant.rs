@@ -11,6 +11,10 @@ use sistership_sources::transfer::{approach_of, blank};
 /// Laws that belong to no ship.
 const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
 
+/// The law that a population holds: the one that says most, without roll, of which few ships say
+/// anything.
+const POPULATION_LAW: &str = "low-speed";
+
 /// A source, or none, with the law to be fitted.
 #[derive(Debug, Clone)]
 pub struct Entrant {
@@ -20,13 +24,20 @@ pub struct Entrant {
     pub source_law: Option<Arc<Law>>,
     /// The law to be fitted.
     pub law: Arc<Law>,
-    /// Whether the estimate from the ship's particulars stands in the source's place
-    /// ([`Prior::Mixture`] at its end).
-    pub is_estimate: bool,
+    /// What holds the coefficients.
+    pub held_by: HeldBy,
 }
 
-/// What the estimate is called where sources are named.
-const ESTIMATE: &str = "estimate";
+/// What holds the coefficients of an entrant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeldBy {
+    /// The source.
+    Source,
+    /// The estimate from the ship's particulars in its place ([`Prior::Mixture`] at its end).
+    Estimate,
+    /// What other ships say ([`Prior::Population`]).
+    Population,
+}
 
 impl Entrant {
     /// What it is, for people.
@@ -37,27 +48,41 @@ impl Entrant {
 
     /// The source's name; none where the trials alone make the model.
     pub fn source_name(&self) -> Option<&str> {
-        let name = if self.is_estimate { ESTIMATE } else { &self.source.name };
+        let name = match self.held_by {
+            HeldBy::Source => &self.source.name,
+            HeldBy::Estimate => "estimate",
+            HeldBy::Population => "population",
+        };
         self.source_law.as_ref().map(|_| name)
     }
 
     /// Settings by which it is fitted.
     pub fn settings(&self, settings: &Settings) -> Settings {
-        match self.is_estimate {
-            true => {
+        match self.held_by {
+            HeldBy::Source => settings.clone(),
+            HeldBy::Estimate => {
                 Settings { prior: Prior::Mixture, mixture_positions: vec![1.0], ..settings.clone() }
             }
-            false => settings.clone(),
+            HeldBy::Population => Settings { prior: Prior::Population, ..settings.clone() },
         }
     }
 }
 
-/// Each source with its own law and the general ones, the estimate with the general ones where it
-/// is asked for, and each general law without a source.
+/// What may hold coefficients beside a source.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside {
+    /// The estimate from the ship's particulars.
+    pub estimate: bool,
+    /// A population.
+    pub population: bool,
+}
+
+/// Each source with its own law and the general ones, estimate and population with the general ones
+/// where they are asked for, and each general law without a source.
 pub fn entrants(
     zoo: &Zoo,
     target: &Vessel,
-    (sources, with_estimate): (&[Model], bool),
+    (sources, beside): (&[Model], Beside),
     trials: &[&Trial],
 ) -> Vec<Entrant> {
     let general: Vec<Arc<Law>> = GENERAL
@@ -69,16 +94,23 @@ pub fn entrants(
     let approach = approach_of(trials);
     let alone = general.iter().filter_map(|law| {
         let source = blank(law, target, approach).ok()?;
-        Some(Entrant { source, source_law: None, law: law.clone(), is_estimate: false })
+        let held_by = HeldBy::Source;
+        Some(Entrant { source, source_law: None, law: law.clone(), held_by })
     });
-    // What an order names beside the estimate is a source of another ship.
-    let other = sources.iter().find(|source| source.ship != target.name() && with_estimate);
-    let estimated = other.into_iter().flat_map(|source| {
+    // What an order names beside either is a source of another ship.
+    let others = || sources.iter().filter(|source| source.ship != target.name());
+    let estimated = others().take(usize::from(beside.estimate)).flat_map(|source| {
         let entrants = of_source(zoo, source, &general, trials).into_iter();
         let is_general = |one: &Entrant| GENERAL.contains(&one.law.name.as_str());
-        entrants.filter(is_general).map(|one| Entrant { is_estimate: true, ..one })
+        entrants.filter(is_general).map(|one| Entrant { held_by: HeldBy::Estimate, ..one })
     });
-    with_source.chain(estimated).chain(alone).collect()
+    let across = others().find(|source| source.law != POPULATION_LAW);
+    let population = across.filter(|_| beside.population).into_iter().flat_map(|source| {
+        let entrants = of_source(zoo, source, &general, trials).into_iter();
+        let is_theirs = |one: &Entrant| one.law.name == POPULATION_LAW;
+        entrants.filter(is_theirs).map(|one| Entrant { held_by: HeldBy::Population, ..one })
+    });
+    with_source.chain(estimated).chain(population).chain(alone).collect()
 }
 
 fn of_source(zoo: &Zoo, source: &Model, general: &[Arc<Law>], trials: &[&Trial]) -> Vec<Entrant> {
@@ -89,7 +121,7 @@ fn of_source(zoo: &Zoo, source: &Model, general: &[Arc<Law>], trials: &[&Trial])
         source: source.clone(),
         source_law: Some(own.clone()),
         law: law.clone(),
-        is_estimate: false,
+        held_by: HeldBy::Source,
     };
     laws.map(one).collect()
 }
@@ -105,19 +137,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_estimate_enters_beside_a_source_of_another_ship() {
+    fn estimate_and_population_enter_beside_a_source_of_another_ship() {
         let zoo = Zoo::embedded().unwrap();
         let target = zoo.vessel("kcs").unwrap();
         let models = ["kcs", "mariner"].map(|name| zoo.model(name).unwrap());
-        let estimates = |sources: &[Model], asked| {
-            let all = entrants(&zoo, target, (sources, asked), &[]);
-            all.into_iter().filter(|one| one.is_estimate).collect::<Vec<_>>()
+        let beside = Beside { estimate: true, population: true };
+        let held = |sources: &[Model], beside, by| {
+            let all = entrants(&zoo, target, (sources, beside), &[]);
+            all.into_iter().filter(|one| one.held_by == by).collect::<Vec<_>>()
         };
-        assert!(estimates(&models, false).is_empty() && estimates(&models[..1], true).is_empty());
-        let found = estimates(&models, true);
-        assert!(!found.is_empty() && found.iter().all(|one| one.source.ship == "mariner"));
-        assert!(found[0].name().starts_with("estimate, "), "{}", found[0].name());
-        let settings = found[0].settings(&Settings::default());
+        for by in [HeldBy::Estimate, HeldBy::Population] {
+            assert!(held(&models, Beside::default(), by).is_empty());
+            assert!(held(&models[..1], beside, by).is_empty());
+            let found = held(&models, beside, by);
+            assert!(!found.is_empty() && found.iter().all(|one| one.source.ship == "mariner"));
+        }
+        let estimate = &held(&models, beside, HeldBy::Estimate)[0];
+        assert!(estimate.name().starts_with("estimate, "), "{}", estimate.name());
+        let settings = estimate.settings(&Settings::default());
         assert_eq!((settings.prior, settings.mixture_positions), (Prior::Mixture, vec![1.0]));
+        let population = held(&models, beside, HeldBy::Population);
+        assert_eq!(population.iter().map(|one| &*one.law.name).collect::<Vec<_>>(), ["low-speed"]);
+        assert_eq!(population[0].settings(&Settings::default()).prior, Prior::Population);
     }
 }

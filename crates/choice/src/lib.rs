@@ -9,6 +9,7 @@ mod branch;
 mod choice;
 mod entrant;
 mod ladder;
+mod population;
 mod sailed;
 mod search;
 mod start;
@@ -17,8 +18,9 @@ mod thresholds;
 mod tried;
 
 pub use choice::{chosen, standard_error};
-pub use entrant::{Entrant, entrants};
+pub use entrant::{Beside, Entrant, HeldBy, entrants};
 pub use ladder::{Ladder, Line, Rung};
+pub use population::population;
 pub use search::search;
 pub use start::{Asked, Start, best_start};
 pub use taken::Winner;

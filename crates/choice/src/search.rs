@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use crate::entrant::{Entrant, HeldBy};
 use crate::ladder::Rung;
 use crate::taken::{Winner, taken};
 use crate::thresholds::SEARCH;
@@ -55,9 +56,11 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
     let (mut tried, known) = (Vec::new(), SourceEnvelopes::default());
-    let mut alone: Vec<usize> = (0..search.entrants.len())
-        .filter(|entrant| search.entrants[*entrant].source_law.is_none())
-        .collect();
+    let which = |is: &dyn Fn(&Entrant) -> bool| -> Vec<usize> {
+        (0..search.entrants.len()).filter(|entrant| is(&search.entrants[*entrant])).collect()
+    };
+    let mut alone = which(&|entrant| entrant.source_law.is_none());
+    let population = which(&|entrant| entrant.held_by == HeldBy::Population);
     carried_over((search, &known), &mut tried, progress)?;
     let mut next = leading_by_law(search, &tried);
     // Parts of one manoeuvre tell nothing of others, and without a source nothing else does.
@@ -65,6 +68,8 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
         alone.clear();
     }
     next.extend(alone);
+    // What ships have in common says little of one as it is, and much of how far it may be.
+    next.extend(population);
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
     descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
@@ -79,7 +84,8 @@ fn carried_over(
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
     let mut by_source: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    for (place, entrant) in search.entrants.iter().enumerate() {
+    let as_it_is = |entrant: &&Entrant| entrant.held_by != HeldBy::Population;
+    for (place, entrant) in search.entrants.iter().enumerate().filter(|(_, e)| as_it_is(e)) {
         entrant.source_name().into_iter().for_each(|source| {
             by_source.entry(source).or_default().push(place);
         });
@@ -156,7 +162,7 @@ fn descend(
     };
     let is_taken = |all: &[Weighed]| {
         note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
-        Ok(chosen_of(tried) == Some(place))
+        Ok(chosen_of(search, tried) == Some(place))
     };
     let request = request(search, entrant, &settings);
     let made = refine_wanted((&request, known), is_taken, &told);

@@ -6,12 +6,13 @@ use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
 use crate::branch::branch;
-use crate::entrant::{Entrant, entrants};
+use crate::entrant::{Beside, Entrant, HeldBy, entrants};
 use crate::ladder::Ladder;
+use crate::population::population;
 use crate::search::search;
 use crate::thresholds::SEARCH;
 use crate::tried::Search;
-use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings};
+use sistership_estimate::refine::{Member, Progress, RefineError, Refinement, Settings};
 use sistership_sources::source::{Similarity, similar_with};
 
 /// What is to be started.
@@ -34,6 +35,8 @@ pub struct Asked<'a> {
 pub struct Start {
     /// The source and the law to fit.
     pub entrant: Entrant,
+    /// The ships whose population holds it; none where something else does.
+    pub population: Vec<Member>,
     /// Settings that name the method.
     pub settings: Settings,
     /// How ships ranked.
@@ -54,14 +57,21 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     let similarity = similar_with(zoo, target, None, &fitted, champions);
-    let with_estimate = fitted.len() < SEARCH.few;
-    let entrants = entrants(zoo, target, (&sources(asked, &similarity), with_estimate), &fitted);
-    let winner = search(&Search { target, entrants: &entrants, trials, settings }, progress)?;
+    let population = population(zoo, target);
+    let beside = Beside {
+        estimate: fitted.len() < SEARCH.few,
+        population: fitted.len() <= SEARCH.population_trials,
+    };
+    let entrants = entrants(zoo, target, (&sources(asked, &similarity), beside), &fitted);
+    let all = Search { target, entrants: &entrants, trials, population: &population, settings };
+    let winner = search(&all, progress)?;
     let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
     let made = (&refinement.model, &*entrant.law);
     let branch = Some(branch(made, target.particular("lpp_m"), &fitted, progress)?);
     let ladder = Ladder { branch, ..winner.ladder };
-    Ok(Start { entrant, settings: winner.settings, similarity, ladder, refinement })
+    let is_held = entrant.held_by == HeldBy::Population;
+    let population = if is_held { population } else { Vec::new() };
+    Ok(Start { entrant, population, settings: winner.settings, similarity, ladder, refinement })
 }
 
 /// The models of the first eligible ships; a file that does not read is no source.

@@ -3,6 +3,7 @@
 use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings, refine};
 
 use crate::choice::standard_error;
+use crate::entrant::HeldBy;
 use crate::ladder::{Ladder, Line, Rung};
 use crate::sailed::unsailed_rudder;
 use crate::tried::{Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on};
@@ -35,7 +36,7 @@ pub(super) fn taken(
 ) -> Result<Winner, RefineError> {
     let mut spare = None;
     loop {
-        let Some(best) = chosen_of(&tried) else {
+        let Some(best) = chosen_of(search, &tried) else {
             return spare.ok_or_else(|| nothing_left(&tried));
         };
         let settings = settings_that_give(search, &tried, best);
@@ -113,6 +114,9 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
     let entrant = &search.entrants[tried.entrant];
     let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
     let outcome = match chosen {
+        true if entrant.held_by == HeldBy::Population => {
+            "of what is alike, what other ships hold".to_owned()
+        }
         true => "of what is alike, the least with five times its variance elsewhere".to_owned(),
         false => format!("{ratio:.2} times the least error"),
     };
@@ -150,6 +154,7 @@ mod tests {
             source_law: None,
             law: &law,
             trials: &trials,
+            population: &[],
             settings: &settings,
         };
         let made = refine(&request, &|_, _| true).unwrap();

@@ -27,6 +27,13 @@ pub(super) struct SearchThresholds {
     /// Most sources that enter, by rank of correlation, a count. Source: chosen; each costs a fit
     /// for every law, and correlation has ranked them.
     pub sources: usize,
+    /// Most ships of a population, by rank of similarity, a count. Source: chosen, more than the
+    /// zoo has; each is asked at every state.
+    pub population: usize,
+    /// Most trials beside which a population enters, a count. Source: derived: one less than branches
+    /// are tried of. What ships have in common and a branch beside a law are two ways to say what a
+    /// law alone does not, and of so many trials the second says more (docs/evidence/population.md).
+    pub population_trials: usize,
     /// `k_v`: weight of the variance where no trial reaches beside the error on trials left out,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub elsewhere: f64,
@@ -51,6 +58,8 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     near: [3.16, 1.0, 0.316],
     kept: 1e9,
     sources: 5,
+    population: 48,
+    population_trials: 11,
     elsewhere: 5.0,
     restart: 5.0,
     calibration: 30_000,

@@ -4,10 +4,12 @@ use sistership_model::Vessel;
 use sistership_model::trial::Trial;
 
 use crate::choice::chosen;
-use crate::entrant::Entrant;
+use crate::entrant::{Entrant, HeldBy};
 use crate::ladder::Rung;
 use crate::thresholds::SEARCH;
-use sistership_estimate::refine::{Family, RefineError, Refinement, Request, Settings, Weighed};
+use sistership_estimate::refine::{
+    Family, Member, RefineError, Refinement, Request, Settings, Weighed,
+};
 
 /// What is searched.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +20,8 @@ pub struct Search<'a> {
     pub entrants: &'a [Entrant],
     /// Every trial; those that the settings keep out have no say.
     pub trials: &'a [&'a Trial],
+    /// Ships of which a population is made.
+    pub population: &'a [Member],
     /// Settings but the method.
     pub settings: &'a Settings,
 }
@@ -53,6 +57,7 @@ pub(super) fn request<'a>(
         source_law: entrant.source_law.as_deref(),
         law: &entrant.law,
         trials: search.trials,
+        population: search.population,
         settings,
     }
 }
@@ -75,8 +80,9 @@ pub(super) fn on_rung(
 }
 
 /// The place of what is taken of all that was tried.
-pub(super) fn chosen_of(tried: &[Tried]) -> Option<usize> {
-    chosen(&tried.iter().map(|one| &one.weighed).collect::<Vec<_>>())
+pub(super) fn chosen_of(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
+    let is_held = |one: &Tried| search.entrants[one.entrant].held_by == HeldBy::Population;
+    chosen(&tried.iter().map(|one| (&one.weighed, is_held(one))).collect::<Vec<_>>())
 }
 
 /// The weak form that an entrant had.

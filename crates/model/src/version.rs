@@ -37,6 +37,9 @@ pub enum Recipe {
         /// Where the source is of another law.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         across: Option<AcrossLaws>,
+        /// The ships whose population was the prior, in their order.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        population: Vec<PopulationMember>,
         /// The library of effects that its calibration was learned with; absent in recipes of
         /// releases that had one only.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -58,6 +61,16 @@ pub struct AcrossLaws {
     pub law: String,
     /// The file of the source's law.
     pub source_law_sha256: String,
+}
+
+/// A ship of a population.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PopulationMember {
+    /// Its model.
+    pub version: SourceVersion,
+    /// The file of the model's law.
+    pub law_sha256: String,
 }
 
 /// A version that another starts from.

@@ -134,7 +134,15 @@ fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     };
     let source: &Model = &champion.model;
     let source_law = None;
-    let request = Request { target, source, source_law, law, trials: &trials, settings: &settings };
+    let request = Request {
+        target,
+        source,
+        source_law,
+        law,
+        trials: &trials,
+        population: &[],
+        settings: &settings,
+    };
     let weighed =
         weigh((&request, &SourceEnvelopes::default()), Extent::Source, &|_, _| true).ok()?;
     Some(weighed.first()?.error)

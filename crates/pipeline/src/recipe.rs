@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sistership_branches::Training;
 use sistership_fleet::bulk::BulkSettings;
-use sistership_model::version::{self, RecipeTrial, SourceVersion};
+use sistership_model::version::{self, PopulationMember, RecipeTrial, SourceVersion};
 
 use crate::input::{Input, InputKind};
 use crate::library::FIRST_SHA256;
@@ -240,7 +240,16 @@ impl Recipe {
             Self::Family(recipe) => Some(&recipe.foundation),
             _ => None,
         };
-        self.starts_from().into_iter().chain(foundation).collect()
+        let population = self.population().iter().map(|member| &member.version);
+        self.starts_from().into_iter().chain(foundation).chain(population).collect()
+    }
+
+    /// The ships of its population, where that was the prior.
+    pub fn population(&self) -> &[PopulationMember] {
+        match self {
+            Self::Plain(version::Recipe::Refinement { population, .. }) => population,
+            _ => &[],
+        }
     }
 
     /// Everything that the version is derived from.
@@ -249,6 +258,8 @@ impl Recipe {
         if let Self::Plain(version::Recipe::Refinement { across: Some(across), .. }) = self {
             inputs.insert(InputKind::Law.of(&across.source_law_sha256));
         }
+        let laws = self.population().iter().map(|member| InputKind::Law.of(&member.law_sha256));
+        inputs.extend(laws);
         inputs.extend(self.ship_sha256().map(|hash| InputKind::Ship.of(hash)));
         inputs.extend(
             self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)),

@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use sistership_choice::{Asked, Ladder, best_start};
-use sistership_estimate::refine::Settings;
+use sistership_choice::{Asked, Ladder, best_start, population};
+use sistership_estimate::refine::{Member, Prior, Settings};
 use sistership_model::trial::Trial;
 use sistership_model::version::{
-    AcrossLaws, Recipe, RecipeTrial, SourceVersion, code_revision, sha256,
+    AcrossLaws, PopulationMember, Recipe, RecipeTrial, SourceVersion, code_revision, sha256,
 };
 use sistership_model::{Vessel, Zoo};
 use sistership_sources::source::{Similarity, best_source, similar};
@@ -31,6 +31,8 @@ pub struct Start {
     pub source: Option<Version>,
     /// The law to fit; the source's where absent.
     pub law: Option<String>,
+    /// The ships whose population is the prior; none where something else is.
+    pub population: Vec<Version>,
     /// Every setting.
     pub settings: Settings,
     /// How ships ranked, where they were compared.
@@ -43,7 +45,25 @@ impl Start {
     /// As a person named it.
     pub fn at(source: Version, law: Option<String>, settings: Settings) -> Self {
         let settings = settings.as_ordered();
-        Self { source: Some(source), law, settings, similarity: None, ladder: None }
+        let source = Some(source);
+        Self { source, law, population: Vec::new(), settings, similarity: None, ladder: None }
+    }
+
+    /// With the ships of a population, where the settings ask for that.
+    ///
+    /// # Errors
+    /// A published model has no version.
+    pub async fn with_population(
+        self,
+        archive: &Archive,
+        zoo: &Zoo,
+        target: &Vessel,
+    ) -> Result<Self> {
+        let members = match self.settings.prior {
+            Prior::Population => population(zoo, target),
+            Prior::Source | Prior::Mixture => Vec::new(),
+        };
+        Ok(Self { population: published(archive, &members).await?, ..self })
     }
 
     /// The recipe of a refinement of a ship from here.
@@ -57,17 +77,18 @@ impl Start {
         trials: Vec<RecipeTrial>,
     ) -> Result<Recipe> {
         let (named, law, across) = self.laws(archive).await?;
-        let from = |source: &Version| SourceVersion {
-            ship: source.head.model.clone(),
-            number: source.head.number,
-            sha256: source.head.sha256.clone(),
-        };
+        let mut population = Vec::new();
+        for version in &self.population {
+            let law_sha256 = archive.store.laws().get(&version.head.law).await?.sha256;
+            population.push(PopulationMember { version: from(version), law_sha256 });
+        }
         Ok(Recipe::Refinement {
             source: self.source.as_ref().map(from),
             law: named,
             ship_sha256: sha256(ship.document.as_bytes()),
             law_sha256: law.sha256,
             across,
+            population,
             effects_sha256: Some(library_of(archive).await?.sha256.clone()),
             trials,
             settings: sorted(serde_json::to_value(&self.settings)?),
@@ -140,6 +161,7 @@ pub async fn searched(
     Ok(Start {
         source,
         law: Some(entrant.law.name.clone()),
+        population: published(archive, &best.population).await?,
         settings: best.settings,
         similarity: Some(best.similarity),
         ladder: Some(best.ladder),
@@ -165,6 +187,23 @@ pub async fn most_similar(
         .await?
         .map_err(|reasons| DeriveError::Lost(reasons.to_string()))?;
     Ok((published_version(archive, &name).await?, similarity))
+}
+
+fn from(source: &Version) -> SourceVersion {
+    SourceVersion {
+        ship: source.head.model.clone(),
+        number: source.head.number,
+        sha256: source.head.sha256.clone(),
+    }
+}
+
+/// The versions of the published models of a population.
+async fn published(archive: &Archive, members: &[Member]) -> Result<Vec<Version>> {
+    let mut versions = Vec::new();
+    for member in members {
+        versions.push(published_version(archive, &member.model.name).await?);
+    }
+    Ok(versions)
 }
 
 /// The version of a published model.

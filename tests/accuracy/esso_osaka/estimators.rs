@@ -29,8 +29,15 @@ fn left_out(trials: &[Trial], settings: &Settings) -> Vec<(String, SquaredError)
             .collect();
         let source =
             blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
-        let request =
-            Request { target, source: &source, source_law: None, law, trials: &inside, settings };
+        let request = Request {
+            target,
+            source: &source,
+            source_law: None,
+            law,
+            trials: &inside,
+            population: &[],
+            settings,
+        };
         let model = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).model;
         let outside: Vec<&Trial> = trials
             .iter()

@@ -49,6 +49,7 @@ fn a_source_of_another_law_helps_where_trials_are_few() {
                 source_law: Some(source_law),
                 law,
                 trials: &inside,
+                population: &[],
                 settings: &settings,
             };
             let model = refine(&request, &|_, _| true).ok()?.model;

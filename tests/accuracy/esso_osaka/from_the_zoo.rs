@@ -34,6 +34,7 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
         source_law: None,
         law,
         trials: &trials,
+        population: &[],
         settings: &settings,
     };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))

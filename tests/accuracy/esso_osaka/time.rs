@@ -60,6 +60,7 @@ fn timed(trials: &[Trial], method: Method) -> (f64, f64, String) {
         source_law: None,
         law,
         trials: &trials,
+        population: &[],
         settings: &settings,
     };
     let begun = std::time::Instant::now();

@@ -37,8 +37,15 @@ pub fn refined(
     let families = if law.has_roll() { vec![Family::ThirdOrder] } else { Vec::new() };
     let settings = Settings { method: Method::Weak, families, ..Settings::default() };
     let target = zoo.vessel("sr108").expect("a ship of the zoo");
-    let request =
-        Request { target, source, source_law: None, law, trials: &trials, settings: &settings };
+    let request = Request {
+        target,
+        source,
+        source_law: None,
+        law,
+        trials: &trials,
+        population: &[],
+        settings: &settings,
+    };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).model
 }
 

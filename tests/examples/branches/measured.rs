@@ -56,6 +56,7 @@ pub fn refined(zoo: &Zoo, inside: &[&Trial]) -> Model {
         source_law: None,
         law,
         trials: inside,
+        population: &[],
         settings: &settings,
     };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).model

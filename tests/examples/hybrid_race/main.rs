@@ -129,6 +129,7 @@ impl Race {
             source_law: None,
             law: &self.law,
             trials: &training,
+            population: &[],
             settings: &settings,
         };
         let look = |glimpse: &Iterate<'_>| {

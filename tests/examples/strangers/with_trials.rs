@@ -115,6 +115,7 @@ fn refined(
         source_law: zoo.law(&source.law).map(|law| &**law),
         law: zoo.law(FITTED)?,
         trials,
+        population: &[],
         settings: &settings,
     };
     Some(refine(&request, &|_, _| true).ok()?.model)

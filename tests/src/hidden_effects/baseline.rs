@@ -48,7 +48,8 @@ pub fn by(
     settings: &Settings,
 ) -> Baseline {
     let target = ZOO.vessel(ship).unwrap();
-    let request = Request { target, source, source_law: None, law, trials, settings };
+    let request =
+        Request { target, source, source_law: None, law, trials, population: &[], settings };
     let refinement = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     let (before, after) = (&refinement.held_out.source, &refinement.held_out.refined);
     println!("refined from {}, held-out errors:", refinement.source);

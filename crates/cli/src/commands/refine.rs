@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use sistership_choice::Ladder;
+use sistership_choice::{Ladder, population};
 use sistership_estimate::refine::{
     Constraints, Method, Prior, Refinement, Request, Settings, StraightLine, refine,
 };
@@ -36,8 +36,9 @@ Examples:
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
 Without --source, --law and --method, every eligible source is tried under every law that was
-measured, and laws without a source; of what is within one standard error of the best on manoeuvres
-left out, that is taken which has the least error together with what single trials move elsewhere. With
+measured, laws without a source, and of at most 11 trials what all other ships say; of what is within
+one standard error of the best on manoeuvres left out, what other ships hold is taken first, else that
+which has the least error together with what single trials move elsewhere. With
 twelve trials and more learned branches are tried beside it, and one that wins on trials left out by
 more than its uncertainty is taken: its weights are written beside the model, m.weights.json for m.yaml.
 The source's coefficients are the prior: with a method named, options go from the source outwards,
@@ -67,8 +68,8 @@ pub struct RefineArguments {
     /// `trajectory` (simulated segments) or `cma-es` (simulated segments by a random search, slow).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
-    /// What the prior is about: `source`, which it is where absent, or `mixture`, the source moved
-    /// towards the estimate from particulars.
+    /// What the prior is about: `source`, which it is where absent, `mixture`, the source moved
+    /// towards the estimate from particulars, or `population`, what the other ships of the zoo say.
     #[arg(long, value_name = "NAME", value_parser = prior)]
     prior: Option<Prior>,
     /// Settings of the refinement (YAML); the flags below win over it.
@@ -173,7 +174,7 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let laws = (&*source_law, &*law);
     let refinement = match made {
         Some(made) => made,
-        None => refined(&target, &source, laws, &settings, &read)?,
+        None => refined(zoo, (&target, &source), laws, &settings, &read)?,
     };
     let refinement = calibrated(zoo, refinement, &law, &read);
     let branch = TrainedBeside::new(&refinement, &law, ladder.as_ref(), &read)?;
@@ -317,15 +318,26 @@ fn chosen(
 }
 
 fn refined(
-    target: &Vessel,
-    source: &Model,
+    zoo: &Zoo,
+    (target, source): (&Vessel, &Model),
     (source_law, law): (&Law, &Law),
     settings: &Settings,
     read: &[ReadTrial],
 ) -> Result<Refinement, Failure> {
     let trials = trials::trials(read);
-    let request =
-        Request { target, source, source_law: Some(source_law), law, trials: &trials, settings };
+    let population = match settings.prior {
+        Prior::Population => population(zoo, target),
+        Prior::Source | Prior::Mixture => Vec::new(),
+    };
+    let request = Request {
+        target,
+        source,
+        source_law: Some(source_law),
+        law,
+        trials: &trials,
+        population: &population,
+        settings,
+    };
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true

@@ -13,11 +13,16 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::{Block, Blocks};
+use super::merged::merged;
 use super::outcome::RefineError;
 use super::rows::{Table, known_tables};
 use super::thresholds::SOURCE;
 use sistership_regression::Moments;
 use sistership_sources::transfer::ready;
+
+/// What a model says at the states of an envelope: by group, the accelerations of each axis in the
+/// order of [`Axis`].
+pub(super) type Rates = Vec<[Vec<f64>; 4]>;
 
 /// What a source says where a model will be used.
 #[derive(Debug, Clone)]
@@ -51,6 +56,44 @@ impl SampleGroup {
     /// The source's acceleration of an axis at each sample.
     fn rate(&self, axis: Axis) -> &[f64] {
         &self.rates[axis as usize]
+    }
+
+    /// As [`OperatingEnvelope::moments_of`]. Targets are linear in accelerations: what each axis'
+    /// does to them is the same for every model.
+    fn moments_of(
+        &self,
+        blocks: &Blocks,
+        models: &[&[Vec<f64>; 4]],
+    ) -> Result<Vec<Moments>, RefineError> {
+        let (zero, one) = (vec![0.0; self.samples.len()], vec![1.0; self.samples.len()]);
+        let mut at_rest = known_tables(blocks, &self.samples, &|_| &zero)?;
+        let alone = |axis: Axis| {
+            known_tables(blocks, &self.samples, &|of| if of == axis { &one } else { &zero })
+        };
+        let axes: Vec<Axis> = blocks.blocks.iter().flat_map(|block| block.axes.clone()).collect();
+        let alone: Vec<(Axis, Vec<Table>)> = axes
+            .into_iter()
+            .map(|axis| Ok((axis, alone(axis)?)))
+            .collect::<Result<_, RefineError>>()?;
+        let of_block = |(place, (block, table)): (usize, (&Block, &mut Table))| {
+            let rest = table.split_off(block.regressors());
+            silence(table);
+            for rates in models {
+                for (target, rest) in rest.iter().enumerate() {
+                    let mut column = rest.clone();
+                    for (axis, tables) in &alone {
+                        let moved = &tables[place][block.regressors() + target];
+                        let rates = &rates[*axis as usize];
+                        column.iter_mut().enumerate().for_each(|(k, value)| {
+                            *value += (moved[k] - rest[k]) * rates[k];
+                        });
+                    }
+                    table.push(column);
+                }
+            }
+            Moments::about_zero(table, block.regressors(), self.weight)
+        };
+        Ok(blocks.blocks.iter().zip(&mut at_rest).enumerate().map(of_block).collect())
     }
 
     fn moments(&self, blocks: &Blocks) -> Result<Vec<Moments>, RefineError> {
@@ -113,23 +156,56 @@ impl OperatingEnvelope {
         shares: &[f64; 4],
         trials: &[&Trial],
     ) -> Result<Self, RefineError> {
-        let ship = ready(model, law, trials)?;
-        let asked = SourceResponse::new(&ship, model, law);
+        let said = self.asked_of((model, law), trials)?;
         let mut moved = self.clone();
-        for group in &mut moved.groups {
-            let mut points = asked.recorded(&group.samples);
-            for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
-                *n_rps *= asked.n_rps / self.n_rps;
-            }
-            let Some(rates) = asked.rates(&points, group.samples.depth_m) else {
-                let message = format!("`{}` says nothing of some state", model.name);
-                return Err(RefineError::Data(message));
-            };
-            for ((own, other), share) in group.rates.iter_mut().zip(&rates).zip(shares) {
+        for (group, rates) in moved.groups.iter_mut().zip(&said) {
+            for ((own, other), share) in group.rates.iter_mut().zip(rates).zip(shares) {
                 own.iter_mut().zip(other).for_each(|(own, other)| *own += share * (other - *own));
             }
         }
         Ok(moved)
+    }
+
+    /// What another model says at the same states, at as large a part of its own revolutions.
+    ///
+    /// # Errors
+    /// As [`OperatingEnvelope::moved_to`].
+    pub fn asked_of(
+        &self,
+        (model, law): (&Model, &Law),
+        trials: &[&Trial],
+    ) -> Result<Rates, RefineError> {
+        let ship = ready(model, law, trials)?;
+        let asked = SourceResponse::new(&ship, model, law);
+        let of_group = |group: &SampleGroup| {
+            let mut points = asked.recorded(&group.samples);
+            for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
+                *n_rps *= asked.n_rps / self.n_rps;
+            }
+            let message = || format!("`{}` says nothing of some state", model.name);
+            let rates = asked.rates(&points, group.samples.depth_m);
+            rates.ok_or_else(|| RefineError::Data(message()))
+        };
+        self.groups.iter().map(of_group).collect()
+    }
+
+    /// The statistics of what several models say at these states, as a law's regressions see it:
+    /// each model's accelerations are targets of their own, one model after the other.
+    ///
+    /// # Errors
+    /// The law takes something that the states do not have.
+    pub fn moments_of(
+        &self,
+        blocks: &Blocks,
+        models: &[&Rates],
+    ) -> Result<Vec<Moments>, RefineError> {
+        let of_group = |(place, group): (usize, &SampleGroup)| {
+            let said: Vec<&[Vec<f64>; 4]> = models.iter().map(|rates| &rates[place]).collect();
+            group.moments_of(blocks, &said)
+        };
+        let groups: Vec<Vec<Moments>> =
+            self.groups.iter().enumerate().map(of_group).collect::<Result<_, _>>()?;
+        Ok(merged(&groups, |_| true).unwrap_or_default())
     }
 
     /// The statistics of what the source says, as a law's regressions see it: by group and

@@ -8,7 +8,6 @@ use sistership_model::posterior::Posterior;
 
 use super::blocks::Blocks;
 use super::candidate::{CandidateFit, Solution, best};
-use super::constraints::LimitError;
 use super::family::Family;
 use super::gathered::{ChosenCandidate, refinement};
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
@@ -19,6 +18,7 @@ use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
 use sistership_bands::{FoldQuantile, bands, fold_factor};
+use sistership_constraints::LimitError;
 use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.
@@ -220,8 +220,15 @@ mod tests {
         let zoo = sistership_model::Zoo::embedded().unwrap();
         let kept = |source: &Model| {
             let (target, settings) = (zoo.vessel("mariner").unwrap(), &settings);
-            let request =
-                Request { target, source, source_law: None, law: &law, trials: &trials, settings };
+            let request = Request {
+                target,
+                source,
+                source_law: None,
+                law: &law,
+                trials: &trials,
+                population: &[],
+                settings,
+            };
             refine(&request, &|_, _| true).map(|made| made.is_source_kept())
         };
         assert_eq!(kept(&model), Ok(true));

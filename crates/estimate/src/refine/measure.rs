@@ -12,6 +12,8 @@ use super::blocks::{Block, Blocks};
 use super::envelope::OperatingEnvelope;
 use super::merged::merged;
 use super::outcome::RefineError;
+use super::population::PopulationRegression;
+use super::said::Said;
 use sistership_regression::Moments;
 
 /// Where the sizes of the regressors come from.
@@ -27,6 +29,8 @@ pub(super) enum PriorMeasure {
     Mixture(OperatingEnvelope),
     /// What a source of another law says over the envelope, jointly.
     Source(Arc<OperatingEnvelope>),
+    /// What a population says at the states of a source's, in its mean and scatter.
+    Population(Arc<OperatingEnvelope>, Arc<Vec<Said>>),
 }
 
 impl PriorMeasure {
@@ -36,9 +40,9 @@ impl PriorMeasure {
         envelope.map_or(Self::Trials, Self::Envelope)
     }
 
-    /// Whether the prior is what a source of another law says.
+    /// Whether the prior is what a source of another law says, or a population.
     pub fn is_source(&self) -> bool {
-        matches!(self, Self::Source(_))
+        matches!(self, Self::Source(_) | Self::Population(..))
     }
 
     /// Gives a model's regressions their measure, and the model what a source of another law says.
@@ -62,6 +66,11 @@ impl PriorMeasure {
                 imitation.fill(blocks, model);
                 imitation.hold(blocks, trials);
             }
+            Self::Population(envelope, members) => {
+                let states = SourceRegression::new(envelope, blocks, model)?;
+                states.hold(blocks, trials);
+                PopulationRegression::new(envelope, members, states.ridge()).hold(blocks, model)?;
+            }
         }
         Ok(())
     }
@@ -76,6 +85,16 @@ impl PriorMeasure {
                     .to_owned(),
             ),
             Self::Mixture(envelope) => envelope.mixed.clone(),
+            Self::Population(envelope, members) => {
+                let names: Vec<&str> = members.iter().map(|said| said.name.as_str()).collect();
+                Some(format!(
+                    "the prior is what {} ships say at the states of the trials and of the standard \
+                     manoeuvres of `{}`: their mean, and how they differ ({})",
+                    names.len(),
+                    envelope.source,
+                    names.join(", ")
+                ))
+            }
             Self::Source(envelope) => {
                 let blocks = Blocks::new(model, law).ok()?;
                 let regression = SourceRegression::new(envelope, &blocks, model).ok()?;

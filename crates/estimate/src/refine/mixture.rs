@@ -92,10 +92,15 @@ pub(super) fn mixed(
     Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
 }
 
-/// What a source is called: the estimate where that stands in its place.
+/// What a source is called: the estimate, or a population, where that stands in its place.
 pub(super) fn source_name<'a>(settings: &Settings, source: &'a str) -> &'a str {
-    let is_alone = settings.prior == Prior::Mixture && settings.mixture_positions == [ESTIMATE];
-    if is_alone { "the estimate from particulars" } else { source }
+    match settings.prior {
+        Prior::Mixture if settings.mixture_positions == [ESTIMATE] => {
+            "the estimate from particulars"
+        }
+        Prior::Population => "a population of ships",
+        Prior::Mixture | Prior::Source => source,
+    }
 }
 
 /// What the estimate says, named as such.

@@ -10,9 +10,9 @@ use sistership_model::Model;
 use sistership_model::trial::Channel;
 
 use super::cma_es::SearchReport;
-use super::constraints::LimitError;
 use super::settings::Settings;
 use sistership_bands::{Band, Bands};
+use sistership_constraints::LimitError;
 use sistership_sources::transfer::UnknownParameter;
 
 /// Why a refinement is refused.

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 use sistership_model::Model;
 
 use super::candidate::{CandidateFit, Solution, UnchangedSource};
-use super::constraints::LimitError;
 use super::errors::CoefficientErrors;
 use super::outcome::{RefineError, SOURCE_STEP};
 use super::problem::Problem;
@@ -12,6 +11,7 @@ use super::progress::{PartProgress, Progress, step};
 use super::ridge::{Choices, Fit, Fold, fit};
 use super::simulated::{Simulated, simulate_training};
 use super::variant::Variant;
+use sistership_constraints::LimitError;
 
 /// A ridge of a variant at its choices.
 struct RidgeSolution {

@@ -14,10 +14,12 @@ use super::candidate::CandidateFit;
 use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
+use super::merged::merged;
 use super::mixture;
 use super::mixture_position::chosen;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
+use super::population::{self, Member};
 use super::problem::Problem;
 use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::replayed_trials::ReplayedTrials;
@@ -43,6 +45,8 @@ pub struct Request<'a> {
     pub law: &'a Law,
     /// Its trials.
     pub trials: &'a [&'a Trial],
+    /// Other ships with their models, where the prior is what they say.
+    pub population: &'a [Member],
     /// Settings.
     pub settings: &'a Settings,
 }
@@ -196,6 +200,10 @@ fn starting(
     }
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
+        if request.settings.prior == Prior::Population {
+            let message = format!("`population` asks a source of another law than `{}`", law.name);
+            return Err(population::refused(&message));
+        }
         let same = source.ship == target.name();
         let mut carried =
             if same { source.clone() } else { transfer(source, law, target, approach) };
@@ -208,6 +216,9 @@ fn starting(
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
+    if request.settings.prior == Prior::Population && request.population.is_empty() {
+        return Err(population::refused("the prior `population` needs ships that it is made of"));
+    }
     let (mut model, mut envelope) =
         across::begun((source, own), law, target, approach, (whole, known))?;
     if is_mixture && position == mixture::ESTIMATE {
@@ -227,7 +238,16 @@ fn starting(
     if request.settings.recorded_terms {
         unrecorded::forget(&mut model, law, whole);
     }
-    let blocks = Blocks::new(&model, law)?;
+    let mut blocks = Blocks::new(&model, law)?;
+    if request.settings.prior == Prior::Population {
+        let ask = || population::said(request.population, target, approach, (&envelope, whole));
+        let members = known.population(&envelope, ask)?;
+        let sizes = merged(&envelope.moments(&blocks)?, |_| true).unwrap_or_default();
+        let measure = PriorMeasure::Population(envelope, members);
+        measure.hold(&mut blocks, &mut model, &sizes)?;
+        model.note = Some("held by what a population of ships says".to_owned());
+        return Ok((model, measure));
+    }
     SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
     Ok((model, PriorMeasure::Source(envelope)))
 }

@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::cma_es::CmaEs;
-use super::constraints::Constraints;
 use super::family::Family;
 use sistership_bands::Sampling;
+use sistership_constraints::Constraints;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -65,6 +65,10 @@ pub enum Prior {
     /// The source and the estimate from particulars, weighted by how far each was from ships that
     /// were left out (docs/evidence/strangers.md).
     Mixture,
+    /// What other ships say: their mean, held in each direction by how they differ
+    /// (docs/evidence/population.md). The source, which is of another law than what is fitted, says
+    /// at which states they are asked.
+    Population,
 }
 
 /// Positions of a mixture among which trials choose where an order says nothing else: source,
@@ -73,13 +77,14 @@ const MIXTURE_POSITIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl Prior {
     /// Every prior.
-    pub const ALL: [Self; 2] = [Self::Source, Self::Mixture];
+    pub const ALL: [Self; 3] = [Self::Source, Self::Mixture, Self::Population];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Source => "source",
             Self::Mixture => "mixture",
+            Self::Population => "population",
         }
     }
 

@@ -100,6 +100,22 @@ pub(super) const MIXTURE: MixtureThresholds = MixtureThresholds {
     ],
 };
 
+/// How ships become a prior.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PopulationThresholds {
+    /// `e`: share of the prior's variance outside what the ships differ by, dimensionless. Source:
+    /// `docs/evidence/population.md`, which has a tenth and three times it.
+    pub outside: f64,
+    /// Fewest ships, a count. Source: chosen: a scatter of fewer says little.
+    pub least: usize,
+    /// Rounds in which a robust mean is sought, a count. Source: chosen; by then it stands still.
+    pub rounds: usize,
+}
+
+/// The values.
+pub(super) const POPULATION: PopulationThresholds =
+    PopulationThresholds { outside: 0.1, least: 5, rounds: 10 };
+
 /// What a source is asked, and how far its answers are believed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SourceThresholds {

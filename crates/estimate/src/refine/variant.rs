@@ -9,7 +9,6 @@ use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::Blocks;
-use super::constraints::{CoefficientLimits, LimitError};
 use super::equations::Equations;
 use super::errors::CoefficientErrors;
 use super::family::Family;
@@ -22,6 +21,7 @@ use super::ridge::{Choices, Fitted, Fold, most_likely};
 use super::rows::Table;
 use super::settings::Range;
 use super::thresholds::SELECTION;
+use sistership_constraints::{CoefficientLimits, LimitError};
 use sistership_regression::{Moments, RidgeChoice};
 
 /// One family of terms.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bytes::Bytes;
-use sistership_estimate::refine::{Refinement, Settings};
+use sistership_estimate::refine::{Member, Refinement, Settings};
 use sistership_model::trial::Trial;
 use sistership_model::version;
 use sistership_model::{Law, Model, Vessel};
@@ -52,6 +52,8 @@ pub struct Ingredients {
     pub library: Library,
     /// The trials, in the recipe's order.
     pub trials: Vec<Trial>,
+    /// The ships whose population is the prior.
+    pub population: Vec<Member>,
     /// The settings.
     pub settings: Settings,
 }

@@ -1,9 +1,11 @@
 //! Deriving a refined version: a function of its ingredients, each found by its hash.
 
+use std::sync::Arc;
+
 use serde_json::Value;
-use sistership_estimate::refine::{RefineError, Refinement, Request, Settings, refine};
+use sistership_estimate::refine::{Member, RefineError, Refinement, Request, Settings, refine};
 use sistership_model::trial::Trial;
-use sistership_model::version::{FORMAT, Recipe};
+use sistership_model::version::{FORMAT, PopulationMember, Recipe};
 use sistership_model::{Law, Model, Vessel};
 use sistership_sources::transfer::{approach_of, blank};
 
@@ -28,6 +30,7 @@ pub(super) async fn gather(
         ship_sha256,
         law_sha256,
         across,
+        population,
         effects_sha256,
         trials,
         settings: recorded,
@@ -58,7 +61,21 @@ pub(super) async fn gather(
             (without_source(&law, &target, &trials, &settings)?, law, None)
         }
     };
-    Ok(Ingredients { target, model, source_law, law, library, trials, settings })
+    let population = members(inputs, population).await?;
+    Ok(Ingredients { target, model, source_law, law, library, trials, population, settings })
+}
+
+async fn members(
+    inputs: &Inputs<'_>,
+    named: &[PopulationMember],
+) -> Result<Vec<Member>, DeriveError> {
+    let mut members = Vec::new();
+    for PopulationMember { version, law_sha256 } in named {
+        let model = inputs.source(version).await?;
+        let law = Arc::new(inputs.law(&model.law, law_sha256).await?);
+        members.push(Member { model, law });
+    }
+    Ok(members)
 }
 
 fn unnamed() -> DeriveError {
@@ -95,7 +112,7 @@ pub fn refined_document(
     recipe: &Recipe,
     progress: &(dyn Fn(f64, &str) -> bool + Sync),
 ) -> Result<(VersionDocument, Refinement), DeriveError> {
-    let Ingredients { target, model, source_law, law, settings, .. } = ingredients;
+    let Ingredients { target, model, source_law, law, population, settings, .. } = ingredients;
     let trials: Vec<&Trial> = ingredients.trials.iter().collect();
     let refinement = refine(
         &Request {
@@ -104,6 +121,7 @@ pub fn refined_document(
             source_law: source_law.as_ref(),
             law,
             trials: &trials,
+            population,
             settings,
         },
         progress,

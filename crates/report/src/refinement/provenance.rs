@@ -96,6 +96,7 @@ fn kind(source: &str) -> Option<&'static str> {
         "approach-speed" => Some("from trials"),
         _ if source.starts_with("scaled from") => Some("scaled"),
         _ if is_estimated(source) => Some("estimated"),
+        _ if source.starts_with("mean of what") => Some("of a population"),
         _ => None,
     }
 }

@@ -72,6 +72,7 @@ impl Case {
             source_law: None,
             law,
             trials: &given,
+            population: &[],
             settings: &settings,
         };
         let refinement = refine(&request, &|_, _| true).unwrap();

@@ -42,11 +42,12 @@ async fn start(
     progress: &Progress,
 ) -> Result<Start> {
     let (law, settings) = (asked.law.clone(), asked.settings.clone());
+    let zoo = app.zoo_around(&target).await?;
     if let SourceChoice::Version { ship, number } = &asked.source {
         let version = app.store().versions().get(ship, *number).await?;
-        return Ok(Start::at(version, law, settings));
+        let start = Start::at(version, law, settings);
+        return Ok(start.with_population(app.archive(), &zoo, &target).await?);
     }
-    let zoo = app.zoo_around(&target).await?;
     if asked.search {
         tell(progress, 0.02, "searching source, law and method")?;
         let told = progress.clone();
@@ -55,8 +56,10 @@ async fn start(
         return Ok(searched(app.archive(), zoo, target, trials, settings, scaled).await?);
     }
     tell(progress, 0.03, "choosing the source")?;
-    let (version, similarity) = most_similar(app.archive(), zoo, target, trials).await?;
-    Ok(Start { similarity: Some(similarity), ..Start::at(version, law, settings) })
+    let (near, named) = (Arc::clone(&zoo), target.clone());
+    let (version, similarity) = most_similar(app.archive(), near, named, trials).await?;
+    let start = Start { similarity: Some(similarity), ..Start::at(version, law, settings) };
+    Ok(start.with_population(app.archive(), &zoo, &target).await?)
 }
 
 pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {

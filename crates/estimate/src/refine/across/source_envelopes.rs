@@ -8,11 +8,19 @@ use sistership_model::law::Law;
 
 use crate::refine::envelope::OperatingEnvelope;
 use crate::refine::outcome::RefineError;
+use crate::refine::said::Said;
 
 /// What sources say where a model will be used, by source and its law. The same for every law that
 /// is fitted to the same trials of the same ship, and only among those may it be shared.
 #[derive(Debug, Default)]
-pub struct SourceEnvelopes(Mutex<BTreeMap<(String, String), Arc<OperatingEnvelope>>>);
+pub struct SourceEnvelopes {
+    envelopes: Kept<OperatingEnvelope>,
+    /// What the ships of a population say at the states of a source's.
+    populations: Kept<Vec<Said>>,
+}
+
+/// By source and its law.
+type Kept<T> = Mutex<BTreeMap<(String, String), Arc<T>>>;
 
 impl SourceEnvelopes {
     /// That of a source, which is asked where it has not been. Two that ask at once both do: to
@@ -25,15 +33,34 @@ impl SourceEnvelopes {
         (source, law): (&Model, &Law),
         ask: impl FnOnce() -> Result<OperatingEnvelope, RefineError>,
     ) -> Result<Arc<OperatingEnvelope>, RefineError> {
-        let key = (source.name.clone(), law.name.clone());
-        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
-        if let Some(known) = known {
-            return Ok(known);
-        }
-        let asked = Arc::new(ask()?);
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Arc::clone(&asked));
-        Ok(asked)
+        kept(&self.envelopes, (source.name.clone(), law.name.clone()), ask)
     }
+
+    /// What a population says at the states of a source's envelope.
+    ///
+    /// # Errors
+    /// As `ask`.
+    pub(in super::super) fn population(
+        &self,
+        envelope: &OperatingEnvelope,
+        ask: impl FnOnce() -> Result<Vec<Said>, RefineError>,
+    ) -> Result<Arc<Vec<Said>>, RefineError> {
+        kept(&self.populations, (envelope.source.clone(), envelope.law.clone()), ask)
+    }
+}
+
+fn kept<T>(
+    known: &Kept<T>,
+    key: (String, String),
+    ask: impl FnOnce() -> Result<T, RefineError>,
+) -> Result<Arc<T>, RefineError> {
+    let found = known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+    if let Some(found) = found {
+        return Ok(found);
+    }
+    let asked = Arc::new(ask()?);
+    known.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Arc::clone(&asked));
+    Ok(asked)
 }
 
 #[cfg(test)]

@@ -108,6 +108,11 @@ impl<'a> SourceRegression<'a> {
         }
     }
 
+    /// The strength of its ridge.
+    pub fn ridge(&self) -> f64 {
+        self.ridge
+    }
+
     /// What it has done, for people.
     pub fn words(&self, blocks: &Blocks, law: &str) -> String {
         let samples: usize = self.envelope.groups.iter().map(|group| group.samples.len()).sum();

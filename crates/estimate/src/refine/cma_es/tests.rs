@@ -45,6 +45,7 @@ fn refined(evaluations: usize) -> Refinement {
             source: &source,
             source_law: None,
             law: &law,
+            population: &[],
             trials: &trials,
             settings: &settings,
         },

@@ -14,7 +14,7 @@ mod straight;
 mod thresholds;
 
 pub use error::LimitError;
-pub(super) use limits::CoefficientLimits;
+pub use limits::CoefficientLimits;
 pub use settings::{Bound, ConstraintError, Constraints, StraightLine};
 
 #[cfg(test)]

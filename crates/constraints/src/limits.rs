@@ -19,8 +19,9 @@ use super::thresholds::CONSTRAINTS;
 const SIGNS: [(&str, f64); 4] = [("Y_v", -1.0), ("N_r", -1.0), ("Y_delta", -1.0), ("N_delta", 1.0)];
 /// Surge terms that brake in every published set.
 const BRAKES: [&str; 1] = ["X_deltadelta"];
+
 /// Limits of the coefficients of a model.
-pub(in super::super) struct CoefficientLimits {
+pub struct CoefficientLimits {
     names: Vec<String>,
     source: Vec<f64>,
     /// Those that do not depend on a solution.

@@ -1,0 +1,234 @@
+//! The prior as a population: what other ships say of this one's accelerations, each carried over
+//! to its particulars and asked at the same states. Their mean is where the coefficients are held,
+//! and how they differ says what may differ: the covariance of a hierarchical model, from groups
+//! that are known (Gelman et al. 2013, Bayesian Data Analysis, section 5.4, the means of whose
+//! groups are given here).
+//!
+//! Directions of coefficients are measured as of a source of another law (docs/decisions/0015): with
+//! `R' R` the precision that this has earned and `z = R b` a ship's coefficients, the prior's
+//! covariance of `z` is `e 1 + (1 - e) p S`. `S` is the scatter of the ships about their mean, of
+//! trace 1, `p` the number of coefficients, and `e` ([`POPULATION`]`.outside`) what ships differ by
+//! that no ship shows.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel};
+use sistership_regression::{Metric, Moments, RidgeChoice, RidgePath};
+use sistership_sources::transfer::{Approach, transfer};
+
+use super::blocks::{Block, Blocks};
+use super::envelope::{OperatingEnvelope, Rates};
+use super::outcome::RefineError;
+use super::said::Said;
+use super::thresholds::POPULATION;
+
+/// A ship of the population.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// Its model, as published or as refined.
+    pub model: Model,
+    /// The model's law.
+    pub law: Arc<Law>,
+}
+
+/// What each member that knows every state of an envelope says there; one of the same ship is no
+/// other ship.
+///
+/// # Errors
+/// Fewer of them do than a scatter is taken of.
+pub(super) fn said(
+    members: &[Member],
+    target: &Vessel,
+    approach: Option<Approach>,
+    (envelope, trials): (&OperatingEnvelope, &[&Trial]),
+) -> Result<Vec<Said>, RefineError> {
+    let one = |Member { model, law }: &Member| {
+        let carried = transfer(model, law, target, approach);
+        let rates = envelope.asked_of((&carried, law), trials).ok()?;
+        Some(Said { name: model.name.clone(), rates })
+    };
+    let others: Vec<&Member> =
+        members.iter().filter(|member| member.model.ship != target.name()).collect();
+    let said: Vec<Said> = others.into_par_iter().filter_map(one).collect();
+    if said.len() < POPULATION.least {
+        let message = format!(
+            "{} ships of the population say what the prior `population` is made of, at least {} \
+             are needed",
+            said.len(),
+            POPULATION.least
+        );
+        return Err(refused(&message));
+    }
+    Ok(said)
+}
+
+/// Why there is no such prior.
+pub(super) fn refused(message: &str) -> RefineError {
+    RefineError::Setting { field: "prior".into(), message: message.to_owned() }
+}
+
+/// What the members say, as the regressions of a law see it.
+pub(super) struct PopulationRegression<'a> {
+    envelope: &'a OperatingEnvelope,
+    members: &'a [Said],
+    ridge: f64,
+}
+
+impl<'a> PopulationRegression<'a> {
+    /// Regressed by the ridge that a source at the same states was.
+    pub fn new(envelope: &'a OperatingEnvelope, members: &'a [Said], ridge: f64) -> Self {
+        Self { envelope, members, ridge }
+    }
+
+    /// Sets a model's coefficients to the members' mean, and replaces the precision that a source
+    /// has earned by theirs. Where nothing is known there is no precision, and the source's stay.
+    ///
+    /// # Errors
+    /// The law takes something that the states do not have.
+    pub fn hold(&self, blocks: &mut Blocks, model: &mut Model) -> Result<(), RefineError> {
+        let rates: Vec<&Rates> = self.members.iter().map(|said| &said.rates).collect();
+        let moments = self.envelope.moments_of(blocks, &rates)?;
+        for (block, moments) in blocks.blocks.iter_mut().zip(&moments) {
+            let Some(metric) = block.precision.as_ref().and_then(Metric::of_precision) else {
+                continue;
+            };
+            let scatter = Scatter::new(&self.coordinates(block, &metric, moments));
+            block.precision = scatter.precision(&metric);
+            fill(block, &scatter.means, &metric, (model, self.members.len()));
+        }
+        Ok(())
+    }
+
+    /// The members' coefficients in the coordinates of a metric, by target.
+    fn coordinates(
+        &self,
+        block: &Block,
+        metric: &Metric,
+        moments: &Moments,
+    ) -> Vec<Vec<DVector<f64>>> {
+        let (p, q) = (block.regressors(), block.axes.len());
+        let zero = vec![0.0; p];
+        let own = Metric::of_regressors(moments, &block.shrinkage);
+        let path = RidgePath::measured(moments, &vec![zero.clone(); moments.targets()], own);
+        let choice = RidgeChoice { lambda: self.ridge, alpha: 0.0 };
+        let of = |target: usize, member: usize| {
+            metric.root() * DVector::from_vec(path.solve(member * q + target, choice, &zero))
+        };
+        let members = 0..self.members.len();
+        (0..q).map(|t| members.clone().map(|member| of(t, member)).collect()).collect()
+    }
+}
+
+/// Mean and scatter of members.
+struct Scatter {
+    /// By target.
+    means: Vec<DVector<f64>>,
+    /// Of all targets, each by its own size; of trace 1.
+    matrix: DMatrix<f64>,
+}
+
+impl Scatter {
+    /// Of coordinates by target and member.
+    fn new(coordinates: &[Vec<DVector<f64>>]) -> Self {
+        let size = coordinates.first().and_then(|all| all.first()).map_or(0, DVector::len);
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut means = Vec::new();
+        for members in coordinates {
+            let (mean, weights) = weighted_mean(members);
+            let away: Vec<DVector<f64>> =
+                members.iter().zip(&weights).map(|(z, w)| (z - &mean) * *w).collect();
+            let sum: f64 = away.iter().map(DVector::norm_squared).sum();
+            let share = 1.0 / (sum * coordinates.len() as f64).max(f64::MIN_POSITIVE);
+            away.iter().for_each(|away| matrix.ger(share, away, away, 1.0));
+            means.push(mean);
+        }
+        Self { means, matrix }
+    }
+
+    /// The precision of coefficients, of which a metric has the coordinates; none where it is not
+    /// positive definite.
+    fn precision(&self, metric: &Metric) -> Option<DMatrix<f64>> {
+        let size = metric.size();
+        let moving = (0..size).filter(|k| !metric.is_still(*k)).count() as f64;
+        let outside = POPULATION.outside;
+        let mut covariance = &self.matrix * ((1.0 - outside) * moving);
+        (0..size).for_each(|k| covariance[(k, k)] += outside);
+        let precision =
+            metric.root().transpose() * covariance.cholesky()?.inverse() * metric.root();
+        Some((&precision + precision.transpose()) * 0.5)
+    }
+}
+
+/// The mean of members, and what each counts: one that is further from it than the median counts
+/// as if it were that far (Huber 1981, Robust Statistics, section 8.4: a monotone M-estimate).
+fn weighted_mean(members: &[DVector<f64>]) -> (DVector<f64>, Vec<f64>) {
+    let mut weights = vec![1.0; members.len()];
+    let mean = |weights: &[f64]| {
+        let sum = members.iter().zip(weights).map(|(z, w)| z * *w).sum::<DVector<f64>>();
+        sum / weights.iter().sum::<f64>()
+    };
+    for _ in 0..POPULATION.rounds {
+        let centre = mean(&weights);
+        let far: Vec<f64> = members.iter().map(|z| (z - &centre).norm()).collect();
+        let mut sorted = far.clone();
+        sorted.sort_by(f64::total_cmp);
+        let middle = sorted[sorted.len() / 2];
+        weights = far.iter().map(|far| if *far > middle { middle / far } else { 1.0 }).collect();
+    }
+    (mean(&weights), weights)
+}
+
+/// Sets the coefficients of a regression to means by target.
+fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model, usize)) {
+    let (model, count) = of;
+    let solved: Vec<DVector<f64>> = means.iter().map(|mean| metric.back() * mean).collect();
+    let mixing = block.mixing.clone().lu();
+    for place in 0..block.regressors() {
+        let seen = DVector::from_iterator(means.len(), solved.iter().map(|one| one[place]));
+        let own = mixing.solve(&seen).unwrap_or(seen);
+        for (names, value) in block.names.iter().zip(&own) {
+            let source = format!("mean of what {count} ships say");
+            model.coefficients.insert(names[place].clone(), Quantity::new(*value, source));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn members() -> Vec<DVector<f64>> {
+        let along = [-1.2, -0.7, -0.1, 0.3, 0.6, 1.1];
+        along.iter().map(|t| DVector::from_vec(vec![1.0 + 3.0 * t, 2.0 - t, 5.0])).collect()
+    }
+
+    #[test]
+    fn one_ship_that_is_nothing_like_the_others_hardly_moves_the_mean() {
+        let (before, _) = weighted_mean(&members());
+        let far = DVector::from_vec(vec![400.0, -900.0, 70.0]);
+        let (after, weights) = weighted_mean(&[members(), vec![far]].concat());
+        assert!((&after - &before).norm() < 1.5, "{after}");
+        assert!(weights[6] < 0.01);
+    }
+
+    #[test]
+    fn what_ships_differ_by_is_held_least() {
+        let metric = Metric::of_precision(&DMatrix::identity(3, 3)).unwrap();
+        let scatter = Scatter::new(&[members()]);
+        assert!((scatter.matrix.trace() - 1.0).abs() < 1e-12);
+        let precision = scatter.precision(&metric).unwrap();
+        let held = |along: [f64; 3]| {
+            let along = DVector::from_row_slice(&along).normalize();
+            along.dot(&(&precision * &along))
+        };
+        let (shown, never) = (held([3.0, -1.0, 0.0]), held([0.0, 0.0, 1.0]));
+        assert!((never * POPULATION.outside - 1.0).abs() < 1e-9, "{never}");
+        assert!(shown < 0.4 && shown > 0.3, "a third of what all alike would be: {shown}");
+    }
+}
