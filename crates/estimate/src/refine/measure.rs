@@ -68,6 +68,7 @@ impl PriorMeasure {
             }
             Self::Population(envelope, members) => {
                 let states = SourceRegression::new(envelope, blocks, model)?;
+                states.fill(blocks, model);
                 states.hold(blocks, trials);
                 PopulationRegression::new(envelope, members, states.ridge()).hold(blocks, model)?;
             }

@@ -62,14 +62,26 @@ pub(super) fn said(
             said.len(),
             POPULATION.least
         );
-        return Err(refused(&message));
+        return Err(RefineError::Data(message));
     }
     Ok(said)
 }
 
-/// Why there is no such prior.
-pub(super) fn refused(message: &str) -> RefineError {
-    RefineError::Setting { field: "prior".into(), message: message.to_owned() }
+/// Refuses laws that a population cannot hold: that of its source, and one with roll, of which few
+/// ships say anything.
+///
+/// # Errors
+/// It is one of them.
+pub(super) fn check(law: &Law, source_law: Option<&Law>) -> Result<(), RefineError> {
+    let is_across = source_law.is_some_and(|own| own.name != law.name);
+    if is_across && !law.has_roll() {
+        return Ok(());
+    }
+    let message = format!(
+        "`population` holds a law without roll, from a source of another law; not `{}`",
+        law.name
+    );
+    Err(RefineError::Setting { field: "prior".into(), message })
 }
 
 /// What the members say, as the regressions of a law see it.
@@ -230,5 +242,24 @@ mod tests {
         let (shown, never) = (held([3.0, -1.0, 0.0]), held([0.0, 0.0, 1.0]));
         assert!((never * POPULATION.outside - 1.0).abs() < 1e-9, "{never}");
         assert!(shown < 0.4 && shown > 0.3, "a third of what all alike would be: {shown}");
+    }
+
+    #[test]
+    fn a_law_with_roll_or_of_the_source_itself_is_refused() {
+        let zoo = sistership_model::Zoo::embedded().unwrap();
+        let law = |name: &str| zoo.law(name).unwrap();
+        assert!(check(law("low-speed"), Some(law("mmg"))).is_ok());
+        for refused in ["abkowitz-roll", "mmg"] {
+            assert!(check(law(refused), Some(law("mmg"))).is_err(), "{refused}");
+        }
+    }
+
+    #[test]
+    fn too_few_ships_are_out_and_no_fault_of_the_settings() {
+        let (zoo, target) = (sistership_model::Zoo::embedded().unwrap(), "kcs");
+        let (model, law) = crate::testing::mariner();
+        let envelope = OperatingEnvelope::new(&model, &law, &[]).unwrap();
+        let none = said(&[], zoo.vessel(target).unwrap(), None, (&envelope, &[]));
+        assert!(matches!(none, Err(RefineError::Data(_))), "a search goes on without it");
     }
 }

@@ -11,6 +11,7 @@ use sistership_model::{Model, Vessel};
 use super::across::{self, SourceEnvelopes, SourceRegression};
 use super::blocks::Blocks;
 use super::candidate::CandidateFit;
+use super::envelope::OperatingEnvelope;
 use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
@@ -30,7 +31,7 @@ use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
 use sistership_sources::steering::{RateWindow, measured_rate};
-use sistership_sources::transfer::{approach_of, transfer};
+use sistership_sources::transfer::{Approach, approach_of, transfer};
 
 /// What is to be refined, and against what.
 #[derive(Debug, Clone, Copy)]
@@ -198,12 +199,11 @@ fn starting(
     if is_mixture {
         mixture::check(source, target)?;
     }
+    if request.settings.prior == Prior::Population {
+        population::check(law, source_law)?;
+    }
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
-        if request.settings.prior == Prior::Population {
-            let message = format!("`population` asks a source of another law than `{}`", law.name);
-            return Err(population::refused(&message));
-        }
         let same = source.ship == target.name();
         let mut carried =
             if same { source.clone() } else { transfer(source, law, target, approach) };
@@ -216,9 +216,6 @@ fn starting(
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
-    if request.settings.prior == Prior::Population && request.population.is_empty() {
-        return Err(population::refused("the prior `population` needs ships that it is made of"));
-    }
     let (mut model, mut envelope) =
         across::begun((source, own), law, target, approach, (whole, known))?;
     if is_mixture && position == mixture::ESTIMATE {
@@ -238,18 +235,29 @@ fn starting(
     if request.settings.recorded_terms {
         unrecorded::forget(&mut model, law, whole);
     }
-    let mut blocks = Blocks::new(&model, law)?;
     if request.settings.prior == Prior::Population {
-        let ask = || population::said(request.population, target, approach, (&envelope, whole));
-        let members = known.population(&envelope, ask)?;
-        let sizes = merged(&envelope.moments(&blocks)?, |_| true).unwrap_or_default();
-        let measure = PriorMeasure::Population(envelope, members);
-        measure.hold(&mut blocks, &mut model, &sizes)?;
-        model.note = Some("held by what a population of ships says".to_owned());
-        return Ok((model, measure));
+        return held_by_population((request, known), model, envelope, (approach, whole));
     }
+    let blocks = Blocks::new(&model, law)?;
     SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
     Ok((model, PriorMeasure::Source(envelope)))
+}
+
+/// What a population says at the states of a source's envelope, in place of what that says.
+fn held_by_population(
+    (request, known): (&Request<'_>, &SourceEnvelopes),
+    mut model: Model,
+    envelope: Arc<OperatingEnvelope>,
+    (approach, whole): (Option<Approach>, &[&Trial]),
+) -> Result<(Model, PriorMeasure), RefineError> {
+    let ask = || population::said(request.population, request.target, approach, (&envelope, whole));
+    let members = known.population(&envelope, ask)?;
+    let mut blocks = Blocks::new(&model, request.law)?;
+    let sizes = merged(&envelope.moments(&blocks)?, |_| true).unwrap_or_default();
+    let measure = PriorMeasure::Population(envelope, members);
+    measure.hold(&mut blocks, &mut model, &sizes)?;
+    model.note = Some("held by what a population of ships says".to_owned());
+    Ok((model, measure))
 }
 
 /// Gives a model the gear that the trials' rudders show.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use sistership_estimate::refine::Prior;
 use sistership_model::Vessel;
 use sistership_model::version::{Recipe, RecipeTrial};
 use sistership_pipeline::archive::vessel;
@@ -42,12 +43,16 @@ async fn start(
     progress: &Progress,
 ) -> Result<Start> {
     let (law, settings) = (asked.law.clone(), asked.settings.clone());
-    let zoo = app.zoo_around(&target).await?;
     if let SourceChoice::Version { ship, number } = &asked.source {
         let version = app.store().versions().get(ship, *number).await?;
         let start = Start::at(version, law, settings);
+        if start.settings.prior != Prior::Population {
+            return Ok(start);
+        }
+        let zoo = app.zoo_around(&target).await?;
         return Ok(start.with_population(app.archive(), &zoo, &target).await?);
     }
+    let zoo = app.zoo_around(&target).await?;
     if asked.search {
         tell(progress, 0.02, "searching source, law and method")?;
         let told = progress.clone();
