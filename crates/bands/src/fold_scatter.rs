@@ -65,8 +65,9 @@ pub fn fold_factor(
 }
 
 /// Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964, Handbook
-/// of mathematical functions, Eq. 26.7.5, two terms: 4 % low for three degrees, 1 % for five).
-fn student(degrees: usize) -> f64 {
+/// of mathematical functions, Eq. 26.7.5, two terms: 10 % low for two degrees, 4 % for three, 1 % for
+/// five).
+pub fn student(degrees: usize) -> f64 {
     let (x, degrees) = (NORMAL, degrees as f64);
     let first = (x.powi(3) + x) / 4.0;
     let second = (5.0 * x.powi(5) + 16.0 * x.powi(3) + 3.0 * x) / 96.0;

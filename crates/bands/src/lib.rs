@@ -7,6 +7,6 @@ mod next_trial;
 mod sampling;
 
 pub use bands::{Band, Bands, bands, bands_over, figures, quantile};
-pub use fold_scatter::{FoldQuantile, fold_factor};
+pub use fold_scatter::{FoldQuantile, fold_factor, student};
 pub use next_trial::{Drawn, NextTrial};
 pub use sampling::{Sampling, TooManySamples, draws};

@@ -4,7 +4,7 @@
 //! its training: it is the model without a branch which this favours.
 
 use sistership_branches::{BranchChoice, BranchKind, BranchSettings, Kinds, TrainError, choose};
-use sistership_estimate::refine::{Progress, RefineError, ReplayedTrials};
+use sistership_estimate::refine::{Progress, RefineError, ReplayedTrials, Thinning};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model};
 
@@ -24,7 +24,8 @@ pub(super) fn branch(
     if trials.len() < SEARCH.branch_trials {
         return Ok(BranchChoice::untried(few(trials.len())));
     }
-    let replayed = ReplayedTrials::new(law, lpp_m, trials, true);
+    let by = Thinning { economical: true, smoothing_s: None };
+    let replayed = ReplayedTrials::new(law, lpp_m, trials, by);
     let kinds = Kinds::WhilePromising { step_s: replayed.step_s };
     let replayed: Vec<&Trial> = replayed.trials.iter().collect();
     let settings = BranchSettings::default();

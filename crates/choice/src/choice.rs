@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use sistership_estimate::refine::Weighed;
 
 use crate::thresholds::SEARCH;
+use sistership_bands::student;
 
 /// Below this an error is no error: the logarithm of less would decide alone.
 const LEAST: f64 = 1e-9;
@@ -46,13 +47,13 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
 
 /// The place of what is taken: of all that is within one standard error of the least error, that
 /// with the least sum of its error and so many times ([`SEARCH`]`.elsewhere`) its variance where no
-/// trial reaches ([`Weighed`]`.variance`); what a population holds (`true`) before all else, for what
-/// trials do not tell apart other ships do (docs/evidence/population.md). A law with more
-/// coefficients than the trials hold, and a strength of the prior that does not hold them, are as
-/// good on trials like those that were sailed; elsewhere they scatter. The rule of one standard
-/// error (Breiman et al. 1984, Classification and regression trees, section 3.4.3) counts
-/// coefficients in this place, which says less where a prior holds them. `None` where every
-/// simulation diverged.
+/// trial reaches ([`Weighed`]`.variance`). A law with more coefficients than the trials hold, and a
+/// strength of the prior that does not hold them, are as good on trials like those that were sailed;
+/// elsewhere they scatter. The rule of one standard error (Breiman et al. 1984, Classification and
+/// regression trees, section 3.4.3) counts coefficients in this place, which says less where a prior
+/// holds them. What a population holds (`true`) is taken before all else unless the least error is
+/// less at a level of 95 %: what trials do not tell apart other ships do
+/// (docs/evidence/population.md). `None` where every simulation diverged.
 pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
     let (tried, held): (Vec<&Weighed>, Vec<bool>) = all.iter().copied().unzip();
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
@@ -61,8 +62,10 @@ pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
     let least = |a: &usize, b: &usize| logs[*a].all.total_cmp(&logs[*b].all);
     let best = sailed.iter().copied().min_by(least)?;
     let alike = |place: &usize| {
+        let within = if held[*place] { student(logs[best].without.len().max(2) - 1) } else { 1.0 };
         let scatter = logs[*place].standard_error(&logs[best].without);
-        *place == best || scatter.is_some_and(|scatter| logs[*place].all - logs[best].all < scatter)
+        let apart = logs[*place].all - logs[best].all;
+        *place == best || scatter.is_some_and(|scatter| apart < within * scatter)
     };
     let anywhere = |place: &usize| {
         let variance = tried[*place].variance.unwrap_or(f64::INFINITY);
@@ -106,6 +109,20 @@ mod tests {
         let better = entry(0, &[0.5, 0.7, 0.4, 0.6]);
         assert_eq!(chosen(&[(&steady, false), (&alike, true)]), Some(1));
         assert_eq!(chosen(&[(&better, false), (&steady, true)]), Some(0));
+    }
+
+    #[test]
+    fn a_population_is_told_apart_by_more_than_one_standard_error() {
+        let best = entry(0, &[1.0, 1.2, 0.9, 1.1]);
+        let apart = entry(0, &[1.3, 1.2, 0.8, 1.5]);
+        let differ = LogError::of(&apart.each).all - LogError::of(&best.each).all;
+        let scatter = LogError::of(&apart.each).standard_error(&LogError::of(&best.each).without);
+        let times = differ / scatter.unwrap();
+        assert!(times > 1.0 && times < student(3), "{times}");
+        assert_eq!(chosen(&[(&best, false), (&apart, false)]), Some(0));
+        assert_eq!(chosen(&[(&best, false), (&apart, true)]), Some(1));
+        let far = entry(0, &[2.2, 2.4, 1.8, 2.1]);
+        assert_eq!(chosen(&[(&best, false), (&far, true)]), Some(0));
     }
 
     #[test]

@@ -13,7 +13,7 @@ const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
 
 /// The law that a population holds: the one that says most, without roll, of which few ships say
 /// anything.
-const POPULATION_LAW: &str = "low-speed";
+pub(super) const POPULATION_LAW: &str = "low-speed";
 
 /// A source, or none, with the law to be fitted.
 #[derive(Debug, Clone)]
@@ -70,11 +70,11 @@ impl Entrant {
 
 /// What may hold coefficients beside a source.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Beside {
+pub struct Beside<'a> {
     /// The estimate from the ship's particulars.
     pub estimate: bool,
-    /// A population.
-    pub population: bool,
+    /// A population, at the states of this model's manoeuvres.
+    pub population: Option<&'a Model>,
 }
 
 /// Each source with its own law and the general ones, estimate and population with the general ones
@@ -82,7 +82,7 @@ pub struct Beside {
 pub fn entrants(
     zoo: &Zoo,
     target: &Vessel,
-    (sources, beside): (&[Model], Beside),
+    (sources, beside): (&[Model], Beside<'_>),
     trials: &[&Trial],
 ) -> Vec<Entrant> {
     let general: Vec<Arc<Law>> = GENERAL
@@ -104,8 +104,7 @@ pub fn entrants(
         let is_general = |one: &Entrant| GENERAL.contains(&one.law.name.as_str());
         entrants.filter(is_general).map(|one| Entrant { held_by: HeldBy::Estimate, ..one })
     });
-    let across = others().find(|source| source.law != POPULATION_LAW);
-    let population = across.filter(|_| beside.population).into_iter().flat_map(|source| {
+    let population = beside.population.into_iter().flat_map(|source| {
         let entrants = of_source(zoo, source, &general, trials).into_iter();
         let is_theirs = |one: &Entrant| one.law.name == POPULATION_LAW;
         entrants.filter(is_theirs).map(|one| Entrant { held_by: HeldBy::Population, ..one })
@@ -141,17 +140,17 @@ mod tests {
         let zoo = Zoo::embedded().unwrap();
         let target = zoo.vessel("kcs").unwrap();
         let models = ["kcs", "mariner"].map(|name| zoo.model(name).unwrap());
-        let beside = Beside { estimate: true, population: true };
+        let beside = Beside { estimate: true, population: Some(&models[1]) };
         let held = |sources: &[Model], beside, by| {
             let all = entrants(&zoo, target, (sources, beside), &[]);
             all.into_iter().filter(|one| one.held_by == by).collect::<Vec<_>>()
         };
         for by in [HeldBy::Estimate, HeldBy::Population] {
             assert!(held(&models, Beside::default(), by).is_empty());
-            assert!(held(&models[..1], beside, by).is_empty());
             let found = held(&models, beside, by);
             assert!(!found.is_empty() && found.iter().all(|one| one.source.ship == "mariner"));
         }
+        assert!(held(&models[..1], beside, HeldBy::Estimate).is_empty());
         let estimate = &held(&models, beside, HeldBy::Estimate)[0];
         assert!(estimate.name().starts_with("estimate, "), "{}", estimate.name());
         let settings = estimate.settings(&Settings::default());

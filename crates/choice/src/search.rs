@@ -33,9 +33,10 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
 fn searched_by(search: &Search<'_>) -> Settings {
     let (settings, fitted) = (search.settings, search.fitted());
     let length_s = search.target.particular("lpp_m").zip(approach_of(&fitted));
-    let restart_s = length_s.map(|(l, approach)| SEARCH.restart * l / approach.speed_m_s);
+    let lengths_s = |lengths: f64| length_s.map(|(l, approach)| lengths * l / approach.speed_m_s);
     Settings {
-        restart_s: settings.restart_s.or(restart_s),
+        restart_s: settings.restart_s.or(lengths_s(SEARCH.restart)),
+        smoothing_s: settings.smoothing_s.or(lengths_s(SEARCH.smoothing)),
         in_parts: settings.in_parts || fitted.len() < SEARCH.few,
         steering_from_trials: true,
         steering_above_noise: true,

@@ -8,7 +8,7 @@ use sistership_model::{Model, Vessel, Zoo};
 use crate::branch::branch;
 use crate::entrant::{Beside, Entrant, HeldBy, entrants};
 use crate::ladder::Ladder;
-use crate::population::population;
+use crate::population::{asked_at, population};
 use crate::search::search;
 use crate::thresholds::SEARCH;
 use crate::tried::Search;
@@ -60,7 +60,8 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let population = population(zoo, target);
     let beside = Beside {
         estimate: fitted.len() < SEARCH.few,
-        population: fitted.len() <= SEARCH.population_trials,
+        population: asked_at(&population, &similarity)
+            .filter(|_| fitted.len() <= SEARCH.population_trials),
     };
     let entrants = entrants(zoo, target, (&sources(asked, &similarity), beside), &fitted);
     let all = Search { target, entrants: &entrants, trials, population: &population, settings };

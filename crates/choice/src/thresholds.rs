@@ -40,6 +40,10 @@ pub(super) struct SearchThresholds {
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// `docs/evidence/plain.md`, which has half and double; as long as trajectories are fitted.
     pub restart: f64,
+    /// `T_w`: window in which motions are smoothed that simulations are compared with, by `L/U`,
+    /// dimensionless. Source: less than the 0.3 `L/U` in which sway and yaw settle;
+    /// `docs/evidence/population.md` has half and double.
+    pub smoothing: f64,
     /// `n_c`: samples of the trials on which the noise model is learned, a count. Source: memory;
     /// `docs/evidence/plain.md`.
     pub calibration: usize,
@@ -62,6 +66,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     population_trials: 11,
     elsewhere: 5.0,
     restart: 5.0,
+    smoothing: 0.2,
     calibration: 30_000,
     branch_trials: 12,
 };

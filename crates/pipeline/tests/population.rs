@@ -52,7 +52,8 @@ async fn a_version_held_by_a_population_names_its_ships_and_is_derived_again() {
         let (archive, trials) = archive(&database).await;
         let recipe = recipe(&archive, trials).await;
         let ships: Vec<&str> = recipe.population().iter().map(|m| &*m.version.ship).collect();
-        assert!(ships.len() > 20 && !ships.contains(&SHIP), "{ships:?}");
+        assert!(ships.len() > 10 && !ships.contains(&SHIP), "{ships:?}");
+        assert!(!ships.contains(&"seiun-maru"), "an estimate from particulars: {ships:?}");
         let made = derived(&archive, &recipe).await.unwrap();
         let model = &made.document.model;
         assert_eq!(model.note.as_deref(), Some("held by what a population of ships says"));

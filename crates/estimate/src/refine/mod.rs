@@ -35,6 +35,7 @@ mod said;
 mod selection;
 mod settings;
 mod simulated;
+mod smoothed;
 mod steps;
 mod thresholds;
 mod trajectory;
@@ -54,7 +55,7 @@ pub use outcome::{
 };
 pub use population::Member;
 pub use progress::{Iterate, MonotoneProgress, Progress, Watch};
-pub use replayed_trials::ReplayedTrials;
+pub use replayed_trials::{ReplayedTrials, Thinning};
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
 pub use selection::{Request, refine, refine_wanted, refine_watched, weigh};

@@ -47,7 +47,7 @@ impl<'a> Problem<'a> {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
-        let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.economical);
+        let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
         let deviations = standard_deviations(&training);
         Self {
             law,

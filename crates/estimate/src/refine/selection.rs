@@ -161,7 +161,7 @@ fn with_candidates<T>(
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let source = mixture::source_name(&settings, &request.source.name);
     let (law, watch) = (request.law, Some(watch));
-    let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.economical);
+    let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
     let deviations = standard_deviations(&training);
     let problem = Problem {
         law,

@@ -186,6 +186,12 @@ pub struct Settings {
     /// longer than a trial runs it whole.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
+    /// Such simulations start in, and are compared with, motions that are smoothed over so many
+    /// seconds: what one noisy reading does at the start of a simulation grows where a ship is
+    /// unstable on her course. Where absent, motions as recorded. The default search sets it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub smoothing_s: Option<f64>,
     /// Most folds; with more manoeuvres than that, several are left out together.
     #[schemars(range(min = 2, max = 100))]
     pub folds: usize,
@@ -273,6 +279,7 @@ impl Default for Settings {
             families: Vec::new(),
             strengths: Vec::new(),
             restart_s: None,
+            smoothing_s: None,
             folds: 8,
             in_parts: false,
             steering_from_trials: false,
@@ -378,6 +385,7 @@ impl Settings {
             return refuse("restart_s", "must be above 0 s");
         }
         let times = [
+            ("smoothing_s", self.smoothing_s),
             ("window_s", self.window_s),
             ("hop_s", self.hop_s),
             ("segment_s", self.segment_s),

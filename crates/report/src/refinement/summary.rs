@@ -52,6 +52,9 @@ pub(crate) struct HeldOutErrors<'a> {
     /// Whether the errors are of the very trial that was fitted.
     pub on_fitted_trial: bool,
     pub restart_s: Option<f64>,
+    /// Over which the measured motion was smoothed, s; none where trials were kept out, which are
+    /// compared as recorded.
+    pub smoothing_s: Option<f64>,
     pub rows: Vec<ErrorRow>,
 }
 
@@ -69,6 +72,7 @@ impl<'a> HeldOutErrors<'a> {
             how: &held_out.how,
             on_fitted_trial: settings.held_out.is_empty() && input.trials.len() == 1,
             restart_s: settings.restart_s,
+            smoothing_s: settings.smoothing_s.filter(|_| settings.held_out.is_empty()),
             rows: rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect(),
         }
     }

@@ -50,7 +50,7 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
 
 /// What the settings mean, in the order in which they are shown; one that is not listed comes after
 /// these.
-const MEANINGS: [(&str, &str); 7] = [
+const MEANINGS: [(&str, &str); 8] = [
     ("method", "the estimator"),
     ("ranges", "tuning ranges, from the source outwards"),
     ("lambda_count", "values of λ tried in a range"),
@@ -58,6 +58,10 @@ const MEANINGS: [(&str, &str); 7] = [
     (
         "restart_s",
         "simulations of manoeuvres left out start anew from the measured state every so often, s",
+    ),
+    (
+        "smoothing_s",
+        "motions with which these simulations are compared are smoothed over so long, s",
     ),
     ("folds", "most groups of manoeuvres that are left out in turn"),
     ("held_out", "trials kept out of fit and choice altogether"),
