@@ -65,8 +65,8 @@ pub fn fold_factor(
 }
 
 /// Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964, Handbook
-/// of mathematical functions, Eq. 26.7.5, two terms: 10 % low for two degrees, 4 % for three, 1 % for
-/// five).
+/// of mathematical functions, Eq. 26.7.5, two terms: 10 % low for two degrees, 4 % for three, 1 %
+/// for five).
 pub fn student(degrees: usize) -> f64 {
     let (x, degrees) = (NORMAL, degrees as f64);
     let first = (x.powi(3) + x) / 4.0;

@@ -48,10 +48,10 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
 /// The place of what is taken: of all that is within one standard error of the least error, that
 /// with the least sum of its error and so many times ([`SEARCH`]`.elsewhere`) its variance where no
 /// trial reaches ([`Weighed`]`.variance`). A law with more coefficients than the trials hold, and a
-/// strength of the prior that does not hold them, are as good on trials like those that were sailed;
-/// elsewhere they scatter. The rule of one standard error (Breiman et al. 1984, Classification and
-/// regression trees, section 3.4.3) counts coefficients in this place, which says less where a prior
-/// holds them. What a population holds (`true`) is taken before all else unless the least error is
+/// strength of the prior that does not hold them, are as good on trials like those that were
+/// sailed; elsewhere they scatter. The rule of one standard error (Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3) counts coefficients in this place, which
+/// says less where a prior holds them. What a population holds (`true`) is taken before all else unless the least error is
 /// less at a level of 95 %: what trials do not tell apart other ships do
 /// (docs/evidence/population.md). `None` where every simulation diverged.
 pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {

@@ -57,11 +57,13 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     let similarity = similar_with(zoo, target, None, &fitted, champions);
-    let population = population(zoo, target);
+    let population = match fitted.len() <= SEARCH.population_trials {
+        true => population(zoo, target),
+        false => Vec::new(),
+    };
     let beside = Beside {
         estimate: fitted.len() < SEARCH.few,
-        population: asked_at(&population, &similarity)
-            .filter(|_| fitted.len() <= SEARCH.population_trials),
+        population: asked_at(&population, &similarity),
     };
     let entrants = entrants(zoo, target, (&sources(asked, &similarity), beside), &fitted);
     let all = Search { target, entrants: &entrants, trials, population: &population, settings };

@@ -30,9 +30,10 @@ pub(super) struct SearchThresholds {
     /// Most ships of a population, by rank of similarity, a count. Source: chosen, more than the
     /// zoo has; each is asked at every state.
     pub population: usize,
-    /// Most trials beside which a population enters, a count. Source: derived: one less than branches
-    /// are tried of. What ships have in common and a branch beside a law are two ways to say what a
-    /// law alone does not, and of so many trials the second says more (docs/evidence/population.md).
+    /// Most trials beside which a population enters, a count. Source: derived: one less than
+    /// branches are tried of. What ships have in common and a branch beside a law are two ways to
+    /// say what a law alone does not, and of so many trials the second says more
+    /// (docs/evidence/population.md).
     pub population_trials: usize,
     /// `k_v`: weight of the variance where no trial reaches beside the error on trials left out,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.

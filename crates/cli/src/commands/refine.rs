@@ -36,9 +36,10 @@ Examples:
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
 Without --source, --law and --method, every eligible source is tried under every law that was
-measured, laws without a source, and of at most 11 trials what all other ships say; of what is within
-one standard error of the best on manoeuvres left out, what other ships hold is taken first, else that
-which has the least error together with what single trials move elsewhere. With
+measured, laws without a source, and of at most 11 trials what the published models of all other
+ships say. What these hold is taken unless something is better on manoeuvres left out at a level of
+95 %; else, of what is within one standard error of the best there, that which has the least error
+together with what single trials move elsewhere. With
 twelve trials and more learned branches are tried beside it, and one that wins on trials left out by
 more than its uncertainty is taken: its weights are written beside the model, m.weights.json for m.yaml.
 The source's coefficients are the prior: with a method named, options go from the source outwards,
@@ -69,7 +70,7 @@ pub struct RefineArguments {
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
     /// What the prior is about: `source`, which it is where absent, `mixture`, the source moved
-    /// towards the estimate from particulars, or `population`, what the other ships of the zoo say.
+    /// towards the estimate from particulars, or `population`, what published models of other ships say.
     #[arg(long, value_name = "NAME", value_parser = prior)]
     prior: Option<Prior>,
     /// Settings of the refinement (YAML); the flags below win over it.

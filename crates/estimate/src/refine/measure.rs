@@ -89,8 +89,8 @@ impl PriorMeasure {
             Self::Population(envelope, members) => {
                 let names: Vec<&str> = members.iter().map(|said| said.name.as_str()).collect();
                 Some(format!(
-                    "the prior is what {} ships say at the states of the trials and of the standard \
-                     manoeuvres of `{}`: their mean, and how they differ ({})",
+                    "the prior is what {} ships say at the states of the trials and of the \
+                     standard manoeuvres of `{}`: their mean, and how they differ ({})",
                     names.len(),
                     envelope.source,
                     names.join(", ")

@@ -4,8 +4,8 @@
 //! that are known (Gelman et al. 2013, Bayesian Data Analysis, section 5.4, the means of whose
 //! groups are given here).
 //!
-//! Directions of coefficients are measured as of a source of another law (docs/decisions/0015): with
-//! `R' R` the precision that this has earned and `z = R b` a ship's coefficients, the prior's
+//! Directions of coefficients are measured as of a source of another law (docs/decisions/0015):
+//! with `R' R` the precision that this has earned and `z = R b` a ship's coefficients, the prior's
 //! covariance of `z` is `e 1 + (1 - e) p S`. `S` is the scatter of the ships about their mean, of
 //! trace 1, `p` the number of coefficients, and `e` ([`POPULATION`]`.outside`) what ships differ by
 //! that no ship shows.

@@ -21,7 +21,7 @@ pub struct ReplayedTrials {
 }
 
 /// How trials are made into such.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Thinning {
     /// With as few samples as a search needs, means of what drives the ship between them.
     pub economical: bool,
