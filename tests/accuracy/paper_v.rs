@@ -117,6 +117,7 @@ fn the_plain_call_on_paper_v() {
     let [single, pooled] = [weak::single(), weak::pooled()].map(|sets| by_plain(&zoo, &sets));
     let (single, pooled) = (mean_of(&single), mean_of(&pooled));
     println!("mean of 24 cells: plain call, single {single:.2}, pooled {pooled:.2} %");
+    assert!(single <= 2.0 && pooled <= 0.31, "1.82 and 0.30; docs/evidence/plain.md");
 }
 
 fn by_plain(zoo: &Zoo, sets: &[Vec<(f64, f64)>]) -> Vec<Metrics> {

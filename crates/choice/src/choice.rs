@@ -72,10 +72,14 @@ pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
         logs[*place].all.exp() + SEARCH.elsewhere * variance
     };
     let by_population_first = |a: &usize, b: &usize| held[*b].cmp(&held[*a]);
-    let alike = sailed.iter().copied().filter(alike);
-    alike.min_by(|a, b| {
+    let first = |a: &usize, b: &usize| {
         by_population_first(a, b).then(anywhere(a).total_cmp(&anywhere(b))).then(least(a, b))
-    })
+    };
+    let taken = sailed.iter().copied().filter(alike).min_by(first)?;
+    let is_less_in_both = |place: &usize| {
+        !held[taken] && least(place, &taken).is_lt() && anywhere(place) < anywhere(&taken)
+    };
+    sailed.into_iter().filter(is_less_in_both).min_by(first).or(Some(taken))
 }
 
 #[cfg(test)]
@@ -133,6 +137,15 @@ mod tests {
         assert_eq!(choice(&[simple.clone(), alike]), Some(0));
         assert_eq!(choice(&[simple, better]), Some(1));
         assert_eq!(choice(&[Weighed { error: None, ..entry(0, &[1.0]) }]), None);
+    }
+
+    #[test]
+    fn what_scatters_is_not_taken_before_what_is_less_in_error_and_variance() {
+        let least = Weighed { variance: None, ..entry(0, &[0.018, 0.021, 0.02]) };
+        let scattered = entry(200, &[0.9, 0.001, 0.014]);
+        let steady = entry(1, &[0.03, 0.033, 0.031]);
+        assert_eq!(choice(&[least.clone(), scattered.clone()]), Some(1));
+        assert_eq!(choice(&[least, scattered, steady]), Some(2));
     }
 
     #[test]

@@ -12,11 +12,10 @@ use crate::entrant::{Entrant, HeldBy};
 use crate::ladder::Rung;
 use crate::taken::{Winner, taken};
 use crate::thresholds::SEARCH;
-use crate::tried::{Search, Tried, chosen_of, on_rung, request, ridge_of, settings_on};
+use crate::tried::{Search, Tried, chosen_of, on_rung, request, ridge_of, settings_on, weighed_on};
 use sistership_bands::Sampling;
 use sistership_estimate::refine::{
-    Extent, MonotoneProgress, Progress, RefineError, Settings, SourceEnvelopes, Weighed,
-    refine_wanted, weigh,
+    MonotoneProgress, Progress, RefineError, Settings, SourceEnvelopes, Weighed, refine_wanted,
 };
 use sistership_sources::transfer::approach_of;
 
@@ -33,11 +32,14 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
 fn searched_by(search: &Search<'_>) -> Settings {
     let (settings, fitted) = (search.settings, search.fitted());
     let length_s = search.target.particular("lpp_m").zip(approach_of(&fitted));
+    let few = fitted.len() < SEARCH.few;
     let lengths_s = |lengths: f64| length_s.map(|(l, approach)| lengths * l / approach.speed_m_s);
     Settings {
         restart_s: settings.restart_s.or(lengths_s(SEARCH.restart)),
         smoothing_s: settings.smoothing_s.or(lengths_s(SEARCH.smoothing)),
-        in_parts: settings.in_parts || fitted.len() < SEARCH.few,
+        part_s: settings.part_s.or_else(|| lengths_s(SEARCH.part).filter(|_| !few)),
+        in_parts: settings.in_parts || few,
+        hydrostatic_roll: true,
         steering_from_trials: true,
         steering_above_noise: true,
         recorded_terms: true,
@@ -116,21 +118,16 @@ fn climb(
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
     let done = AtomicUsize::new(0);
-    let extent = if rung == Rung::CarriedOver { Extent::Source } else { Extent::Estimator };
     let one = |&entrant: &usize| {
         let named = search.entrants[entrant].name();
         let told = |_: f64, what: &str| {
             let share = done.load(Ordering::Relaxed) as f64 / entrants.len() as f64;
             progress(begin + span * share, &format!("{named}: {what}"))
         };
-        let begun = Instant::now();
-        let settings = settings_on(&search.entrants[entrant].settings(search.settings), rung, None);
-        let request = request(search, entrant, &settings);
-        let weighed = weigh((&request, known), extent, &told);
-        let weighed = on_rung(rung, weighed)?;
+        let settings = search.entrants[entrant].settings(search.settings);
+        let tried = weighed_on((search, known), (entrant, rung), &settings, &told)?;
         done.fetch_add(1, Ordering::Relaxed);
-        let cost_s = begun.elapsed().as_secs_f64();
-        Ok(Tried { entrant, rung, weighed, refinement: None, cost_s })
+        Ok(tried)
     };
     let weighed: Result<Vec<Tried>, RefineError> =
         entrants.par_iter().with_max_len(1).map(one).collect();

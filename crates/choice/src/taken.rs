@@ -1,12 +1,17 @@
 //! What is taken of all that was tried: the choice that also sails the standard manoeuvres.
 
-use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings, refine};
+use sistership_estimate::refine::{
+    Progress, RefineError, Refinement, Settings, SourceEnvelopes, refine,
+};
 
 use crate::choice::standard_error;
 use crate::entrant::HeldBy;
 use crate::ladder::{Ladder, Line, Rung};
 use crate::sailed::unsailed_rudder;
-use crate::tried::{Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on};
+use crate::thresholds::SEARCH;
+use crate::tried::{
+    Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on, weighed_on,
+};
 
 /// What was taken, and how it is refined explicitly.
 #[derive(Debug, Clone)]
@@ -59,7 +64,33 @@ pub(super) fn taken(
         };
         let weighed = &mut tried[best].weighed;
         (weighed.error, weighed.reason) = (None, Some(reason));
+        tried.extend(held_more(search, &tried[best], progress)?);
     }
+}
+
+/// The weak form of an entrant whose choice cannot be taken, by a stronger prior: nearer to what it
+/// began with. None of another rung, or where no strength is left.
+fn held_more(
+    search: &Search<'_>,
+    refused: &Tried,
+    progress: Progress<'_>,
+) -> Result<Option<Tried>, RefineError> {
+    let is_weak = refused.rung == Rung::Weak && search.settings.strengths.is_empty();
+    let Some((family, lambda)) = refused.weighed.ridge.filter(|_| is_weak) else {
+        return Ok(None);
+    };
+    let strengths: Vec<f64> = SEARCH.stronger.iter().map(|factor| factor * lambda).collect();
+    let strongest = SEARCH.strengths.iter().copied().fold(0.0, f64::max);
+    if strengths[0] > strongest {
+        return Ok(None);
+    }
+    let entrant = refused.entrant;
+    let own = search.entrants[entrant].settings(search.settings);
+    let settings = Settings { families: vec![family], strengths, ..own };
+    let named = search.entrants[entrant].name();
+    let told = |_: f64, what: &str| progress(0.9, &format!("{named}, held more: {what}"));
+    let known = SourceEnvelopes::default();
+    weighed_on((search, &known), (entrant, Rung::Weak), &settings, &told).map(Some)
 }
 
 fn nothing_left(tried: &[Tried]) -> RefineError {

@@ -21,6 +21,9 @@ pub(super) struct SearchThresholds {
     /// Strengths that trajectories begin with, by the best in weak form, dimensionless. Source:
     /// derived: half a decade to either side.
     pub near: [f64; 3],
+    /// By how much stronger a prior is tried where the choice cannot be taken, dimensionless.
+    /// Source: derived: half decades, as a named method tries them, over three decades.
+    pub stronger: [f64; 6],
     /// `lambda_h`: strength of a prior that keeps the source, dimensionless. Source: derived: what
     /// the trials say counts for less than the rounding of its coefficients.
     pub kept: f64,
@@ -41,6 +44,9 @@ pub(super) struct SearchThresholds {
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// `docs/evidence/plain.md`, which has half and double; as long as trajectories are fitted.
     pub restart: f64,
+    /// `T_p`: how long a part is where three trials or more are left out part by part, by `L/U`,
+    /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
+    pub part: f64,
     /// `T_w`: window in which motions are smoothed that simulations are compared with, by `L/U`,
     /// dimensionless. Source: less than the 0.3 `L/U` in which sway and yaw settle;
     /// `docs/evidence/population.md` has half and double.
@@ -61,12 +67,14 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     few: 3,
     strengths: [10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8],
     near: [3.16, 1.0, 0.316],
+    stronger: [3.16, 10.0, 31.6, 100.0, 316.0, 1000.0],
     kept: 1e9,
     sources: 5,
     population: 48,
     population_trials: 11,
     elsewhere: 5.0,
     restart: 5.0,
+    part: 10.0,
     smoothing: 0.2,
     calibration: 30_000,
     branch_trials: 12,

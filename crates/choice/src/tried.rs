@@ -1,5 +1,7 @@
 //! What is tried: entrants on rungs, the settings by which each is fitted there, and what it gives.
 
+use std::time::Instant;
+
 use sistership_model::Vessel;
 use sistership_model::trial::Trial;
 
@@ -8,7 +10,8 @@ use crate::entrant::{Entrant, HeldBy};
 use crate::ladder::Rung;
 use crate::thresholds::SEARCH;
 use sistership_estimate::refine::{
-    Family, Member, RefineError, Refinement, Request, Settings, Weighed,
+    Extent, Family, Member, Progress, RefineError, Refinement, Request, Settings, SourceEnvelopes,
+    Weighed, weigh,
 };
 
 /// What is searched.
@@ -77,6 +80,22 @@ pub(super) fn on_rung(
             Ok(all.into_iter().nth(wanted).unwrap_or_else(no_fit))
         }
     }
+}
+
+/// Weighs an entrant on a rung by its settings.
+pub(super) fn weighed_on(
+    (search, known): (&Search<'_>, &SourceEnvelopes),
+    (entrant, rung): (usize, Rung),
+    settings: &Settings,
+    progress: Progress<'_>,
+) -> Result<Tried, RefineError> {
+    let begun = Instant::now();
+    let extent = if rung == Rung::CarriedOver { Extent::Source } else { Extent::Estimator };
+    let settings = settings_on(settings, rung, None);
+    let weighed = weigh((&request(search, entrant, &settings), known), extent, progress);
+    let weighed = on_rung(rung, weighed)?;
+    let cost_s = begun.elapsed().as_secs_f64();
+    Ok(Tried { entrant, rung, weighed, refinement: None, cost_s })
 }
 
 /// The place of what is taken of all that was tried.

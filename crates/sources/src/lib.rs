@@ -3,6 +3,7 @@
 //! that its trials show.
 
 mod estimated;
+pub mod rolling;
 pub mod similarity;
 pub mod source;
 pub mod steering;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde_json::Value;
-use sistership_tests::truth::manoeuvre::figures;
+use sistership_tests::truth::manoeuvre::every_figure;
 
 use crate::arguments::Arguments;
 use crate::call::{Call, MODEL};
@@ -19,11 +19,15 @@ const DRAWS: usize = 200;
 /// What 95 % bands should hold.
 const AIM: std::ops::RangeInclusive<f64> = 0.90..=0.98;
 
+/// The figures that are judged, and those that are shown beside them.
+const JUDGED: [&str; 4] = ["tactical diameter", "advance", "first overshoot", "second overshoot"];
+const BESIDE: [&str; 2] = ["transfer", "period"];
+
 /// A true figure and its band.
 struct Held {
     /// The figure, as reports name it.
     name: String,
-    /// Which: `tactical diameter`, `advance`, `first overshoot`, `second overshoot`.
+    /// Which of [`JUDGED`] or [`BESIDE`].
     kind: String,
     truth: f64,
     /// Absent where the model gives none.
@@ -52,10 +56,12 @@ pub fn run(program: &Program, arguments: &Arguments) {
         let data = synthetic(ship, TRIALS, seed);
         let (made, folder) = Call::default().refine(program, &data);
         let answer = made.judged.and_then(|_| bands(program, folder.path()));
-        answer.map(|bands| held(&figures(ship), &bands))
+        answer.map(|bands| held(&every_figure(ship), &bands))
     });
     let without = ships.iter().filter(|ship| ship.is_err()).count();
     let all: Vec<&Held> = ships.iter().flatten().flatten().collect();
+    let (beside, all): (Vec<&Held>, Vec<&Held>) =
+        all.into_iter().partition(|held| BESIDE.contains(&held.kind.as_str()));
     println!("## Coverage: 95 % bands of {} ships, {TRIALS} trials each\n", ships.len());
     println!("{without} ships have no model or no bands and are left out.\n");
     if let Some(reason) = ships.iter().find_map(|ship| ship.as_ref().err()) {
@@ -65,10 +71,12 @@ pub fn run(program: &Program, arguments: &Arguments) {
         "| figure | number | inside | without a band | median width by truth | 90 to 98 % |\n| --- \
          | --: | --: | --: | --: | --- |"
     );
-    for kind in ["tactical diameter", "advance", "first overshoot", "second overshoot"] {
+    let of = |kind: &str, all: &[&Held]| {
         row(kind, &all.iter().copied().filter(|held| held.kind == kind).collect::<Vec<_>>());
-    }
-    row("all", &all);
+    };
+    JUDGED.iter().for_each(|kind| of(kind, &all));
+    row("all of these", &all);
+    BESIDE.iter().for_each(|kind| of(kind, &beside));
     println!("\nInside, were the bands wider or narrower:\n\n| times | inside |\n| --: | --: |");
     for times in [0.25, 0.5, 0.76, 1.0, 1.5, 2.0] {
         println!("| {times} | {:.1} % |", 100.0 * share_inside(&all, times));

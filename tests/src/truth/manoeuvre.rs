@@ -145,11 +145,19 @@ const ZIGZAGS: [(f64, f64); 4] = [(10.0, 10.0), (-10.0, 10.0), (20.0, 20.0), (-2
 /// Tactical diameter, advance (m) and overshoots (deg) by the names that `sistership manoeuvre`
 /// gives them; absent where the ship did not get so far.
 pub fn figures(ship: &dyn Truth) -> BTreeMap<String, f64> {
+    let mut all = every_figure(ship);
+    all.retain(|name, _| !name.ends_with(": transfer") && !name.ends_with(": period"));
+    all
+}
+
+/// As [`figures`], with transfer (m) and the zigzags' periods (s).
+pub fn every_figure(ship: &dyn Truth) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     for rudder in TURNS {
         let metrics = turning(ship, rudder);
         let of = |what: &str| format!("turn {rudder} deg: {what}");
         all.extend(metrics.advance_m.map(|value| (of("advance"), value)));
+        all.extend(metrics.transfer_m.map(|value| (of("transfer"), value)));
         all.extend(metrics.tactical_diameter_m.map(|value| (of("tactical diameter"), value)));
     }
     for (rudder, switch) in ZIGZAGS {
@@ -157,6 +165,7 @@ pub fn figures(ship: &dyn Truth) -> BTreeMap<String, f64> {
         let of = |what: &str| format!("zigzag {rudder}/{switch}: {what}");
         all.extend(metrics.first_overshoot_deg.map(|value| (of("first overshoot"), value)));
         all.extend(metrics.second_overshoot_deg.map(|value| (of("second overshoot"), value)));
+        all.extend(metrics.period_s.map(|value| (of("period"), value)));
     }
     all
 }

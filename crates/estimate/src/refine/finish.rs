@@ -200,7 +200,8 @@ fn held(blocks: &Blocks) -> Choices {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::refine::selection::{Request, refine};
+    use crate::refine::request::Request;
+    use crate::refine::selection::refine;
     use crate::refine::settings::{Method, Settings};
     use crate::testing::{mariner, trials, with};
     use sistership_model::trial::Trial;

@@ -11,6 +11,7 @@ use super::ridge::Fit;
 use super::settings::Settings;
 use super::simulated::simulate_all;
 use super::thresholds::SELECTION;
+use sistership_sources::rolling::HYDROSTATICS;
 
 /// The candidate that was taken among all, its model and its fit; none where the source was kept.
 pub(super) struct ChosenCandidate {
@@ -132,6 +133,15 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
     model.coefficients.iter().map(one).collect()
 }
 
+/// What stands for a source's roll, of which it says nothing.
+fn roll_words(carried: &Model) -> Option<String> {
+    let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
+    carried.coefficients.values().find(is_hydrostatic)?;
+    let what = "the source says nothing of roll: the prior has the stiffness of the ship's \
+        metacentric height and a tenth of the critical damping";
+    Some(what.to_owned())
+}
+
 fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     let mut remarks = Vec::new();
     let strongest =
@@ -142,6 +152,7 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
         remarks.push(format!("{what}, and their standard errors say nothing"));
     }
     remarks.extend(problem.measure.words(&problem.transferred, problem.law));
+    remarks.extend(roll_words(&problem.transferred));
     if best == 0 {
         remarks.push(
             "no option beat the source on manoeuvres left out: the source is kept as it is"

@@ -12,8 +12,7 @@ use sistership_model::trial::Trial;
 use super::equations::Equations;
 use super::settings::Settings;
 
-/// The training trials in parts as long as simulations run between restarts, at least two of each,
-/// where that is asked, or a law rolls and there are fewer trials than folds; nothing where the
+/// The training trials in parts as long as the settings say, at least two of each, where that is asked, or a law rolls and there are fewer trials than folds; nothing where the
 /// trials stay whole.
 pub(super) fn parts(
     training: &[&Trial],
@@ -21,7 +20,7 @@ pub(super) fn parts(
     equations: Equations,
     settings: &Settings,
 ) -> Vec<Trial> {
-    let Some(part_s) = settings.restart_s else { return Vec::new() };
+    let Some(part_s) = settings.part_s.or(settings.restart_s) else { return Vec::new() };
     let few_that_roll = law.has_roll() && training.len() < settings.folds;
     if !settings.in_parts && (equations.are_differences() || !few_that_roll) {
         return Vec::new();

@@ -1,56 +1,31 @@
 //! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
 //! simulations of manoeuvres left out are best is taken.
 
-use std::sync::Arc;
-
 use sistership_dynamics::error::standard_deviations;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
-use super::across::{self, SourceEnvelopes, SourceRegression};
-use super::blocks::Blocks;
+use super::across::SourceEnvelopes;
 use super::candidate::CandidateFit;
-use super::envelope::OperatingEnvelope;
 use super::estimators::estimator;
 use super::finish::finish;
-use super::measure::PriorMeasure;
-use super::merged::merged;
 use super::mixture;
 use super::mixture_position::chosen;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
-use super::population::{self, Member};
 use super::problem::Problem;
 use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::replayed_trials::ReplayedTrials;
+use super::request::Request;
 use super::ridge_candidates::source_candidate;
 use super::settings::{Prior, Settings};
+use super::starting::Starting;
 use super::thresholds::SELECTION;
-use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
 use sistership_sources::steering::{RateWindow, measured_rate};
-use sistership_sources::transfer::{Approach, approach_of, transfer};
-
-/// What is to be refined, and against what.
-#[derive(Debug, Clone, Copy)]
-pub struct Request<'a> {
-    /// The ship.
-    pub target: &'a Vessel,
-    /// The source model, as published or as refined earlier.
-    pub source: &'a Model,
-    /// The source's law where it is another than what is fitted: what it says becomes the prior.
-    pub source_law: Option<&'a Law>,
-    /// The law of what is fitted.
-    pub law: &'a Law,
-    /// Its trials.
-    pub trials: &'a [&'a Trial],
-    /// Other ships with their models, where the prior is what they say.
-    pub population: &'a [Member],
-    /// Settings.
-    pub settings: &'a Settings,
-}
+use sistership_sources::transfer::approach_of;
 
 /// Refines a source model against trials.
 ///
@@ -150,7 +125,8 @@ fn with_candidates<T>(
     let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
-    let (mut transferred, measure) = starting((request, known), &whole, !parts.is_empty())?;
+    let started = Starting { request, known, whole: &whole, approach: approach_of(&whole) };
+    let (mut transferred, measure) = started.prior(!parts.is_empty())?;
     if settings.steering_from_trials {
         let window = match settings.steering_above_noise {
             true => RateWindow::AboveNoise,
@@ -184,80 +160,6 @@ fn with_candidates<T>(
     }
     step(progress, 0.8, "fitting all trials")?;
     then(&problem, candidates, &variants, progress)
-}
-
-/// What the prior is about: the source carried over, by its own law or as another law says what it
-/// says.
-fn starting(
-    (request, known): (&Request<'_>, &SourceEnvelopes),
-    whole: &[&Trial],
-    in_parts: bool,
-) -> Result<(Model, PriorMeasure), RefineError> {
-    let Request { target, source, source_law, law, .. } = *request;
-    let is_mixture = request.settings.prior == Prior::Mixture;
-    let position = request.settings.mixture_positions.first().copied().unwrap_or(mixture::LEARNED);
-    if is_mixture {
-        mixture::check(source, target)?;
-    }
-    if request.settings.prior == Prior::Population {
-        population::check(law, source_law)?;
-    }
-    let approach = approach_of(whole);
-    let Some(own) = source_law.filter(|own| own.name != law.name) else {
-        let same = source.ship == target.name();
-        let mut carried =
-            if same { source.clone() } else { transfer(source, law, target, approach) };
-        if request.settings.recorded_terms {
-            unrecorded::forget(&mut carried, law, whole);
-        }
-        if is_mixture {
-            return mixture::of_same_law(carried, law, target, (whole, position));
-        }
-        let measure = PriorMeasure::own(&carried, law, whole, in_parts);
-        return Ok((carried, measure));
-    };
-    let (mut model, mut envelope) =
-        across::begun((source, own), law, target, approach, (whole, known))?;
-    if is_mixture && position == mixture::ESTIMATE {
-        // By its own manoeuvres, not those of the source.
-        let (mut estimated, own) = mixture::estimated(target, model.speed_m_s)?;
-        if let Some(n_rps) = approach.and_then(|approach| approach.n_rps)
-            && request.settings.recorded_revolutions
-        {
-            mixture::turn_at(&mut estimated, n_rps);
-        }
-        let of = (whole, &SourceEnvelopes::default());
-        (model, envelope) = across::begun((&estimated, own), law, target, approach, of)?;
-        envelope = Arc::new(mixture::alone(Arc::unwrap_or_clone(envelope)));
-    } else if is_mixture {
-        envelope = Arc::new(mixture::mixed(&envelope, target, model.speed_m_s, (whole, position))?);
-    }
-    if request.settings.recorded_terms {
-        unrecorded::forget(&mut model, law, whole);
-    }
-    if request.settings.prior == Prior::Population {
-        return held_by_population((request, known), model, envelope, (approach, whole));
-    }
-    let blocks = Blocks::new(&model, law)?;
-    SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
-    Ok((model, PriorMeasure::Source(envelope)))
-}
-
-/// What a population says at the states of a source's envelope, in place of what that says.
-fn held_by_population(
-    (request, known): (&Request<'_>, &SourceEnvelopes),
-    mut model: Model,
-    envelope: Arc<OperatingEnvelope>,
-    (approach, whole): (Option<Approach>, &[&Trial]),
-) -> Result<(Model, PriorMeasure), RefineError> {
-    let ask = || population::said(request.population, request.target, approach, (&envelope, whole));
-    let members = known.population(&envelope, ask)?;
-    let mut blocks = Blocks::new(&model, request.law)?;
-    let sizes = merged(&envelope.moments(&blocks)?, |_| true).unwrap_or_default();
-    let measure = PriorMeasure::Population(envelope, members);
-    measure.hold(&mut blocks, &mut model, &sizes)?;
-    model.note = Some("held by what a population of ships says".to_owned());
-    Ok((model, measure))
 }
 
 /// Gives a model the gear that the trials' rudders show.

@@ -195,6 +195,12 @@ pub struct Settings {
     /// Most folds; with more manoeuvres than that, several are left out together.
     #[schemars(range(min = 2, max = 100))]
     pub folds: usize,
+    /// Where trials are left out part by part, how long each part is, s, at least two of each trial.
+    /// Where absent, as long as simulations run between restarts. The default search sets it to ten
+    /// times the time in which the ship sails its length from three trials on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub part_s: Option<f64>,
     /// Trials are left out part by part, each as long as simulations run between restarts, and what
     /// is taken must be clearly better than the source: for one or two trials, where leaving one
     /// out leaves too little. The default search sets it.
@@ -212,6 +218,11 @@ pub struct Settings {
     /// none. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_terms: bool,
+    /// A source without roll takes the stiffness in roll from the ship's metacentric height, and a
+    /// usual damping, where the law that is fitted rolls and says the same in the plane. The default
+    /// search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub hydrostatic_roll: bool,
     /// An estimate that stands in the source's place makes the approach speed at the revolutions that
     /// the trials record, not at those that its own propeller needs. Every new order of a `mixture`
     /// has it, and the default search sets it.
@@ -281,10 +292,12 @@ impl Default for Settings {
             restart_s: None,
             smoothing_s: None,
             folds: 8,
+            part_s: None,
             in_parts: false,
             steering_from_trials: false,
             steering_above_noise: false,
             recorded_terms: false,
+            hydrostatic_roll: false,
             recorded_revolutions: false,
             posterior_by_folds: false,
             folds_pooled: false,
@@ -386,6 +399,7 @@ impl Settings {
         }
         let times = [
             ("smoothing_s", self.smoothing_s),
+            ("part_s", self.part_s),
             ("window_s", self.window_s),
             ("hop_s", self.hop_s),
             ("segment_s", self.segment_s),

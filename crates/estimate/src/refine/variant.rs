@@ -170,26 +170,26 @@ impl Variant {
 }
 
 /// The families that the settings name and that differ from each other; one that has too few
-/// samples is left out, unless it is the first.
+/// samples, or of a blank law no coefficient, is left out.
 ///
 /// # Errors
-/// As of the first family.
+/// As of the first family, where none is left.
 pub(super) fn variants(
     problem: &Problem<'_>,
     equations: Equations,
 ) -> Result<Vec<Variant>, RefineError> {
     let families = &problem.settings.families;
     let families = if families.is_empty() { &[Family::Own][..] } else { families };
-    let mut variants = Vec::new();
+    let (mut variants, mut lacking) = (Vec::new(), None);
     for &family in families {
         let Some(model) = family.of(&problem.transferred, problem.law) else { continue };
         match Variant::new(problem, equations, family, model) {
             Ok(variant) => variants.push(variant),
-            Err(RefineError::Data(_)) if !variants.is_empty() => {}
+            Err(error @ RefineError::Data(_)) => drop(lacking.get_or_insert(error)),
             Err(error) => return Err(error),
         }
     }
-    Ok(variants)
+    lacking.filter(|_| variants.is_empty()).map_or(Ok(variants), Err)
 }
 
 /// What the settings ask of a model's coefficients.

@@ -20,6 +20,18 @@ use sistership_sources::transfer::{Approach, blank_of, transfer};
 pub use source_envelopes::SourceEnvelopes;
 pub(super) use source_regression::SourceRegression;
 
+/// A source by its own law on a ship; as it is on its own.
+pub(super) fn carried_over(
+    (source, own): (&Model, &Law),
+    target: &Vessel,
+    approach: Option<Approach>,
+) -> Model {
+    if source.ship == target.name() {
+        return source.clone();
+    }
+    transfer(source, own, target, approach)
+}
+
 /// A source carried over to the target by its own law, and a model of the law to be fitted that
 /// knows nothing yet.
 pub(super) fn begun(
@@ -29,11 +41,7 @@ pub(super) fn begun(
     approach: Option<Approach>,
     (trials, known): (&[&Trial], &SourceEnvelopes),
 ) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
-    let carried = if source.ship == target.name() {
-        source.clone()
-    } else {
-        transfer(source, own, target, approach)
-    };
+    let carried = carried_over((source, own), target, approach);
     let envelope = known.of((source, own), || {
         let envelope = OperatingEnvelope::new(&carried, own, trials)?;
         Ok(OperatingEnvelope { source: source.name.clone(), ..envelope })
@@ -43,4 +51,55 @@ pub(super) fn begun(
     model.steering = carried.steering;
     model.note = Some(format!("regressed on what {} says", source.name));
     Ok((model, envelope))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use crate::refine::{Method, Refinement, Request, Settings, refine};
+    use crate::testing::trials;
+
+    /// The Mariner, which does not roll, as the source of a container ship that does.
+    fn by_the_mariner(hydrostatic_roll: bool) -> Refinement {
+        let zoo = Zoo::embedded().unwrap();
+        let [truth, source] = ["sr108", "mariner"].map(|name| zoo.model(name).unwrap());
+        let law = |name: &str| zoo.law(name).unwrap();
+        let trials = trials(&truth, law(&truth.law), 0.001);
+        let settings = Settings {
+            method: Method::Weak,
+            strengths: vec![1e-3, 1e-4],
+            hydrostatic_roll,
+            ..Settings::default()
+        };
+        let request = Request {
+            target: zoo.vessel("sr108").unwrap(),
+            source: &source,
+            source_law: Some(law("abkowitz")),
+            law: law("abkowitz-roll"),
+            trials: &trials.iter().collect::<Vec<_>>(),
+            population: &[],
+            settings: &settings,
+        };
+        refine(&request, &|_, _| true).unwrap()
+    }
+
+    #[test]
+    fn a_law_that_lists_no_coefficient_is_held_by_a_source_of_another() {
+        let made = by_the_mariner(false);
+        assert!(made.model.coefficients.contains_key("Y_phi"), "third order");
+        assert!(made.transferred.coefficients.get("K_heel").is_none_or(|heel| heel.value == 0.0));
+    }
+
+    #[test]
+    fn roll_begins_with_hydrostatics_where_that_is_asked() {
+        let made = by_the_mariner(true);
+        assert!(made.transferred.coefficient("K_heel") < 0.0);
+        assert!(made.remarks.iter().any(|remark| remark.contains("metacentric height")));
+        let of = |errors: &std::collections::BTreeMap<_, f64>| {
+            errors[&sistership_model::trial::Channel::Psi.name().to_owned()]
+        };
+        assert!(of(&made.held_out.refined) < 0.2 * of(&made.held_out.source));
+    }
 }

@@ -50,7 +50,7 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
 
 /// What the settings mean, in the order in which they are shown; one that is not listed comes after
 /// these.
-const MEANINGS: [(&str, &str); 8] = [
+const MEANINGS: [(&str, &str); 10] = [
     ("method", "the estimator"),
     ("ranges", "tuning ranges, from the source outwards"),
     ("lambda_count", "values of λ tried in a range"),
@@ -63,7 +63,12 @@ const MEANINGS: [(&str, &str); 8] = [
         "smoothing_s",
         "motions with which these simulations are compared are smoothed over so long, s",
     ),
+    ("part_s", "where manoeuvres are left out part by part, how long a part is, s"),
     ("folds", "most groups of manoeuvres that are left out in turn"),
+    (
+        "hydrostatic_roll",
+        "a source without roll begins with the stiffness of the metacentric height",
+    ),
     ("held_out", "trials kept out of fit and choice altogether"),
 ];
 
