@@ -169,8 +169,9 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use sistership_estimate::refine::{Method, Request};
-    use sistership_estimate::testing::{mariner, trials};
+    use crate::entrant::Entrant;
+    use sistership_estimate::refine::{Family, Method, Request, Weighed};
+    use sistership_estimate::testing::{mariner, trials, with};
     use sistership_model::Zoo;
 
     #[test]
@@ -193,5 +194,35 @@ mod tests {
         assert!(fitted(Ok(made.clone()), Rung::Weak).unwrap().is_err());
         assert_eq!(fitted(Ok(made.clone()), Rung::CarriedOver).unwrap(), Ok(made));
         assert!(fitted(Err(RefineError::Cancelled), Rung::Weak).is_err());
+    }
+
+    #[test]
+    fn what_cannot_be_taken_is_tried_nearer_to_its_source() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
+        let trials: Vec<_> = trials.iter().collect();
+        let entrant =
+            Entrant { source: model, source_law: Some(law.clone()), law, held_by: HeldBy::Source };
+        let search = Search {
+            target: zoo.vessel("mariner").unwrap(),
+            entrants: &[entrant],
+            trials: &trials,
+            population: &[],
+            settings: &Settings::default(),
+        };
+        let refused = |rung, lambda| {
+            let ridge = Some((Family::Own, lambda));
+            let weighed = Weighed { ridge, ..Weighed::refused("does not sail".to_owned()) };
+            Tried { entrant: 0, rung, weighed, refinement: None, cost_s: 0.0 }
+        };
+        let again = |rung, lambda| {
+            let refused = refused(rung, lambda);
+            held_more(&search, &refused, &|_, _| true).unwrap()
+        };
+        let nearer = again(Rung::Weak, 1e-6).unwrap();
+        assert!(nearer.rung == Rung::Weak && nearer.weighed.error.is_some());
+        assert!(nearer.weighed.ridge.unwrap().1 > 3e-6);
+        assert!(again(Rung::Weak, 10.0).is_none(), "no strength is left");
+        assert!(again(Rung::Trajectory, 1e-6).is_none());
     }
 }
