@@ -32,13 +32,9 @@ pub fn text(
         .settings
         .restart_s
         .map_or(String::new(), |s| format!(";\nsimulations start anew every {} s", number(s)));
-    let smoothed = refinement
-        .settings
-        .smoothing_s
-        .filter(|_| refinement.settings.held_out.is_empty())
-        .map_or(String::new(), |s| {
-            format!(";\nmeasured motions are smoothed over {} s", number(s))
-        });
+    let smoothed = refinement.settings.compared_smoothing_s().map_or(String::new(), |s| {
+        format!(";\nmeasured motions are smoothed over {} s", number(s))
+    });
     let how = format!("Root mean square errors: {}{restart}{smoothed}", refinement.held_out.how);
     let errors = format!("{how}\n{}\n", errors(&refinement.held_out, has_roll(&refinement.model)));
     let options = format!("Options, from the source outwards\n{}\n", options(&refinement.options));

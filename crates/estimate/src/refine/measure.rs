@@ -10,10 +10,10 @@ use sistership_model::trial::Trial;
 use super::across::SourceRegression;
 use super::blocks::{Block, Blocks};
 use super::envelope::OperatingEnvelope;
+use super::member_rates::MemberRates;
 use super::merged::merged;
 use super::outcome::RefineError;
 use super::population::PopulationRegression;
-use super::said::Said;
 use sistership_regression::Moments;
 
 /// Where the sizes of the regressors come from.
@@ -30,7 +30,7 @@ pub(super) enum PriorMeasure {
     /// What a source of another law says over the envelope, jointly.
     Source(Arc<OperatingEnvelope>),
     /// What a population says at the states of a source's, in its mean and scatter.
-    Population(Arc<OperatingEnvelope>, Arc<Vec<Said>>),
+    Population(Arc<OperatingEnvelope>, Arc<Vec<MemberRates>>),
 }
 
 impl PriorMeasure {
@@ -87,7 +87,7 @@ impl PriorMeasure {
             ),
             Self::Mixture(envelope) => envelope.mixed.clone(),
             Self::Population(envelope, members) => {
-                let names: Vec<&str> = members.iter().map(|said| said.name.as_str()).collect();
+                let names: Vec<&str> = members.iter().map(|of| of.name.as_str()).collect();
                 Some(format!(
                     "the prior is what {} ships say at the states of the trials and of the \
                      standard manoeuvres of `{}`: their mean, and how they differ ({})",

@@ -23,8 +23,8 @@ use sistership_sources::transfer::{Approach, transfer};
 
 use super::blocks::{Block, Blocks};
 use super::envelope::{OperatingEnvelope, Rates};
+use super::member_rates::MemberRates;
 use super::outcome::RefineError;
-use super::said::Said;
 use super::thresholds::POPULATION;
 
 /// A ship of the population.
@@ -41,30 +41,30 @@ pub struct Member {
 ///
 /// # Errors
 /// Fewer of them do than a scatter is taken of.
-pub(super) fn said(
+pub(super) fn rates_of(
     members: &[Member],
     target: &Vessel,
     approach: Option<Approach>,
     (envelope, trials): (&OperatingEnvelope, &[&Trial]),
-) -> Result<Vec<Said>, RefineError> {
+) -> Result<Vec<MemberRates>, RefineError> {
     let one = |Member { model, law }: &Member| {
         let carried = transfer(model, law, target, approach);
         let rates = envelope.asked_of((&carried, law), trials).ok()?;
-        Some(Said { name: model.name.clone(), rates })
+        Some(MemberRates { name: model.name.clone(), rates })
     };
     let others: Vec<&Member> =
         members.iter().filter(|member| member.model.ship != target.name()).collect();
-    let said: Vec<Said> = others.into_par_iter().filter_map(one).collect();
-    if said.len() < POPULATION.least {
+    let known: Vec<MemberRates> = others.into_par_iter().filter_map(one).collect();
+    if known.len() < POPULATION.least {
         let message = format!(
             "{} ships of the population say what the prior `population` is made of, at least {} \
              are needed",
-            said.len(),
+            known.len(),
             POPULATION.least
         );
         return Err(RefineError::Data(message));
     }
-    Ok(said)
+    Ok(known)
 }
 
 /// Refuses laws that a population cannot hold: that of its source, and one with roll, of which few
@@ -87,13 +87,13 @@ pub(super) fn check(law: &Law, source_law: Option<&Law>) -> Result<(), RefineErr
 /// What the members say, as the regressions of a law see it.
 pub(super) struct PopulationRegression<'a> {
     envelope: &'a OperatingEnvelope,
-    members: &'a [Said],
+    members: &'a [MemberRates],
     ridge: f64,
 }
 
 impl<'a> PopulationRegression<'a> {
     /// Regressed by the ridge that a source at the same states was.
-    pub fn new(envelope: &'a OperatingEnvelope, members: &'a [Said], ridge: f64) -> Self {
+    pub fn new(envelope: &'a OperatingEnvelope, members: &'a [MemberRates], ridge: f64) -> Self {
         Self { envelope, members, ridge }
     }
 
@@ -103,7 +103,7 @@ impl<'a> PopulationRegression<'a> {
     /// # Errors
     /// The law takes something that the states do not have.
     pub fn hold(&self, blocks: &mut Blocks, model: &mut Model) -> Result<(), RefineError> {
-        let rates: Vec<&Rates> = self.members.iter().map(|said| &said.rates).collect();
+        let rates: Vec<&Rates> = self.members.iter().map(|member| &member.rates).collect();
         let moments = self.envelope.moments_of(blocks, &rates)?;
         for (block, moments) in blocks.blocks.iter_mut().zip(&moments) {
             let Some(metric) = block.precision.as_ref().and_then(Metric::of_precision) else {
@@ -259,7 +259,7 @@ mod tests {
         let (zoo, target) = (sistership_model::Zoo::embedded().unwrap(), "kcs");
         let (model, law) = crate::testing::mariner();
         let envelope = OperatingEnvelope::new(&model, &law, &[]).unwrap();
-        let none = said(&[], zoo.vessel(target).unwrap(), None, (&envelope, &[]));
+        let none = rates_of(&[], zoo.vessel(target).unwrap(), None, (&envelope, &[]));
         assert!(matches!(none, Err(RefineError::Data(_))), "a search goes on without it");
     }
 }

@@ -50,7 +50,7 @@ impl Method {
 
     /// Whether it keeps constraints: of linear regressions the nearest point within them is at
     /// hand.
-    fn keeps_constraints(self) -> bool {
+    pub(super) fn keeps_constraints(self) -> bool {
         matches!(self, Self::Published | Self::Weak)
     }
 }
@@ -334,81 +334,9 @@ impl Settings {
         }
     }
 
-    fn check_positions(&self) -> Result<(), &'static str> {
-        let positions = &self.mixture_positions;
-        if positions.len() > 20 || positions.iter().any(|at| !(0.0..=1.0).contains(at)) {
-            return Err("give at most 20, each from 0 to 1");
-        }
-        if !positions.is_empty() && self.prior != Prior::Mixture {
-            return Err("are of the prior `mixture`");
-        }
-        Ok(())
-    }
-
-    /// Checks the numbers.
-    ///
-    /// # Errors
-    /// Names the field and what it may be.
-    pub fn check(&self) -> Result<(), (String, String)> {
-        let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
-        if self.ranges.is_empty() || self.ranges.len() > 20 {
-            return refuse("ranges", "give 1 to 20 tuning ranges");
-        }
-        for range in &self.ranges {
-            if !(range.lambda_min > 0.0
-                && range.lambda_min <= range.lambda_max
-                && range.lambda_max.is_finite())
-            {
-                return refuse("ranges", "lambda_min must be above 0 and not above lambda_max");
-            }
-            if !(0.0..=1.0).contains(&range.alpha_max) {
-                return refuse("ranges", "alpha_max must be from 0 to 1");
-            }
-        }
-        self.check_positions()
-            .map_err(|message| ("mixture_positions".to_owned(), message.to_owned()))?;
-        if !(2..=1000).contains(&self.lambda_count) {
-            return refuse("lambda_count", "must be from 2 to 1000");
-        }
-        if !(2..=100).contains(&self.folds) {
-            return refuse("folds", "must be from 2 to 100");
-        }
-        if self.calibration_samples == Some(0) {
-            return refuse("calibration_samples", "must be at least 1");
-        }
-        if !self.method.keeps_constraints() && !self.constraints.is_empty() {
-            return refuse("constraints", "are kept by the methods `published` and `weak` only");
-        }
-        self.cma_es
-            .as_ref()
-            .map_or(Ok(()), CmaEs::check)
-            .map_err(|error| ("cma_es".to_owned(), error.to_string()))?;
-        self.constraints.check().map_err(|error| ("constraints".to_owned(), error.to_string()))?;
-        self.bands.check().map_err(|error| ("bands".to_owned(), error.to_string()))?;
-        if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite()))
-        {
-            return refuse("strengths", "give at most 100, each above 0");
-        }
-        let positive =
-            |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
-        if !positive(self.difference_s) {
-            return refuse("difference_s", "must be above 0 s");
-        }
-        if !positive(self.restart_s) {
-            return refuse("restart_s", "must be above 0 s");
-        }
-        let times = [
-            ("smoothing_s", self.smoothing_s),
-            ("part_s", self.part_s),
-            ("window_s", self.window_s),
-            ("hop_s", self.hop_s),
-            ("segment_s", self.segment_s),
-            ("residual_s", self.residual_s),
-            ("step_s", self.step_s),
-        ];
-        if let Some((field, _)) = times.into_iter().find(|(_, value)| !positive(*value)) {
-            return refuse(field, "must be above 0 s");
-        }
-        Ok(())
+    /// Window in which motions are smoothed that errors on manoeuvres left out are against, s; those
+    /// on trials that are kept out are against motions as recorded.
+    pub fn compared_smoothing_s(&self) -> Option<f64> {
+        self.smoothing_s.filter(|_| self.held_out.is_empty())
     }
 }

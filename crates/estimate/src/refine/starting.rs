@@ -119,7 +119,7 @@ impl Starting<'_> {
     ) -> Result<(Model, PriorMeasure), RefineError> {
         let Request { target, law, population, .. } = *self.request;
         let at = (&*envelope, self.whole);
-        let ask = || population::said(population, target, self.approach, at);
+        let ask = || population::rates_of(population, target, self.approach, at);
         let members = self.known.population(&envelope, ask)?;
         let mut blocks = Blocks::new(&model, law)?;
         let sizes = merged(&envelope.moments(&blocks)?, |_| true).unwrap_or_default();

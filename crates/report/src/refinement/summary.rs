@@ -72,7 +72,7 @@ impl<'a> HeldOutErrors<'a> {
             how: &held_out.how,
             on_fitted_trial: settings.held_out.is_empty() && input.trials.len() == 1,
             restart_s: settings.restart_s,
-            smoothing_s: settings.smoothing_s.filter(|_| settings.held_out.is_empty()),
+            smoothing_s: settings.compared_smoothing_s(),
             rows: rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect(),
         }
     }

@@ -7,8 +7,8 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 
 use crate::refine::envelope::OperatingEnvelope;
+use crate::refine::member_rates::MemberRates;
 use crate::refine::outcome::RefineError;
-use crate::refine::said::Said;
 
 /// What sources say where a model will be used, by source and its law. The same for every law that
 /// is fitted to the same trials of the same ship, and only among those may it be shared.
@@ -16,7 +16,7 @@ use crate::refine::said::Said;
 pub struct SourceEnvelopes {
     envelopes: Kept<OperatingEnvelope>,
     /// What the ships of a population say at the states of a source's.
-    populations: Kept<Vec<Said>>,
+    populations: Kept<Vec<MemberRates>>,
 }
 
 /// By source and its law.
@@ -43,8 +43,8 @@ impl SourceEnvelopes {
     pub(in super::super) fn population(
         &self,
         envelope: &OperatingEnvelope,
-        ask: impl FnOnce() -> Result<Vec<Said>, RefineError>,
-    ) -> Result<Arc<Vec<Said>>, RefineError> {
+        ask: impl FnOnce() -> Result<Vec<MemberRates>, RefineError>,
+    ) -> Result<Arc<Vec<MemberRates>>, RefineError> {
         kept(&self.populations, (envelope.source.clone(), envelope.law.clone()), ask)
     }
 }

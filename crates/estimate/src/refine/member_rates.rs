@@ -4,7 +4,7 @@ use super::envelope::Rates;
 
 /// What a ship says at the states of an envelope.
 #[derive(Debug)]
-pub(super) struct Said {
+pub(super) struct MemberRates {
     /// Its model's name.
     pub name: String,
     /// Its accelerations.
