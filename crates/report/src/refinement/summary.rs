@@ -85,10 +85,19 @@ impl<'a> HeldOutErrors<'a> {
     }
 }
 
-/// What such a comparison is worth.
-const WITHOUT_SOURCE: &str = " No ship was the source: the comparison is with the law without \
-                              coefficients, which answers to no rudder, so these factors are no \
-                              measure of what a similar ship would have given.";
+/// What such a comparison is worth: of a law that lists no coefficient a source says something only
+/// where it is fitted.
+fn without_coefficients(input: &RefinementInput<'_>) -> String {
+    let (source, ship) = (&input.refinement.source, &input.refinement.ship);
+    let who = match source.strip_prefix(ship.as_str()).is_some_and(|rest| rest.starts_with('/')) {
+        true => "No ship was the source".to_owned(),
+        false => format!("What {source} says is the prior, not what is compared"),
+    };
+    format!(
+        " {who}: the comparison is with the law without coefficients, which answers to no rudder, \
+         so these factors are no measure of what a similar ship would have given."
+    )
+}
 
 fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.refinement.is_source_kept() {
@@ -105,13 +114,12 @@ fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if phrases.is_empty() {
         return format!("{place}, no error is known.");
     }
-    let compared = if is_without_source(input) { WITHOUT_SOURCE } else { "" };
+    let compared = if is_blank(input) { without_coefficients(input) } else { String::new() };
     format!("{place}, the error {}.{compared}", phrases.join("; it "))
 }
 
-/// Whether the trials alone made the model: what stands for its source is a law without
-/// coefficients.
-fn is_without_source(input: &RefinementInput<'_>) -> bool {
+/// Whether what stands for the source is a law without coefficients.
+fn is_blank(input: &RefinementInput<'_>) -> bool {
     input.refinement.transferred.coefficients.values().all(|coefficient| coefficient.value == 0.0)
 }
 
