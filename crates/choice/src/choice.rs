@@ -51,9 +51,10 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
 /// strength of the prior that does not hold them, are as good on trials like those that were
 /// sailed; elsewhere they scatter. The rule of one standard error (Breiman et al. 1984,
 /// Classification and regression trees, section 3.4.3) counts coefficients in this place, which
-/// says less where a prior holds them. What a population holds (`true`) is taken before all else unless the least error is
-/// less at a level of 95 %: what trials do not tell apart other ships do
-/// (docs/evidence/population.md). `None` where every simulation diverged.
+/// says less where a prior holds them. What a population holds (`true`) is taken before all else
+/// unless the least error is less at a level of 95 %: what trials do not tell apart other ships do
+/// (docs/evidence/population.md). What is alike only because its own error scatters gives way to
+/// what is less in both, error and sum. `None` where every simulation diverged.
 pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
     let (tried, held): (Vec<&Weighed>, Vec<bool>) = all.iter().copied().unzip();
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);

@@ -12,8 +12,8 @@ use sistership_model::trial::Trial;
 use super::equations::Equations;
 use super::settings::Settings;
 
-/// The training trials in parts as long as the settings say, at least two of each, where that is asked, or a law rolls and there are fewer trials than folds; nothing where the
-/// trials stay whole.
+/// The training trials in parts as long as the settings say, at least two of each, where that is
+/// asked, or a law rolls and there are fewer trials than folds; nothing where the trials stay whole.
 pub(super) fn parts(
     training: &[&Trial],
     law: &Law,
