@@ -40,6 +40,7 @@ fn searched_by(search: &Search<'_>) -> Settings {
         part_s: settings.part_s.or_else(|| lengths_s(SEARCH.part).filter(|_| !few)),
         in_parts: settings.in_parts || few,
         hydrostatic_roll: true,
+        plane_source: true,
         steering_from_trials: true,
         steering_above_noise: true,
         recorded_terms: true,
@@ -155,7 +156,7 @@ fn descend(
     let (begun, place) = (Instant::now(), tried.len());
     let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
         let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
-        tried.push(Tried { entrant, rung, weighed, refinement: None, cost_s });
+        tried.push(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength: None });
         descend((search, known), others, rest, tried, progress)
     };
     let is_taken = |all: &[Weighed]| {

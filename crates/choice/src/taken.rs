@@ -1,5 +1,7 @@
 //! What is taken of all that was tried: the choice that also sails the standard manoeuvres.
 
+use sistership_model::Law;
+
 use sistership_estimate::refine::{
     Progress, RefineError, Refinement, Settings, SourceEnvelopes, refine,
 };
@@ -86,11 +88,18 @@ fn held_more(
     }
     let entrant = refused.entrant;
     let own = search.entrants[entrant].settings(search.settings);
-    let settings = Settings { families: vec![family], strengths, ..own };
+    let roll_strength = stronger_roll(&search.entrants[entrant].law, refused.roll_strength);
+    let settings = Settings { families: vec![family], strengths, roll_strength, ..own };
     let named = search.entrants[entrant].name();
     let told = |_: f64, what: &str| progress(0.9, &format!("{named}, held more: {what}"));
     let known = SourceEnvelopes::default();
     weighed_on((search, &known), (entrant, Rung::Weak), &settings, &told).map(Some)
+}
+
+/// The strength of roll's own prior after a refusal: it is the likeliest by the trials whatever the
+/// common one is, and a ship that capsizes does so by what the trials say of her roll.
+fn stronger_roll(law: &Law, before: Option<f64>) -> Option<f64> {
+    law.has_roll().then(|| SEARCH.roll_stronger * before.unwrap_or(1.0))
 }
 
 fn nothing_left(tried: &[Tried]) -> RefineError {
@@ -103,6 +112,7 @@ fn settings_that_give(search: &Search<'_>, tried: &[Tried], place: usize) -> Set
     let (entrant, rung) = (tried[place].entrant, tried[place].rung);
     let own = search.entrants[entrant].settings(search.settings);
     if rung == Rung::Weak {
+        let own = Settings { roll_strength: tried[place].roll_strength, ..own };
         return settings_of(&own, tried[place].weighed.ridge);
     }
     let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
@@ -197,6 +207,16 @@ mod tests {
     }
 
     #[test]
+    fn roll_is_held_more_with_every_refusal() {
+        let zoo = Zoo::embedded().unwrap();
+        let law = |name: &str| zoo.law(name).unwrap();
+        assert_eq!(stronger_roll(law("abkowitz"), None), None);
+        let once = stronger_roll(law("abkowitz-roll"), None);
+        let twice = stronger_roll(law("abkowitz-roll"), once);
+        assert_eq!((once, twice), (Some(10.0), Some(100.0)));
+    }
+
+    #[test]
     fn what_cannot_be_taken_is_tried_nearer_to_its_source() {
         let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
         let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
@@ -213,7 +233,7 @@ mod tests {
         let refused = |rung, lambda| {
             let ridge = Some((Family::Own, lambda));
             let weighed = Weighed { ridge, ..Weighed::refused("does not sail".to_owned()) };
-            Tried { entrant: 0, rung, weighed, refinement: None, cost_s: 0.0 }
+            Tried { entrant: 0, rung, weighed, refinement: None, cost_s: 0.0, roll_strength: None }
         };
         let again = |rung, lambda| {
             let refused = refused(rung, lambda);

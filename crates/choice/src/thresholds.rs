@@ -24,6 +24,9 @@ pub(super) struct SearchThresholds {
     /// By how much stronger a prior is tried where the choice cannot be taken, dimensionless.
     /// Source: derived: half decades, as a named method tries them, over three decades.
     pub stronger: [f64; 6],
+    /// By how much stronger roll's own prior is then, each time, dimensionless. Source:
+    /// `docs/evidence/plain.md`, which has the root and the square of it.
+    pub roll_stronger: f64,
     /// `lambda_h`: strength of a prior that keeps the source, dimensionless. Source: derived: what
     /// the trials say counts for less than the rounding of its coefficients.
     pub kept: f64,
@@ -68,6 +71,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     strengths: [10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8],
     near: [3.16, 1.0, 0.316],
     stronger: [3.16, 10.0, 31.6, 100.0, 316.0, 1000.0],
+    roll_stronger: 10.0,
     kept: 1e9,
     sources: 5,
     population: 48,

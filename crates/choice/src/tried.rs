@@ -45,6 +45,8 @@ pub(super) struct Tried {
     /// Where it has been made already.
     pub refinement: Option<Refinement>,
     pub cost_s: f64,
+    /// By how much more than the likeliest roll was held; none where not more.
+    pub roll_strength: Option<f64>,
 }
 
 /// An entrant's refinement by some settings.
@@ -95,7 +97,8 @@ pub(super) fn weighed_on(
     let weighed = weigh((&request(search, entrant, &settings), known), extent, progress);
     let weighed = on_rung(rung, weighed)?;
     let cost_s = begun.elapsed().as_secs_f64();
-    Ok(Tried { entrant, rung, weighed, refinement: None, cost_s })
+    let roll_strength = settings.roll_strength;
+    Ok(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength })
 }
 
 /// The place of what is taken of all that was tried.

@@ -5,9 +5,11 @@ pub mod cma_es;
 mod metric;
 mod moments;
 mod path;
+mod scatter;
 mod whitened;
 
 pub use metric::Metric;
-pub use moments::Moments;
+pub use moments::{Moments, merged};
 pub use path::{RidgeChoice, RidgePath, Validation};
+pub use scatter::Scatter;
 pub use whitened::Whitened;

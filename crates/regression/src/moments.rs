@@ -267,6 +267,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + tail
 }
 
+/// The statistics of some trials together, one set per regression; `None` where none is kept.
+pub fn merged(moments: &[Vec<Moments>], keep: impl Fn(usize) -> bool) -> Option<Vec<Moments>> {
+    let kept: Vec<&Vec<Moments>> =
+        moments.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, m)| m).collect();
+    let blocks = kept.first()?.len();
+    (0..blocks).map(|block| Moments::sum(kept.iter().map(|m| &m[block]))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -41,11 +41,18 @@ pub fn with_roll(
         parameters: blank_of(law, target, carried, approach).ok()?.parameters,
         ..carried.clone()
     };
-    let roll = STIFFNESS_AND_DAMPING.into_iter().zip(hydrostatics(&rolling, law)?);
-    let quantities =
-        roll.map(|(name, value)| (name.to_owned(), Quantity::new(value, HYDROSTATICS)));
-    rolling.coefficients.extend(quantities);
+    let roll = hydrostatics(&rolling, law)?;
+    rolling.coefficients.extend(roll);
     Some(rolling)
+}
+
+/// Coefficients of roll by the stiffness that a ship's metacentric height gives and a usual damping.
+/// `None` where its particulars do not give the stiffness, or the law does not spell the two.
+pub fn hydrostatics(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]> {
+    let [stiffness, damping] = stiffness_and_damping(model, law)?;
+    let named = |(name, value): (&str, f64)| (name.to_owned(), Quantity::new(value, HYDROSTATICS));
+    let [by_heel, by_rate] = STIFFNESS_AND_DAMPING;
+    Some([(by_heel, stiffness), (by_rate, damping)].map(named))
 }
 
 /// Whether every coefficient of a model means the same by another law.
@@ -62,7 +69,7 @@ fn says_the_same(own: &Law, law: &Law, model: &Model) -> bool {
 
 /// [`STIFFNESS_AND_DAMPING`] by `0.5 rho L^3 U^2`: a metacentric height `GM` of a volume `V` rights
 /// by `rho g V GM phi`.
-fn hydrostatics(model: &Model, law: &Law) -> Option<[f64; 2]> {
+fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
     let is_open = law.axes.get(&Axis::K)?.open;
     let is_spelled = STIFFNESS_AND_DAMPING.iter().all(|name| law.term(name).is_ok());
     let of_ship = |name: &str| particulars::value(&model.particulars, name);

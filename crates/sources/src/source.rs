@@ -1,9 +1,11 @@
 //! Choosing the source of a refinement: `auto`, a ship, or one of its models.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 use sistership_model::categories::{group_of, known_categories};
+use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{FileError, Model, Vessel, Zoo};
 
@@ -133,7 +135,20 @@ fn trend_on(
     let approach = approach_of(trials);
     let model = transfer(source, law, target, approach);
     let lengths_s = target.particular("lpp_m").zip(approach).map(|(l, a)| 20.0 * l / a.speed_m_s);
-    trend(&model, law, trials, lengths_s.unwrap_or(200.0))
+    let law = at_own_revolutions(law, &model, trials);
+    trend(&model, &law, trials, lengths_s.unwrap_or(200.0))
+}
+
+/// A source's law, where revolutions that a trial does not record are those of its own approach.
+fn at_own_revolutions<'a>(law: &'a Law, source: &Model, trials: &[&Trial]) -> Cow<'a, Law> {
+    let is_silent = trials.iter().any(|trial| trial.channel(Channel::N).is_none());
+    let mut law = Cow::Borrowed(law);
+    if is_silent && law.inputs.contains_key(Channel::N.name()) {
+        let inputs = &mut law.to_mut().inputs;
+        let own = inputs.get_mut(Channel::N.name()).into_iter();
+        own.for_each(|input| input.default = input.default.or(source.revolutions_rps));
+    }
+    law
 }
 
 /// The best eligible source, or every reason why there is none.
@@ -172,4 +187,23 @@ fn unknown_category(category: &str) -> String {
     }
     let known = known_categories().join(", ");
     format!("; the category `{category}` is compared with itself only, known are {known}")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn revolutions_that_no_trial_records_are_the_source_s_own() {
+        let zoo = Zoo::embedded().unwrap();
+        let source = zoo.model("kcs").unwrap();
+        let law = zoo.law(&source.law).unwrap();
+        let mut trial = Trial::default();
+        let at = |trial: &Trial| at_own_revolutions(law, &source, &[trial]).inputs["n"].default;
+        assert_eq!(at(&trial), source.revolutions_rps);
+        assert!(source.revolutions_rps.is_some());
+        trial.channels.insert(Channel::N, vec![1.0]);
+        assert_eq!(at(&trial), None, "as recorded");
+    }
 }

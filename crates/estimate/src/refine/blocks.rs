@@ -9,7 +9,7 @@
 
 use std::borrow::Cow;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use sistership_dynamics::equations::{EquationsOfMotion, Lowering};
 use sistership_dynamics::tape::Tape;
 use sistership_model::Model;
@@ -188,6 +188,13 @@ impl Block {
         earned.unwrap_or_else(|| Metric::of_regressors(moments, &self.shrinkage))
     }
 
+    /// The square by which each regressor moves, over an envelope or the trials where that is more,
+    /// with its shrinkage.
+    pub(super) fn sizes(&self, envelope: &Moments, trials: &Moments) -> DVector<f64> {
+        let moves = |j: usize| envelope.variance(j).max(trials.variance(j));
+        DVector::from_fn(self.regressors(), |j, _| self.shrinkage[j] * moves(j))
+    }
+
     /// Whether the force of one axis of a coupled group is regressed, and not accelerations.
     pub(crate) fn is_force(&self) -> bool {
         self.axes.len() < self.columns.len()
@@ -209,7 +216,7 @@ fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     }
     let ratios = |at: f64| {
         let values = tape.values(&(0..inputs).map(|i| at + 0.1 * i as f64).collect::<Vec<f64>>());
-        nalgebra::DVector::from_iterator(
+        DVector::from_iterator(
             q,
             block.scales.iter().map(|&scale| values[scale] / values[block.scales[0]]),
         )

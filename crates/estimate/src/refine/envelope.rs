@@ -13,11 +13,10 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::{Block, Blocks};
-use super::merged::merged;
 use super::outcome::RefineError;
 use super::rows::{Table, known_tables};
 use super::thresholds::SOURCE;
-use sistership_regression::Moments;
+use sistership_regression::{Moments, merged};
 use sistership_sources::transfer::ready;
 
 /// What a model says at the states of an envelope: by group, the accelerations of each axis in the
@@ -35,6 +34,8 @@ pub(super) struct OperatingEnvelope {
     pub roll: bool,
     /// Revolutions at which it approaches, 1/s; 0 where it states none.
     pub n_rps: f64,
+    /// Whether its propeller turns at these because a trial records none.
+    pub at_own_revolutions: bool,
     /// How it was moved to what another model says, for people.
     pub mixed: Option<String>,
     /// Samples that go together.
@@ -140,6 +141,8 @@ impl OperatingEnvelope {
             law: law.name.clone(),
             roll: law.has_roll(),
             n_rps: source.revolutions_rps.unwrap_or(0.0),
+            at_own_revolutions: asked.propeller
+                && trials.iter().any(|trial| trial.channel(Channel::N).is_none()),
             mixed: None,
             groups,
         })

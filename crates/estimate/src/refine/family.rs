@@ -58,6 +58,19 @@ impl Family {
     }
 }
 
+/// Every term of third order by which a law says what a ship does that stays upright.
+pub(super) fn terms_without_heel(law: &Law) -> Vec<String> {
+    let extra = law.extra_factors();
+    let is_upright = |name: &String| {
+        let heels = |symbol: &str| symbol == "phi" || LINEAR.contains(&symbol);
+        CoefficientName::parse(name, &extra).is_ok_and(|parsed| {
+            let has_heel = parsed.factors.iter().any(|factor| heels(&factor.symbol));
+            parsed.axis != Axis::K && !has_heel
+        })
+    };
+    third_order(law).into_iter().filter(is_upright).collect()
+}
+
 fn added() -> Quantity {
     Quantity::new(0.0, "term added")
 }
@@ -135,6 +148,14 @@ mod tests {
             assert!(third.coefficients.contains_key(name), "{name}");
         }
         assert!(third.coefficients.iter().all(|(name, q)| q.value == model.coefficient(name)));
+    }
+
+    #[test]
+    fn terms_without_heel_are_those_of_the_law_without_roll() {
+        let zoo = Zoo::embedded().unwrap();
+        let [plane, rolling] = ["abkowitz", "abkowitz-roll"].map(|name| zoo.law(name).unwrap());
+        assert_eq!(terms_without_heel(rolling), third_order(plane));
+        assert!(third_order(rolling).len() > third_order(plane).len());
     }
 
     #[test]

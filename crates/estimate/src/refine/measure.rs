@@ -2,19 +2,18 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 
-use super::across::SourceRegression;
-use super::blocks::{Block, Blocks};
+use super::across::{PlaneSource, SourceRegression};
+use super::blocks::Blocks;
 use super::envelope::OperatingEnvelope;
 use super::member_rates::MemberRates;
-use super::merged::merged;
 use super::outcome::RefineError;
 use super::population::PopulationRegression;
-use sistership_regression::Moments;
+use sistership_regression::{Moments, merged};
 
 /// Where the sizes of the regressors come from.
 pub(super) enum PriorMeasure {
@@ -29,6 +28,8 @@ pub(super) enum PriorMeasure {
     Mixture(OperatingEnvelope),
     /// What a source of another law says over the envelope, jointly.
     Source(Arc<OperatingEnvelope>),
+    /// The same of one that does not roll, where the law does.
+    Plane(PlaneSource),
     /// What a population says at the states of a source's, in its mean and scatter.
     Population(Arc<OperatingEnvelope>, Arc<Vec<MemberRates>>),
 }
@@ -42,7 +43,7 @@ impl PriorMeasure {
 
     /// Whether the prior is what a source of another law says, or a population.
     pub fn is_source(&self) -> bool {
-        matches!(self, Self::Source(_) | Self::Population(..))
+        matches!(self, Self::Source(_) | Self::Plane(_) | Self::Population(..))
     }
 
     /// Gives a model's regressions their measure, and the model what a source of another law says.
@@ -66,6 +67,7 @@ impl PriorMeasure {
                 imitation.fill(blocks, model);
                 imitation.hold(blocks, trials);
             }
+            Self::Plane(source) => source.hold(blocks, model, trials)?,
             Self::Population(envelope, members) => {
                 let states = SourceRegression::new(envelope, blocks, model)?;
                 states.fill(blocks, model);
@@ -99,17 +101,18 @@ impl PriorMeasure {
             Self::Source(envelope) => {
                 let blocks = Blocks::new(model, law).ok()?;
                 let regression = SourceRegression::new(envelope, &blocks, model).ok()?;
-                let words = regression.words(&blocks, &law.name);
-                Some(
-                    [words]
-                        .into_iter()
-                        .chain(envelope.mixed.clone())
-                        .collect::<Vec<_>>()
-                        .join("; "),
-                )
+                Some(joined(regression.words(&blocks, &law.name), envelope.mixed.clone()))
+            }
+            Self::Plane(source) => {
+                let blocks = Blocks::new(model, law).ok()?;
+                Some(joined(source.words(&blocks, model, law)?, source.mixed()))
             }
         }
     }
+}
+
+fn joined(words: String, others: Option<String>) -> String {
+    [words].into_iter().chain(others).collect::<Vec<_>>().join("; ")
 }
 
 /// Measures each coefficient by its regressor's deviation over the envelope, or over the trials
@@ -117,11 +120,6 @@ impl PriorMeasure {
 fn sized(blocks: &mut Blocks, envelope: &[Vec<Moments>], trials: &[Moments]) {
     let Some(all) = merged(envelope, |_| true) else { return };
     for ((block, envelope), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
-        block.precision = Some(DMatrix::from_diagonal(&sizes(block, envelope, trials)));
+        block.precision = Some(DMatrix::from_diagonal(&block.sizes(envelope, trials)));
     }
-}
-
-fn sizes(block: &Block, envelope: &Moments, trials: &Moments) -> DVector<f64> {
-    let size = |j: usize, _| block.shrinkage[j] * envelope.variance(j).max(trials.variance(j));
-    DVector::from_fn(block.regressors(), size)
 }

@@ -18,7 +18,6 @@ mod helm;
 mod manoeuvres;
 mod measure;
 mod member_rates;
-mod merged;
 mod mixture;
 mod mixture_position;
 mod outcome;

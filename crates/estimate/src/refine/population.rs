@@ -12,13 +12,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
-use sistership_regression::{Metric, Moments, RidgeChoice, RidgePath};
+use sistership_regression::{Metric, Moments, RidgeChoice, RidgePath, Scatter};
 use sistership_sources::transfer::{Approach, transfer};
 
 use super::blocks::{Block, Blocks};
@@ -109,8 +109,9 @@ impl<'a> PopulationRegression<'a> {
             let Some(metric) = block.precision.as_ref().and_then(Metric::of_precision) else {
                 continue;
             };
-            let scatter = Scatter::new(&self.coordinates(block, &metric, moments));
-            block.precision = scatter.precision(&metric);
+            let members = self.coordinates(block, &metric, moments);
+            let scatter = Scatter::new(&members, POPULATION.rounds);
+            block.precision = scatter.precision(&metric, POPULATION.outside);
             fill(block, &scatter.means, &metric, (model, self.members.len()));
         }
         Ok(())
@@ -136,65 +137,6 @@ impl<'a> PopulationRegression<'a> {
     }
 }
 
-/// Mean and scatter of members.
-struct Scatter {
-    /// By target.
-    means: Vec<DVector<f64>>,
-    /// Of all targets, each by its own size; of trace 1.
-    matrix: DMatrix<f64>,
-}
-
-impl Scatter {
-    /// Of coordinates by target and member.
-    fn new(coordinates: &[Vec<DVector<f64>>]) -> Self {
-        let size = coordinates.first().and_then(|all| all.first()).map_or(0, DVector::len);
-        let mut matrix = DMatrix::zeros(size, size);
-        let mut means = Vec::new();
-        for members in coordinates {
-            let (mean, weights) = weighted_mean(members);
-            let away: Vec<DVector<f64>> =
-                members.iter().zip(&weights).map(|(z, w)| (z - &mean) * *w).collect();
-            let sum: f64 = away.iter().map(DVector::norm_squared).sum();
-            let share = 1.0 / (sum * coordinates.len() as f64).max(f64::MIN_POSITIVE);
-            away.iter().for_each(|away| matrix.ger(share, away, away, 1.0));
-            means.push(mean);
-        }
-        Self { means, matrix }
-    }
-
-    /// The precision of coefficients, of which a metric has the coordinates; none where it is not
-    /// positive definite.
-    fn precision(&self, metric: &Metric) -> Option<DMatrix<f64>> {
-        let size = metric.size();
-        let moving = (0..size).filter(|k| !metric.is_still(*k)).count() as f64;
-        let outside = POPULATION.outside;
-        let mut covariance = &self.matrix * ((1.0 - outside) * moving);
-        (0..size).for_each(|k| covariance[(k, k)] += outside);
-        let precision =
-            metric.root().transpose() * covariance.cholesky()?.inverse() * metric.root();
-        Some((&precision + precision.transpose()) * 0.5)
-    }
-}
-
-/// The mean of members, and what each counts: one that is further from it than the median counts
-/// as if it were that far (Huber 1981, Robust Statistics, section 8.4: a monotone M-estimate).
-fn weighted_mean(members: &[DVector<f64>]) -> (DVector<f64>, Vec<f64>) {
-    let mut weights = vec![1.0; members.len()];
-    let mean = |weights: &[f64]| {
-        let sum = members.iter().zip(weights).map(|(z, w)| z * *w).sum::<DVector<f64>>();
-        sum / weights.iter().sum::<f64>()
-    };
-    for _ in 0..POPULATION.rounds {
-        let centre = mean(&weights);
-        let far: Vec<f64> = members.iter().map(|z| (z - &centre).norm()).collect();
-        let mut sorted = far.clone();
-        sorted.sort_by(f64::total_cmp);
-        let middle = sorted[sorted.len() / 2];
-        weights = far.iter().map(|far| if *far > middle { middle / far } else { 1.0 }).collect();
-    }
-    (mean(&weights), weights)
-}
-
 /// Sets the coefficients of a regression to means by target.
 fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model, usize)) {
     let (model, count) = of;
@@ -214,35 +156,6 @@ fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model,
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-
-    fn members() -> Vec<DVector<f64>> {
-        let along = [-1.2, -0.7, -0.1, 0.3, 0.6, 1.1];
-        along.iter().map(|t| DVector::from_vec(vec![1.0 + 3.0 * t, 2.0 - t, 5.0])).collect()
-    }
-
-    #[test]
-    fn one_ship_that_is_nothing_like_the_others_hardly_moves_the_mean() {
-        let (before, _) = weighted_mean(&members());
-        let far = DVector::from_vec(vec![400.0, -900.0, 70.0]);
-        let (after, weights) = weighted_mean(&[members(), vec![far]].concat());
-        assert!((&after - &before).norm() < 1.5, "{after}");
-        assert!(weights[6] < 0.01);
-    }
-
-    #[test]
-    fn what_ships_differ_by_is_held_least() {
-        let metric = Metric::of_precision(&DMatrix::identity(3, 3)).unwrap();
-        let scatter = Scatter::new(&[members()]);
-        assert!((scatter.matrix.trace() - 1.0).abs() < 1e-12);
-        let precision = scatter.precision(&metric).unwrap();
-        let held = |along: [f64; 3]| {
-            let along = DVector::from_row_slice(&along).normalize();
-            along.dot(&(&precision * &along))
-        };
-        let (shown, never) = (held([3.0, -1.0, 0.0]), held([0.0, 0.0, 1.0]));
-        assert!((never * POPULATION.outside - 1.0).abs() < 1e-9, "{never}");
-        assert!(shown < 0.4 && shown > 0.3, "a third of what all alike would be: {shown}");
-    }
 
     #[test]
     fn a_law_with_roll_or_of_the_source_itself_is_refused() {

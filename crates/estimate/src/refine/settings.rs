@@ -219,10 +219,19 @@ pub struct Settings {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_terms: bool,
     /// A source without roll takes the stiffness in roll from the ship's metacentric height, and a
-    /// usual damping, where the law that is fitted rolls and says the same in the plane. The default
-    /// search sets it.
+    /// usual damping, where the law that is fitted rolls and says the same in the plane. Every new
+    /// order has it, and the default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub hydrostatic_roll: bool,
+    /// A source of another law that does not roll says sway and yaw, too, of a ship that stays
+    /// upright, where the law that is fitted couples them with roll, and roll begins with
+    /// hydrostatics. Every new order has it, and the default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub plane_source: bool,
+    /// By how much stronger the prior of roll is than the likeliest by the trials, dimensionless.
+    /// The default search sets it where a model rolls over.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roll_strength: Option<f64>,
     /// An estimate that stands in the source's place makes the approach speed at the revolutions that
     /// the trials record, not at those that its own propeller needs. Every new order of a `mixture`
     /// has it, and the default search sets it.
@@ -298,6 +307,8 @@ impl Default for Settings {
             steering_above_noise: false,
             recorded_terms: false,
             hydrostatic_roll: false,
+            plane_source: false,
+            roll_strength: None,
             recorded_revolutions: false,
             posterior_by_folds: false,
             folds_pooled: false,
@@ -319,6 +330,8 @@ impl Settings {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
         self.recorded_revolutions |= self.prior == Prior::Mixture;
+        self.hydrostatic_roll = true;
+        self.plane_source = true;
         self.expected_rates = true;
         self.reading_interval = true;
         self

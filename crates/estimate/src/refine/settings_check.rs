@@ -36,6 +36,9 @@ impl Settings {
         if !self.ranges.iter().all(|range| (0.0..=1.0).contains(&range.alpha_max)) {
             return Err(("ranges", "alpha_max must be from 0 to 1"));
         }
+        if self.roll_strength.is_some_and(|roll| !is_positive(roll)) {
+            return Err(("roll_strength", "must be above 0"));
+        }
         if self.strengths.len() > 100 || !self.strengths.iter().all(|one| is_positive(*one)) {
             return Err(("strengths", "give at most 100, each above 0"));
         }

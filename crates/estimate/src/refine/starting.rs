@@ -6,17 +6,17 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 
-use super::across::{self, SourceEnvelopes, SourceRegression};
+use super::across::{self, PlaneSource, SourceEnvelopes, SourceRegression};
 use super::blocks::Blocks;
 use super::envelope::OperatingEnvelope;
 use super::measure::PriorMeasure;
-use super::merged::merged;
 use super::mixture;
 use super::outcome::RefineError;
 use super::population;
 use super::request::Request;
 use super::settings::Prior;
 use super::unrecorded;
+use sistership_regression::merged;
 use sistership_sources::rolling::with_roll;
 use sistership_sources::transfer::Approach;
 
@@ -79,6 +79,10 @@ impl Starting<'_> {
         }
         if settings.prior == Prior::Population {
             return self.held_by_population(model, envelope);
+        }
+        if settings.plane_source && law.has_roll() && !envelope.roll {
+            let source = PlaneSource::begin(envelope, &mut model, law, self.whole)?;
+            return Ok((model, PriorMeasure::Plane(source)));
         }
         let blocks = Blocks::new(&model, law)?;
         SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);

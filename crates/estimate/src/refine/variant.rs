@@ -12,7 +12,6 @@ use super::blocks::Blocks;
 use super::equations::Equations;
 use super::errors::CoefficientErrors;
 use super::family::Family;
-use super::merged::merged;
 use super::outcome::RefineError;
 use super::parts::slice;
 use super::posterior::{SequencedRows, errors, rows};
@@ -22,7 +21,7 @@ use super::rows::Table;
 use super::settings::Range;
 use super::thresholds::SELECTION;
 use sistership_constraints::{CoefficientLimits, LimitError};
-use sistership_regression::{Moments, RidgeChoice};
+use sistership_regression::{Moments, RidgeChoice, merged};
 
 /// One family of terms.
 pub(super) struct Variant {
@@ -143,8 +142,8 @@ impl Variant {
     /// The same strength for every acceleration but roll's: of roll a source of the plane says
     /// nothing, so that its strength is the one with the greatest marginal likelihood on all
     /// training samples. Windows left out would do only where every fold keeps something that
-    /// excites roll.
-    pub fn common_choices(&self, lambda: f64) -> Result<Choices, RefineError> {
+    /// excites roll. `roll` is by how much stronger than that.
+    pub fn common_choices(&self, lambda: f64, roll: f64) -> Result<Choices, RefineError> {
         let blocks = &self.blocks.blocks;
         let [lambda_min, lambda_max] = SELECTION.roll_strengths;
         let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
@@ -160,7 +159,7 @@ impl Variant {
             Choices::new()
         };
         let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
-            Axis::K => tuned[b][target],
+            Axis::K => RidgeChoice { lambda: roll * tuned[b][target].lambda, alpha: 0.0 },
             _ => RidgeChoice { lambda, alpha: 0.0 },
         };
         let of_block =

@@ -5,6 +5,7 @@
 //! used ([`OperatingEnvelope`]): mean and covariance of that regression are the prior
 //! ([`SourceRegression`]). docs/decisions/0015 has the reasons.
 
+mod plane_source;
 mod source_envelopes;
 mod source_regression;
 
@@ -16,6 +17,7 @@ use sistership_model::{Model, Vessel};
 
 use super::envelope::OperatingEnvelope;
 use super::outcome::RefineError;
+pub(super) use plane_source::PlaneSource;
 use sistership_sources::transfer::{Approach, blank_of, transfer};
 pub use source_envelopes::SourceEnvelopes;
 pub(super) use source_regression::SourceRegression;
@@ -63,20 +65,19 @@ mod tests {
 
     /// The Mariner, which does not roll, as the source of a container ship that does.
     fn by_the_mariner(hydrostatic_roll: bool) -> Refinement {
+        by("mariner", Settings { hydrostatic_roll, ..Settings::default() })
+    }
+
+    fn by(source: &str, settings: Settings) -> Refinement {
         let zoo = Zoo::embedded().unwrap();
-        let [truth, source] = ["sr108", "mariner"].map(|name| zoo.model(name).unwrap());
+        let [truth, source] = ["sr108", source].map(|name| zoo.model(name).unwrap());
         let law = |name: &str| zoo.law(name).unwrap();
         let trials = trials(&truth, law(&truth.law), 0.001);
-        let settings = Settings {
-            method: Method::Weak,
-            strengths: vec![1e-3, 1e-4],
-            hydrostatic_roll,
-            ..Settings::default()
-        };
+        let settings = Settings { method: Method::Weak, strengths: vec![1e-3, 1e-4], ..settings };
         let request = Request {
             target: zoo.vessel("sr108").unwrap(),
             source: &source,
-            source_law: Some(law("abkowitz")),
+            source_law: Some(law(&source.law)),
             law: law("abkowitz-roll"),
             trials: &trials.iter().collect::<Vec<_>>(),
             population: &[],
@@ -90,6 +91,36 @@ mod tests {
         let made = by_the_mariner(false);
         assert!(made.model.coefficients.contains_key("Y_phi"), "third order");
         assert!(made.transferred.coefficients.get("K_heel").is_none_or(|heel| heel.value == 0.0));
+    }
+
+    #[test]
+    fn a_source_of_the_plane_turns_the_ship_and_hydrostatics_roll_it() {
+        let alone = by("kcs", Settings::default()).transferred;
+        assert!(alone.coefficients.is_empty(), "surge, sway and yaw are not asked");
+        let made = by("kcs", Settings { plane_source: true, ..Settings::default() });
+        let begun = &made.transferred;
+        assert!(begun.coefficient("Y_v") < 0.0 && begun.coefficient("N_delta") != 0.0);
+        assert!(begun.coefficient("K_heel") < 0.0 && !begun.coefficients.contains_key("K_v"));
+        assert!(made.remarks.iter().any(|remark| remark.contains("its own revolutions")));
+        let of = |errors: &std::collections::BTreeMap<_, f64>| errors["psi"];
+        assert!(of(&made.held_out.refined) < 0.2 * of(&made.held_out.source));
+        assert!(of(&made.held_out.source) < 1.0, "it turns as ships do, rad");
+    }
+
+    #[test]
+    fn what_the_plane_does_not_say_is_held_where_it_is() {
+        let weak = Settings { plane_source: true, ..Settings::default() };
+        let strong = Settings { roll_strength: Some(1e12), ..weak.clone() };
+        let moved = |settings| {
+            let made = by("kcs", settings);
+            let rolls = made.model.coefficients.keys().filter(|name| name.starts_with("K_"));
+            let squares = rolls.map(|name| {
+                (made.model.coefficient(name) - made.transferred.coefficient(name)).powi(2)
+            });
+            squares.sum::<f64>()
+        };
+        let (free, held) = (moved(weak), moved(strong));
+        assert!(held < 1e-3 * free, "{held} of {free}");
     }
 
     #[test]

@@ -8,11 +8,10 @@ use sistership_model::quantity::Quantity;
 
 use super::super::blocks::{Block, Blocks};
 use super::super::envelope::OperatingEnvelope;
-use super::super::merged::merged;
 use super::super::outcome::RefineError;
 use super::super::ridge::{Choices, Fold, fit};
 use super::super::thresholds::SOURCE;
-use sistership_regression::{Moments, RidgeChoice};
+use sistership_regression::{Moments, RidgeChoice, merged};
 
 /// The statistics of what a source says, as a law's regressions see it.
 pub(in super::super) struct SourceRegression<'a> {
@@ -22,6 +21,9 @@ pub(in super::super) struct SourceRegression<'a> {
     /// Strength of the ridge about zero.
     ridge: f64,
     zero: Model,
+    /// Whether a source that does not roll is asked for sway and yaw where the law couples them
+    /// with roll.
+    plane: bool,
 }
 
 impl<'a> SourceRegression<'a> {
@@ -34,10 +36,33 @@ impl<'a> SourceRegression<'a> {
         blocks: &Blocks,
         model: &Model,
     ) -> Result<Self, RefineError> {
+        Self::made(envelope, blocks, model, false)
+    }
+
+    /// The same, where a source that does not roll says sway and yaw, of a ship that stays upright,
+    /// though the law couples them with roll.
+    ///
+    /// # Errors
+    /// As [`SourceRegression::new`].
+    pub fn of_plane(
+        envelope: &'a OperatingEnvelope,
+        blocks: &Blocks,
+        model: &Model,
+    ) -> Result<Self, RefineError> {
+        Self::made(envelope, blocks, model, true)
+    }
+
+    fn made(
+        envelope: &'a OperatingEnvelope,
+        blocks: &Blocks,
+        model: &Model,
+        plane: bool,
+    ) -> Result<Self, RefineError> {
         let moments = envelope.moments(blocks)?;
         let mut zero = model.clone();
         zero.coefficients.values_mut().for_each(|quantity| quantity.value = 0.0);
-        let mut imitation = Self { envelope, moments, ridge: SOURCE.ridges[0], zero };
+        let ridge = SOURCE.ridges[0];
+        let mut imitation = Self { envelope, moments, ridge, zero, plane };
         imitation.ridge = imitation.best_ridge(blocks);
         Ok(imitation)
     }
@@ -52,7 +77,7 @@ impl<'a> SourceRegression<'a> {
         blocks: &Blocks,
     ) -> Result<SourceRegression<'b>, RefineError> {
         let (moments, zero) = (envelope.moments(blocks)?, self.zero.clone());
-        Ok(SourceRegression { envelope, moments, ridge: self.ridge, zero })
+        Ok(SourceRegression { envelope, moments, zero, ..*self })
     }
 
     /// The ridge by which groups left out are foretold best.
@@ -65,12 +90,12 @@ impl<'a> SourceRegression<'a> {
                 Some(Fold::new(blocks, &self.zero, &training, &left_out))
             })
             .collect();
-        let error = |ridge: f64| {
-            folds
-                .iter()
-                .map(|fold| fold.shares(ridge).iter().map(|(_, share)| share).sum::<f64>())
-                .sum::<f64>()
+        let is_said = |axis: &Axis| !self.plane || self.says(*axis);
+        let of_fold = |fold: &Fold<'_>, ridge: f64| -> f64 {
+            let shares = fold.shares(ridge).into_iter();
+            shares.filter(|(axis, _)| is_said(axis)).map(|(_, share)| share).sum()
         };
+        let error = |ridge: f64| folds.iter().map(|fold| of_fold(fold, ridge)).sum::<f64>();
         SOURCE
             .ridges
             .into_iter()
@@ -87,7 +112,9 @@ impl<'a> SourceRegression<'a> {
             .blocks
             .iter()
             .filter(|block| self.knows(block))
-            .flat_map(|block| block.names.iter().flatten());
+            .flat_map(|block| block.axes.iter().zip(&block.names))
+            .filter(|(axis, _)| self.says(**axis))
+            .flat_map(|(_, names)| names);
         for name in known {
             let Some(fitted) = fitted.coefficients.get(name) else { continue };
             let source = format!("regressed on {}", self.envelope.source);
@@ -120,19 +147,30 @@ impl<'a> SourceRegression<'a> {
         let shares = Fold::new(blocks, &self.zero, &all, &all).shares(self.ridge);
         let left = shares
             .iter()
+            .filter(|(axis, _)| self.says(*axis))
             .map(|(axis, share)| format!("{:.1} % ({axis})", 100.0 * share))
             .collect::<Vec<_>>()
             .join(", ");
         let (source, own) = (&self.envelope.source, &self.envelope.law);
+        let at = if self.envelope.at_own_revolutions {
+            ", at its own revolutions, for the trials record none,"
+        } else {
+            ""
+        };
         format!(
             "the source `{source}` is of law `{own}`: what it says in {samples} states of the \
-             trials and of its standard manoeuvres is the prior; law `{law}` leaves {left} of the \
-             mean square of those accelerations unsaid"
+             trials and of its standard manoeuvres{at} is the prior; law `{law}` leaves {left} of \
+             the mean square of those accelerations unsaid"
         )
     }
 
     fn knows(&self, block: &Block) -> bool {
-        self.envelope.roll || !block.axes.contains(&Axis::K)
+        let says = |axis: &Axis| self.says(*axis);
+        if self.plane { block.axes.iter().any(says) } else { block.axes.iter().all(says) }
+    }
+
+    fn says(&self, axis: Axis) -> bool {
+        self.envelope.roll || axis != Axis::K
     }
 
     fn choices(&self, blocks: &Blocks) -> Choices {

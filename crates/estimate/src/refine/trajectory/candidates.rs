@@ -8,7 +8,6 @@ use sistership_dynamics::sensitivity::SensitiveSystem;
 use sistership_model::Model;
 
 use super::super::candidate::{CandidateFit, best};
-use super::super::merged::merged;
 use super::super::outcome::RefineError;
 use super::super::problem::Problem;
 use super::super::progress::{Iterate, Progress, step};
@@ -21,7 +20,7 @@ use super::prior::WeakFormPrior;
 use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
 use super::solve::PenalisedEquations;
 use super::thresholds::TRAJECTORY;
-use sistership_regression::Moments;
+use sistership_regression::{Moments, merged};
 use sistership_sources::transfer::ready;
 
 /// What the trajectory form makes of one variant.

@@ -50,7 +50,7 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
 
 /// What the settings mean, in the order in which they are shown; one that is not listed comes after
 /// these.
-const MEANINGS: [(&str, &str); 10] = [
+const MEANINGS: [(&str, &str); 12] = [
     ("method", "the estimator"),
     ("ranges", "tuning ranges, from the source outwards"),
     ("lambda_count", "values of λ tried in a range"),
@@ -69,6 +69,11 @@ const MEANINGS: [(&str, &str); 10] = [
         "hydrostatic_roll",
         "a source without roll begins with the stiffness of the metacentric height",
     ),
+    (
+        "plane_source",
+        "a source of another law that does not roll says sway and yaw of a ship that stays upright",
+    ),
+    ("roll_strength", "how much stronger than the likeliest the prior of roll is"),
     ("held_out", "trials kept out of fit and choice altogether"),
 ];
 
