@@ -27,8 +27,9 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     let line_of = |field: &str| {
         text.lines().position(|line| line.trim_start().starts_with(field)).map(|index| index + 1)
     };
-    settings.check().map_err(|(field, message)| refuse(line_of(&field), field, message))?;
-    Ok(settings)
+    let faults = settings.check().err().unwrap_or_default().into_iter();
+    let refused = faults.map(|of| refuse(line_of(&of.field), of.field, of.message));
+    FileError::of_all(refused).map_or(Ok(settings), |refused| Err(refused.into()))
 }
 
 /// The trials to be kept out by their names: each may be given as the trial is called or as its
@@ -72,6 +73,8 @@ mod tests {
     fn settings_are_read_or_refused_by_line() {
         assert_eq!(message("folds: 3\n"), "3");
         assert!(message("folds: 3\nlambda_count: 1\n").contains("s.yaml:2: lambda_count: must be"));
+        let both = message("window_s: -1\nfolds: 1\n");
+        assert!(both.contains("s.yaml:2: folds") && both.contains("s.yaml:1: window_s"), "{both}");
         assert!(message("lambda: 1\n").contains("unknown field `lambda`"));
     }
 

@@ -23,6 +23,15 @@ use sistership_sources::transfer::ready;
 /// order of [`Axis`].
 pub(super) type Rates = Vec<[Vec<f64>; 4]>;
 
+/// What a ship of a population says there.
+#[derive(Debug)]
+pub(super) struct MemberRates {
+    /// Its model's name.
+    pub name: String,
+    /// Its accelerations.
+    pub rates: Rates,
+}
+
 /// What a source says where a model will be used.
 #[derive(Debug, Clone)]
 pub(super) struct OperatingEnvelope {

@@ -9,8 +9,7 @@ use sistership_model::trial::Trial;
 
 use super::across::{PlaneSource, SourceRegression};
 use super::blocks::Blocks;
-use super::envelope::OperatingEnvelope;
-use super::member_rates::MemberRates;
+use super::envelope::{MemberRates, OperatingEnvelope};
 use super::outcome::RefineError;
 use super::population::PopulationRegression;
 use sistership_regression::{Moments, merged};
@@ -101,18 +100,14 @@ impl PriorMeasure {
             Self::Source(envelope) => {
                 let blocks = Blocks::new(model, law).ok()?;
                 let regression = SourceRegression::new(envelope, &blocks, model).ok()?;
-                Some(joined(regression.words(&blocks, &law.name), envelope.mixed.clone()))
+                Some(regression.words(&blocks, &law.name))
             }
             Self::Plane(source) => {
                 let blocks = Blocks::new(model, law).ok()?;
-                Some(joined(source.words(&blocks, model, law)?, source.mixed()))
+                source.words(&blocks, model, law)
             }
         }
     }
-}
-
-fn joined(words: String, others: Option<String>) -> String {
-    [words].into_iter().chain(others).collect::<Vec<_>>().join("; ")
 }
 
 /// Measures each coefficient by its regressor's deviation over the envelope, or over the trials

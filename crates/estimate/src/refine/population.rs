@@ -22,8 +22,7 @@ use sistership_regression::{Metric, Moments, RidgeChoice, RidgePath, Scatter};
 use sistership_sources::transfer::{Approach, transfer};
 
 use super::blocks::{Block, Blocks};
-use super::envelope::{OperatingEnvelope, Rates};
-use super::member_rates::MemberRates;
+use super::envelope::{MemberRates, OperatingEnvelope, Rates};
 use super::outcome::RefineError;
 use super::thresholds::POPULATION;
 

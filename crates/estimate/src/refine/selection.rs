@@ -20,6 +20,7 @@ use super::replayed_trials::ReplayedTrials;
 use super::request::Request;
 use super::ridge_candidates::source_candidate;
 use super::settings::{Prior, Settings};
+use super::settings_check::refused;
 use super::starting::Starting;
 use super::thresholds::SELECTION;
 use super::variant::{Variant, variants};
@@ -112,7 +113,7 @@ fn with_candidates<T>(
         Progress<'_>,
     ) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
-    request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
+    request.settings.check().map_err(refused)?;
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);

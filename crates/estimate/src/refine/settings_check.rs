@@ -1,78 +1,78 @@
 //! Whether settings can be used at all.
 
 use super::cma_es::CmaEs;
+use super::outcome::RefineError;
 use super::settings::{Prior, Range, Settings};
+
+/// A setting that cannot be used.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SettingFault {
+    /// The field.
+    pub field: String,
+    /// What it may be.
+    pub message: String,
+}
 
 impl Settings {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// Names the field and what it may be.
-    pub fn check(&self) -> Result<(), (String, String)> {
-        let named = |(field, message): (&str, &str)| (field.to_owned(), message.to_owned());
-        self.check_ranges().map_err(named)?;
-        self.check_positions().map_err(|message| named(("mixture_positions", message)))?;
-        self.check_counts().map_err(named)?;
-        self.check_times().map_err(named)?;
-        let of = |field: &str, message: String| (field.to_owned(), message);
+    /// Every field that cannot be used, and what it may be.
+    pub fn check(&self) -> Result<(), Vec<SettingFault>> {
+        let fault =
+            |field: &str, message: String| SettingFault { field: field.to_owned(), message };
+        let rules = [self.choices(), self.counts(), self.times()].concat();
+        let broken = rules.into_iter().filter(|(.., is_kept)| !is_kept);
         let cma_es = self.cma_es.as_ref().map_or(Ok(()), CmaEs::check);
-        cma_es.map_err(|error| of("cma_es", error.to_string()))?;
-        self.constraints.check().map_err(|error| of("constraints", error.to_string()))?;
-        self.bands.check().map_err(|error| of("bands", error.to_string()))
+        let parts = [
+            ("cma_es", cma_es.map_err(|error| error.to_string())),
+            ("constraints", self.constraints.check().map_err(|error| error.to_string())),
+            ("bands", self.bands.check().map_err(|error| error.to_string())),
+        ];
+        let of_parts =
+            parts.into_iter().filter_map(|(field, part)| Some(fault(field, part.err()?)));
+        let all: Vec<SettingFault> = broken
+            .map(|(field, message, _)| fault(field, message.to_owned()))
+            .chain(of_parts)
+            .collect();
+        if all.is_empty() { Ok(()) } else { Err(all) }
     }
 
-    fn check_ranges(&self) -> Result<(), Refused> {
-        if self.ranges.is_empty() || self.ranges.len() > 20 {
-            return Err(("ranges", "give 1 to 20 tuning ranges"));
-        }
+    fn choices(&self) -> Vec<Rule> {
         let is_ordered = |range: &Range| {
             range.lambda_min > 0.0
                 && range.lambda_min <= range.lambda_max
                 && range.lambda_max.is_finite()
         };
-        if !self.ranges.iter().all(is_ordered) {
-            return Err(("ranges", "lambda_min must be above 0 and not above lambda_max"));
-        }
-        if !self.ranges.iter().all(|range| (0.0..=1.0).contains(&range.alpha_max)) {
-            return Err(("ranges", "alpha_max must be from 0 to 1"));
-        }
-        if self.roll_strength.is_some_and(|roll| !is_positive(roll)) {
-            return Err(("roll_strength", "must be above 0"));
-        }
-        if self.strengths.len() > 100 || !self.strengths.iter().all(|one| is_positive(*one)) {
-            return Err(("strengths", "give at most 100, each above 0"));
-        }
-        Ok(())
+        let is_share = |share: &f64| (0.0..=1.0).contains(share);
+        let (ranges, positions) = (&self.ranges, &self.mixture_positions);
+        let strengths = self.strengths.len() <= 100 && self.strengths.iter().all(is_positive);
+        let places = positions.len() <= 20 && positions.iter().all(is_share);
+        let ordered = "lambda_min must be above 0 and not above lambda_max";
+        let pulled = ranges.iter().all(|range| is_share(&range.alpha_max));
+        let of_mixture = positions.is_empty() || self.prior == Prior::Mixture;
+        vec![
+            ("ranges", "give 1 to 20 tuning ranges", (1..=20).contains(&ranges.len())),
+            ("ranges", ordered, ranges.iter().all(is_ordered)),
+            ("ranges", "alpha_max must be from 0 to 1", pulled),
+            ("strengths", "give at most 100, each above 0", strengths),
+            ("mixture_positions", "give at most 20, each from 0 to 1", places),
+            ("mixture_positions", "are of the prior `mixture`", of_mixture),
+            ("roll_strength", "must be above 0", self.roll_strength.iter().all(is_positive)),
+        ]
     }
 
-    fn check_positions(&self) -> Result<(), &'static str> {
-        let positions = &self.mixture_positions;
-        if positions.len() > 20 || positions.iter().any(|at| !(0.0..=1.0).contains(at)) {
-            return Err("give at most 20, each from 0 to 1");
-        }
-        if !positions.is_empty() && self.prior != Prior::Mixture {
-            return Err("are of the prior `mixture`");
-        }
-        Ok(())
+    fn counts(&self) -> Vec<Rule> {
+        let kept = self.method.keeps_constraints() || self.constraints.is_empty();
+        vec![
+            ("lambda_count", "must be from 2 to 1000", (2..=1000).contains(&self.lambda_count)),
+            ("folds", "must be from 2 to 100", (2..=100).contains(&self.folds)),
+            ("calibration_samples", "must be at least 1", self.calibration_samples != Some(0)),
+            ("constraints", "are kept by the methods `published` and `weak` only", kept),
+        ]
     }
 
-    fn check_counts(&self) -> Result<(), Refused> {
-        if !(2..=1000).contains(&self.lambda_count) {
-            return Err(("lambda_count", "must be from 2 to 1000"));
-        }
-        if !(2..=100).contains(&self.folds) {
-            return Err(("folds", "must be from 2 to 100"));
-        }
-        if self.calibration_samples == Some(0) {
-            return Err(("calibration_samples", "must be at least 1"));
-        }
-        if !self.method.keeps_constraints() && !self.constraints.is_empty() {
-            return Err(("constraints", "are kept by the methods `published` and `weak` only"));
-        }
-        Ok(())
-    }
-
-    fn check_times(&self) -> Result<(), Refused> {
+    fn times(&self) -> Vec<Rule> {
         let times = [
             ("difference_s", self.difference_s),
             ("restart_s", self.restart_s),
@@ -84,14 +84,58 @@ impl Settings {
             ("residual_s", self.residual_s),
             ("step_s", self.step_s),
         ];
-        let refused = times.into_iter().find(|(_, time)| !time.is_none_or(is_positive));
-        refused.map_or(Ok(()), |(field, _)| Err((field, "must be above 0 s")))
+        let rule = |(field, time): (_, Option<f64>)| {
+            (field, "must be above 0 s", time.iter().all(is_positive))
+        };
+        times.into_iter().map(rule).collect()
     }
 }
 
-/// A field, and what it may be.
-type Refused = (&'static str, &'static str);
+/// Faults as one error, named by the first.
+pub(super) fn refused(faults: Vec<SettingFault>) -> RefineError {
+    let further =
+        faults.iter().skip(1).map(|fault| format!("; {}: {}", fault.field, fault.message));
+    let further: String = further.collect();
+    let SettingFault { field, message } = faults.into_iter().next().unwrap_or_default();
+    RefineError::Setting { field, message: message + &further }
+}
 
-fn is_positive(value: f64) -> bool {
-    value > 0.0 && value.is_finite()
+/// A field, what it may be, and whether it is.
+type Rule = (&'static str, &'static str, bool);
+
+fn is_positive(value: &f64) -> bool {
+    *value > 0.0 && value.is_finite()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_that_cannot_be_used_is_named() {
+        assert_eq!(Settings::default().check(), Ok(()));
+        let settings = Settings {
+            folds: 1,
+            strengths: vec![1.0, f64::NAN],
+            roll_strength: Some(-1.0),
+            window_s: Some(0.0),
+            hop_s: Some(f64::INFINITY),
+            mixture_positions: vec![2.0],
+            ..Settings::default()
+        };
+        let faults = settings.check().err().unwrap_or_default();
+        let fields: Vec<&str> = faults.iter().map(|fault| fault.field.as_str()).collect();
+        let expected = [
+            "strengths",
+            "mixture_positions",
+            "mixture_positions",
+            "roll_strength",
+            "folds",
+            "window_s",
+            "hop_s",
+        ];
+        assert_eq!(fields, expected);
+        let told = refused(faults).to_string();
+        assert!(told.contains("strengths") && told.contains("hop_s: must be above 0 s"), "{told}");
+    }
 }

@@ -107,9 +107,18 @@ impl Problem {
 
     /// A document of which one field is at fault.
     pub fn invalid(field: &str, message: impl Into<String>) -> Self {
-        let message = message.into();
-        Self::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{field}: {message}"))
-            .with(Fault::at(field, message))
+        Self::all_invalid([(field.to_owned(), message.into())])
+    }
+
+    /// A document of which several fields are at fault, each with what is wrong.
+    pub fn all_invalid(faults: impl IntoIterator<Item = (String, String)>) -> Self {
+        let faults: Vec<(String, String)> = faults.into_iter().collect();
+        let told = faults.iter().map(|(field, message)| format!("{field}: {message}"));
+        let detail = told.collect::<Vec<_>>().join("; ");
+        let problem = Self::new(StatusCode::UNPROCESSABLE_ENTITY, detail);
+        faults
+            .into_iter()
+            .fold(problem, |all, (field, message)| all.with(Fault::at(field, message)))
     }
 
     /// A failure of ours: the log has the reason, the answer does not.

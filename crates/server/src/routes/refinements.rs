@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use serde_json::Value;
-use sistership_estimate::refine::{Prior, Settings};
+use sistership_estimate::refine::{Prior, SettingFault, Settings};
 use sistership_store::{Job, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -124,9 +124,7 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
         }
         other => drop(other?),
     }
-    settings
-        .check()
-        .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
+    settings.check().map_err(refused)?;
     repeatable(&settings)?;
     known(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
@@ -140,6 +138,12 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
         settings,
         key_sha256: None,
     })
+}
+
+/// Every setting that cannot be used.
+fn refused(faults: Vec<SettingFault>) -> Problem {
+    let fault = |SettingFault { field, message }| (format!("settings.{field}"), message);
+    Problem::all_invalid(faults.into_iter().map(fault))
 }
 
 /// A version must follow from its recipe again, which it does not where a clock ended the search.

@@ -87,11 +87,6 @@ impl PlaneSource {
             upright.words(blocks, &law.name)
         ))
     }
-
-    /// How it was moved to what another model says, for people.
-    pub fn mixed(&self) -> Option<String> {
-        self.upright.mixed.clone()
-    }
 }
 
 /// A regression's precision, where terms of which the source says nothing are held each by its

@@ -6,8 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use sistership_model::Model;
 use sistership_model::law::Law;
 
-use crate::refine::envelope::OperatingEnvelope;
-use crate::refine::member_rates::MemberRates;
+use crate::refine::envelope::{MemberRates, OperatingEnvelope};
 use crate::refine::outcome::RefineError;
 
 /// What sources say where a model will be used, by source and its law. The same for every law that

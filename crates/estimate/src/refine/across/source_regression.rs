@@ -157,11 +157,12 @@ impl<'a> SourceRegression<'a> {
         } else {
             ""
         };
-        format!(
+        let words = format!(
             "the source `{source}` is of law `{own}`: what it says in {samples} states of the \
              trials and of its standard manoeuvres{at} is the prior; law `{law}` leaves {left} of \
              the mean square of those accelerations unsaid"
-        )
+        );
+        [words].into_iter().chain(self.envelope.mixed.clone()).collect::<Vec<_>>().join("; ")
     }
 
     fn knows(&self, block: &Block) -> bool {
