@@ -46,8 +46,8 @@ pub fn with_roll(
     Some(rolling)
 }
 
-/// Coefficients of roll by the stiffness that a ship's metacentric height gives and a usual damping.
-/// `None` where its particulars do not give the stiffness, or the law does not spell the two.
+/// Coefficients of roll by the stiffness that a ship's metacentric height gives and a usual
+/// damping. `None` where its particulars do not give the stiffness, or the law does not spell the two.
 pub fn hydrostatics(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]> {
     let [stiffness, damping] = stiffness_and_damping(model, law)?;
     let named = |(name, value): (&str, f64)| (name.to_owned(), Quantity::new(value, HYDROSTATICS));

@@ -64,16 +64,14 @@ impl PlaneSource {
         let upright = SourceRegression::of_plane(&self.upright, blocks, model)?;
         upright.fill(blocks, model);
         upright.hold(blocks, trials);
-        let all = |envelope: &OperatingEnvelope| -> Result<Vec<Moments>, RefineError> {
-            Ok(merged(&envelope.moments(blocks)?, |_| true).unwrap_or_default())
+        let said = upright.together();
+        let sailed = match &self.sailed {
+            Some(sailed) => merged(&sailed.moments(blocks)?, |_| true).unwrap_or_default(),
+            None => trials.to_vec(),
         };
-        let said = all(&self.upright)?;
-        let sailed = self.sailed.as_ref().map(all).transpose()?;
-        for (place, block) in blocks.blocks.iter_mut().enumerate() {
-            let (said, trials) = (&said[place], &trials[place]);
-            let sailed = sailed.as_ref().map_or(trials, |sailed| &sailed[place]);
-            let sizes = block.sizes(sailed, trials);
-            block.precision = Some(unsaid_by_size(block, said, &sizes));
+        let of_blocks = blocks.blocks.iter_mut().zip(&said).zip(&sailed).zip(trials);
+        for (((block, said), sailed), trials) in of_blocks {
+            block.precision = Some(unsaid_by_size(block, said, &block.sizes(sailed, trials)));
         }
         Ok(())
     }

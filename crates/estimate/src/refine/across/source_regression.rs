@@ -106,8 +106,7 @@ impl<'a> SourceRegression<'a> {
     /// Sets a model's coefficients, with standard errors, to what the source says; none of an axis
     /// that it does not know.
     pub fn fill(&self, blocks: &Blocks, model: &mut Model) {
-        let Some(all) = merged(&self.moments, |_| true) else { return };
-        let fitted = fit(blocks, &all, &self.zero, &self.choices(blocks));
+        let fitted = fit(blocks, &self.together(), &self.zero, &self.choices(blocks));
         let known = blocks
             .blocks
             .iter()
@@ -129,10 +128,15 @@ impl<'a> SourceRegression<'a> {
     /// Gives the regressions the precision that this one earns. What the source does not know is
     /// held to where it is, in the deviations of its regressors.
     pub fn hold(&self, blocks: &mut Blocks, trials: &[Moments]) {
-        let Some(all) = merged(&self.moments, |_| true) else { return };
+        let all = self.together();
         for ((block, source), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
             block.precision = self.knows(block).then(|| earned(block, source, trials));
         }
+    }
+
+    /// The statistics of all that the source says, one set per regression.
+    pub fn together(&self) -> Vec<Moments> {
+        merged(&self.moments, |_| true).unwrap_or_default()
     }
 
     /// The strength of its ridge.
@@ -143,7 +147,7 @@ impl<'a> SourceRegression<'a> {
     /// What it has done, for people.
     pub fn words(&self, blocks: &Blocks, law: &str) -> String {
         let samples: usize = self.envelope.groups.iter().map(|group| group.samples.len()).sum();
-        let all = merged(&self.moments, |_| true).unwrap_or_default();
+        let all = self.together();
         let shares = Fold::new(blocks, &self.zero, &all, &all).shares(self.ridge);
         let left = shares
             .iter()
