@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 
 use sistership_tests::truth::family::Hull;
-
-/// The first seed that is kept for judgement.
-const JUDGEMENT: u64 = 1000;
+use sistership_tests::truth::foreign::{JUDGEMENT, Kind};
 
 /// A part of the benchmark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,16 +18,29 @@ pub enum Part {
     Candidates,
     /// Bands against the truth.
     Coverage,
+    /// Ships that are foreign to the zoo, by the default call alone.
+    Foreign,
 }
 
 impl Part {
-    const ALL: [(&'static str, Self); 5] = [
+    const ALL: [(&'static str, Self); 6] = [
         ("choice", Self::Choice),
         ("by-file", Self::ByFile),
         ("learning", Self::Learning),
         ("candidates", Self::Candidates),
         ("coverage", Self::Coverage),
+        ("foreign", Self::Foreign),
     ];
+}
+
+/// Cases of `foreign`.
+pub struct ForeignCases {
+    /// Kinds of craft.
+    pub kinds: Vec<Kind>,
+    /// Seeds, the last excluded.
+    pub seeds: std::ops::Range<u64>,
+    /// Numbers of trials.
+    pub counts: Vec<usize>,
 }
 
 /// The command line.
@@ -51,6 +62,8 @@ pub struct Arguments {
     pub alone: bool,
     /// After which a call is given up, s.
     pub limit_s: f64,
+    /// Cases of `foreign`.
+    pub foreign: ForeignCases,
 }
 
 impl Arguments {
@@ -85,16 +98,20 @@ impl Arguments {
             "--hull" => self.hull = Hull::named(&value).unwrap_or_else(|error| panic!("{error}")),
             "--data" => self.data = Some(value),
             "--program" => self.program = Some(value.into()),
+            "--kinds" => self.foreign.kinds = listed(&value, Kind::from_name),
+            "--seeds" => self.foreign.seeds = range(&value),
+            "--trials" => self.foreign.counts = listed(&value, count),
             _ => panic!(
-                "there are --ships, --seed, --hull, --data, --calls, --program, --jobs and --limit, \
-                 not {flag}"
+                "there are --ships, --seed, --hull, --data, --calls, --program, --jobs, --limit, \
+                 and for foreign --kinds, --seeds and --trials, not {flag}"
             ),
         }
     }
 
     /// The parts that are run.
     pub fn parts(&self) -> Vec<Part> {
-        let all = || Part::ALL.map(|(_, part)| part).to_vec();
+        let plain = |part: &Part| *part != Part::Foreign;
+        let all = || Part::ALL.map(|(_, part)| part).into_iter().filter(plain).collect();
         self.part.map_or_else(all, |part| vec![part])
     }
 
@@ -105,13 +122,15 @@ impl Arguments {
 
     /// One line about the half of the cases that is used.
     pub fn said(&self) -> String {
-        let last = self.seed + self.ships.max(1) - 1;
-        let half = match (self.seed < JUDGEMENT, last < JUDGEMENT) {
+        let plain = self.seed..self.seed + self.ships;
+        let seeds = if self.part == Some(Part::Foreign) { &self.foreign.seeds } else { &plain };
+        let (first, last) = (seeds.start, seeds.end.max(seeds.start + 1) - 1);
+        let half = match (first < JUDGEMENT, last < JUDGEMENT) {
             (true, true) => "cases for work (seeds below 1000)",
             (false, _) => "cases for judgement (seeds from 1000 on)",
             (true, false) => "cases for work and for judgement MIXED: no judgement",
         };
-        format!("seeds {} to {last}: {half}", self.seed)
+        format!("seeds {first} to {last}: {half}")
     }
 }
 
@@ -127,6 +146,11 @@ impl Default for Arguments {
             jobs: 1,
             alone: false,
             limit_s: 300.0,
+            foreign: ForeignCases {
+                kinds: Kind::ALL.to_vec(),
+                seeds: 1..3,
+                counts: vec![1, 2, 4, 8, 12],
+            },
         }
     }
 }
@@ -136,7 +160,22 @@ fn part(word: &str) -> Option<Part> {
     let named = Part::ALL.iter().find(|(name, _)| *name == word).map(|(_, part)| *part);
     assert!(
         named.is_some() || word == "all",
-        "{word}: there are choice, learning, candidates, coverage, all"
+        "{word}: there are choice, by-file, learning, candidates, coverage, foreign, all"
     );
     named
+}
+
+fn listed<T>(words: &str, read: impl Fn(&str) -> Result<T, String>) -> Vec<T> {
+    words.split(',').map(|word| read(word).unwrap_or_else(|error| panic!("{error}"))).collect()
+}
+
+fn count(word: &str) -> Result<usize, String> {
+    let number = word.parse().ok().filter(|count| (1..=12).contains(count));
+    number.ok_or_else(|| format!("--trials needs numbers from 1 to 12, not {word}"))
+}
+
+fn range(words: &str) -> std::ops::Range<u64> {
+    let limits = words.split_once("..");
+    let read = |(first, end): (&str, &str)| Some(first.parse().ok()?..end.parse().ok()?);
+    limits.and_then(read).unwrap_or_else(|| panic!("--seeds needs A..B, not {words}"))
 }

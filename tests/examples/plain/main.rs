@@ -8,6 +8,10 @@
 //! plain` for the plain call alone in `learning`, `--program FILE` for another program than this
 //! tree's, `--jobs 2` for calls at once where no time is measured, `--limit 300` seconds after
 //! which a call is given up. `docs/evidence/plain.md` has the results and what they mean.
+//!
+//! `... -- foreign [--kinds outboard,pods] [--seeds 1..3] [--trials 1,2,4,8,12] [--program FILE]`
+//! judges the default call on ships that are foreign to the zoo (`truth::foreign` has the kinds);
+//! seeds as above, the last excluded. `docs/evidence/foreign_ships.md` has the results.
 
 mod arguments;
 mod call;
@@ -15,6 +19,7 @@ mod candidates;
 mod choice;
 mod coverage;
 mod data;
+mod foreign;
 mod judge;
 mod learning;
 mod program;
@@ -38,6 +43,7 @@ fn main() {
             Part::Learning => learning::run(&program, &arguments),
             Part::Candidates => candidates::run(&program, &arguments),
             Part::Coverage => coverage::run(&program, &arguments),
+            Part::Foreign => foreign::run(&program, &arguments.foreign),
         });
     }
 }

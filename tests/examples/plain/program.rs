@@ -22,6 +22,8 @@ pub struct Program {
 pub struct Ended {
     /// Its JSON document, or the last line of what it said.
     pub answer: Result<Value, String>,
+    /// Its JSON document, where it printed one, whatever its exit status.
+    pub printed: Option<Value>,
     /// From start to end, s.
     pub wall_s: f64,
     /// Highest resident memory, MB, as Linux counts it and as seen in the last look before its end.
@@ -50,7 +52,9 @@ impl Program {
             Some(status) => answer(folder, status.success()),
             None => Err(given_up(&mut child, wall_s)),
         };
-        Ended { answer, wall_s, peak_mb }
+        let printed = std::fs::read_to_string(folder.join(OUT)).unwrap_or_default();
+        let printed = serde_json::from_str(&printed).ok();
+        Ended { answer, printed, wall_s, peak_mb }
     }
 
     fn started(&self, arguments: &[String], folder: &Path) -> Child {

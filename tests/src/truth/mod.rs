@@ -15,6 +15,7 @@ pub mod dimensions;
 pub mod family;
 pub mod ferry;
 pub mod files;
+pub mod foreign;
 pub mod instruments;
 pub mod manoeuvre;
 pub mod model_tanker;
