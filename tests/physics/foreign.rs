@@ -139,7 +139,9 @@ fn every_craft_turns_and_keeps_its_course_more_or_less() {
         );
         let widest = if craft.steers_by_difference() { 16.0 } else { 8.0 };
         assert!(diameters.iter().all(|d| (1.2..widest).contains(d)), "{kind:?}: {diameters:?}");
-        assert!((0.15..1.0).contains(&kept), "{kind:?}: {kept}");
+        // More revolutions on one side than are taken from the other give more thrust.
+        let most = if craft.steers_by_difference() { 1.2 } else { 1.0 };
+        assert!((0.15..most).contains(&kept), "{kind:?}: {kept}");
         let held = craft.steers_by_difference() || end.n_rps[0] < 1.13 * craft.rated_rps();
         assert!(held, "{kind:?}: {:?}", end.n_rps);
     }
