@@ -91,14 +91,13 @@ pub fn simulate(
         let t_s = k as f64 * step;
         track.t_s.push(t_s);
         track.motions.push(motion);
-        motion = advance(craft, &motion, &orders(t_s, &motion));
+        motion = advance(craft, &motion, &orders(t_s, &motion), step);
     }
     track
 }
 
-/// The state one step later, by the Runge-Kutta method of fourth order.
-pub fn advance(craft: &Craft, motion: &Motion, orders: &Orders) -> Motion {
-    let step = craft.step_s();
+/// The state a step (s) later, by the Runge-Kutta method of fourth order.
+pub fn advance(craft: &Craft, motion: &Motion, orders: &Orders, step: f64) -> Motion {
     let first = craft.rate(motion, orders);
     let second = craft.rate(&motion.advance(&first, 0.5 * step), orders);
     let third = craft.rate(&motion.advance(&second, 0.5 * step), orders);
