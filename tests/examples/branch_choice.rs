@@ -6,11 +6,11 @@
 
 use std::path::Path;
 
-use sistership_branches::{BranchSettings, Kinds, Training, attach, choose, train, with_branch};
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_learned::{BranchSettings, Kinds, Training, attach, choose, train, with_branch};
 use sistership_model::{Law, Model, Trial, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
 use sistership_tests::binary;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::ferry::ferry;

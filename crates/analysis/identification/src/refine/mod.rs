@@ -1,0 +1,68 @@
+//! Refinement of a source model against trials.
+
+mod across;
+mod alternatives;
+mod blocks;
+mod candidate;
+mod cma_es;
+mod envelope;
+mod equations;
+mod errors;
+mod estimator;
+mod estimators;
+mod family;
+mod finish;
+mod fold_variance;
+mod gathered;
+mod helm;
+mod manoeuvres;
+mod measure;
+mod mixture;
+mod mixture_position;
+mod outcome;
+mod parts;
+mod population;
+mod posterior;
+mod problem;
+mod progress;
+mod published;
+mod replayed_trials;
+mod request;
+mod ridge;
+mod ridge_candidates;
+mod rows;
+mod selection;
+mod settings;
+mod settings_check;
+mod simulated;
+mod smoothed;
+mod starting;
+mod steps;
+mod thresholds;
+mod trajectory;
+mod unrecorded;
+mod variant;
+mod weak;
+mod weighed;
+
+pub use crate::constraints::{Bound, ConstraintError, Constraints, LimitError, StraightLine};
+pub use across::SourceEnvelopes;
+pub use alternatives::{Alternative, alternatives};
+pub use blocks::{Block, Blocks};
+pub use cma_es::{CmaEs, SearchReport};
+pub use family::Family;
+pub use helm::{Beginning, Helm, helms, record};
+pub use outcome::{
+    CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
+};
+pub use population::Member;
+pub use progress::{Iterate, MonotoneProgress, Progress, Watch};
+pub use replayed_trials::{ReplayedTrials, Thinning};
+pub use request::Request;
+pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
+pub use rows::{Table, trial_moments, trial_tables};
+pub use selection::{refine, refine_wanted, refine_watched, weigh};
+pub use settings::{Method, Prior, Range, Settings};
+pub use settings_check::SettingFault;
+pub use weak::{Windows, weak_moments, weak_tables};
+pub use weighed::{Extent, Weighed};

@@ -1,0 +1,73 @@
+//! A branch with its weights, ready to be asked at every step of a simulation.
+
+use sistership_model::branch::{Branch, BranchMode, BranchOutput};
+use sistership_model::coefficient::Axis;
+use sistership_simulation::branch::{Instant, LearnedBranch};
+
+use crate::domain::FadedDomain;
+use crate::regressor::Regressor;
+use crate::sample::scaled;
+use crate::weights::Weights;
+
+/// A branch with its weights.
+#[derive(Debug, Clone)]
+pub struct Learned {
+    mode: BranchMode,
+    outputs: Vec<(usize, BranchOutput, Regressor)>,
+    domain: FadedDomain,
+}
+
+/// Most inputs of an output: each signal once, with room.
+const MOST_INPUTS: usize = 16;
+
+impl Learned {
+    /// Of a branch and weights that suit it; none where its domain bounds what no branch sees, or
+    /// it has more inputs than there are signals.
+    pub fn of(branch: &Branch, weights: Weights) -> Option<Self> {
+        let domain = FadedDomain::of(&branch.domain, branch.fade)?;
+        let place = |axis: Axis| [Axis::X, Axis::Y, Axis::N].iter().position(|a| *a == axis);
+        let one = |(output, regressor): (&BranchOutput, Regressor)| {
+            let few = output.inputs.len() <= MOST_INPUTS;
+            few.then_some((place(output.axis)?, output.clone(), regressor))
+        };
+        let outputs = branch.outputs.iter().zip(weights.outputs).map(one).collect::<Option<_>>()?;
+        Some(Self { mode: branch.mode, outputs, domain })
+    }
+
+    /// The domain with how it fades.
+    pub fn domain(&self) -> &FadedDomain {
+        &self.domain
+    }
+}
+
+/// What an output answers, m/s2 (rad/s2), within what its training held.
+fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f64 {
+    let mut inputs = [0.0; MOST_INPUTS];
+    let count = output.inputs.len();
+    let pairs = inputs.iter_mut().zip(&output.inputs);
+    pairs.for_each(|(value, input)| *value = scaled(input, instant));
+    let [low, high] = output.range;
+    (output.scale * regressor.answer(&inputs[..count])).clamp(low, high)
+}
+
+impl LearnedBranch for Learned {
+    fn share(&self, instant: &Instant) -> f64 {
+        self.domain.share(instant)
+    }
+
+    fn addition(&self, instant: &Instant) -> [f64; 3] {
+        let (mut added, share) = ([0.0; 3], self.domain.share(instant));
+        if share == 0.0 {
+            return added;
+        }
+        for (place, output, regressor) in &self.outputs {
+            let answer = answer(output, regressor, instant);
+            let replaced = match self.mode {
+                BranchMode::Parallel => 0.0,
+                BranchMode::Convert | BranchMode::Serial => instant.accelerations[*place],
+            };
+            added[*place] = share * (answer - replaced);
+        }
+        added
+    }
+}
