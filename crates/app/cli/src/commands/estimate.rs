@@ -28,20 +28,21 @@ The ship needs lpp_m, beam_m, draught_m, and displacement_m3, mass_kg or block_c
 propeller and the rest are taken from the medians of the zoo where it does not state them. What
 comes out is an estimate by published regressions (models/regressions), not a measurement.";
 
-/// Estimate a model of a ship from its particulars, with bands on the standard manoeuvres.
+/// Estimate a model of a ship from its particulars, with uncertainty bands of the standard
+/// manoeuvres.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct EstimateArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long, value_name = "SHIP")]
     ship: String,
-    /// Approach speed; that of the ship's first model, or its service speed, where none is given.
+    /// Approach speed; by default that of the ship's first model, else its service speed.
     #[arg(long, value_name = "U")]
     speed_m_s: Option<f64>,
     /// Write the model to a file.
     #[arg(long, value_name = "MODEL.yaml")]
     out: Option<PathBuf>,
-    /// What the draws of the bands follow from.
+    /// Seed of the draws for the bands.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
     /// Print one JSON document.
