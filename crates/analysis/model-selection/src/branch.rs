@@ -29,7 +29,9 @@ pub(super) fn branch(
     let kinds = Kinds::WhilePromising { step_s: replayed.step_s };
     let replayed: Vec<&Trial> = replayed.trials.iter().collect();
     let settings = BranchSettings::default();
-    let told = |kind: BranchKind| progress(0.99, &format!("trying a branch of {}", kind.name()));
+    let told = |kind: BranchKind| {
+        progress(0.99, &format!("fitting a learned correction: {}", kind.name()))
+    };
     match choose(model, law, &replayed, (&settings, kinds), &told) {
         Ok(choice) => choice.ok_or(RefineError::Cancelled),
         Err(error) => Ok(BranchChoice::untried(untrained(&error))),
