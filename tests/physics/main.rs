@@ -2,6 +2,7 @@
 //! runs that stop.
 
 mod across_laws;
+mod propulsion;
 mod recovery;
 mod scaling;
 mod stopping;

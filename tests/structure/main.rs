@@ -23,6 +23,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("empirical", &["formula", "model", "dynamics", "bands"]),
     ("sources", &["formula", "model", "dynamics"]),
     ("constraints", &["model", "dynamics"]),
+    ("propulsion", &["model", "dynamics"]),
     (
         "estimate",
         &[
@@ -34,6 +35,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "empirical",
             "sources",
             "constraints",
+            "propulsion",
         ],
     ),
     ("choice", &["model", "dynamics", "branches", "bands", "sources", "estimate"]),

@@ -25,6 +25,7 @@ mod population;
 mod posterior;
 mod problem;
 mod progress;
+mod propelled;
 mod published;
 mod replayed_trials;
 mod request;
