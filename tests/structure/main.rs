@@ -54,7 +54,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("plan", &["model", "dynamics", "bands", "estimate", "residual", "diagnose"]),
-    ("fleet", &["model", "dynamics", "regression", "estimate"]),
+    ("fleet", &["model", "dynamics", "regression", "propulsion", "estimate"]),
     ("store", &[]),
     ("access", &[]),
     ("openid", &["access"]),

@@ -65,6 +65,12 @@ pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
     Some(Propulsion { parameters })
 }
 
+/// Whether trials alone say what the propeller does: a law takes no revolutions, or coefficients
+/// multiply them.
+pub fn needs_balance(law: &Law) -> bool {
+    law.factors.contains_key("n") || !law.inputs.contains_key("n")
+}
+
 fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Range) {
     let names = ["none_below", "full_from", "full_to", "none_above"];
     for (name, value) in names.into_iter().zip(range) {

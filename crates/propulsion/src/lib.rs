@@ -7,5 +7,5 @@ mod covered;
 mod slope;
 mod thresholds;
 
-pub use balance::{Evidence, balance};
+pub use balance::{Evidence, balance, needs_balance};
 pub use check::{PropulsionFault, check};

@@ -13,7 +13,7 @@ use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
 use super::outcome::{Manoeuvres, RefineError, Refinement};
 use super::problem::Problem;
 use super::progress::{Progress, step};
-use super::propelled::{balanced, propelled};
+use super::propulsion::{with_balance, with_propulsion};
 use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
@@ -113,7 +113,7 @@ fn sailed(
         }
         fitted => fitted?,
     };
-    let model = match propelled(problem, model_of(problem, fitted.as_ref())) {
+    let model = match with_propulsion(problem, model_of(problem, fitted.as_ref())) {
         Ok(model) => model,
         Err(fault) => return Ok(Err(fault.into())),
     };
@@ -161,7 +161,7 @@ fn take(
         widen(&mut model, fitted.as_mut(), factor);
     }
     if model.propulsion.is_some() {
-        model = balanced(problem, model);
+        model = with_balance(problem, model);
     }
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;

@@ -25,7 +25,7 @@ mod population;
 mod posterior;
 mod problem;
 mod progress;
-mod propelled;
+mod propulsion;
 mod published;
 mod replayed_trials;
 mod request;
