@@ -151,6 +151,9 @@ fn take(
     let coefficients = model_of(problem, fitted.as_ref()).coefficients;
     let mut model = Model { coefficients, ..taken.model };
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
+    for one in &mut candidates[best].left_out {
+        one.propulsion.clone_from(&model.propulsion);
+    }
     if problem.settings.posterior_by_folds {
         let quantile = match problem.settings.folds_pooled {
             true => FoldQuantile::Normal,
