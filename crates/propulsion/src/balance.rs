@@ -11,7 +11,7 @@ use sistership_model::propulsion::Propulsion;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model, Trial, particulars};
 
-use crate::covered::{Range, revolutions, speeds};
+use crate::covered::{Range, by_speed, revolutions, speeds};
 use crate::slope::{Figure, slope};
 use crate::thresholds::BALANCE;
 
@@ -41,6 +41,7 @@ struct Working {
 const TYPICAL: &str = "typical of ships: no estimate from particulars";
 const ESTIMATED: &str = "estimated from particulars";
 const TRIALS: &str = "self-propulsion point of the trials";
+const RANGE: &str = "range of the trials";
 const CHOSEN: &str = "docs/evidence/propulsion.md";
 
 /// The balance of a model; none where its speed or revolutions at the approach are not known.
@@ -60,7 +61,16 @@ pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
     add("loading", Quantity::new(working.loading, working.source));
     add("advance", Quantity::new(working.advance, working.source));
     add("backing", Quantity::new(BALANCE.backing, CHOSEN));
-    add_range(&mut parameters, 'n', revolutions(of.trials, n_rps));
+    let range = revolutions(of.trials, n_rps);
+    let takes_them = of.law.inputs.contains_key("n");
+    let seen = if takes_them { by_speed(of.trials, [speed, n_rps]) } else { [range[1], range[2]] };
+    let proportional = f64::from(u8::from(takes_them));
+    for (name, value) in
+        [("seen_from", seen[0]), ("seen_to", seen[1]), ("proportional", proportional)]
+    {
+        add(name, Quantity::new(value, RANGE));
+    }
+    add_range(&mut parameters, 'n', range);
     add_range(&mut parameters, 'u', speeds(of.trials, speed));
     Some(Propulsion { parameters })
 }
@@ -74,7 +84,7 @@ pub fn needs_balance(law: &Law) -> bool {
 fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Range) {
     let names = ["none_below", "full_from", "full_to", "none_above"];
     for (name, value) in names.into_iter().zip(range) {
-        parameters.insert(format!("{of}_{name}"), Quantity::new(value, "range of the trials"));
+        parameters.insert(format!("{of}_{name}"), Quantity::new(value, RANGE));
     }
 }
 
