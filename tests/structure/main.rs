@@ -23,6 +23,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("empirical", &["formula", "model", "dynamics", "bands"]),
     ("sources", &["formula", "model", "dynamics"]),
     ("constraints", &["model", "dynamics"]),
+    ("propulsion", &["model", "dynamics"]),
     (
         "estimate",
         &[
@@ -34,6 +35,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "empirical",
             "sources",
             "constraints",
+            "propulsion",
         ],
     ),
     ("choice", &["model", "dynamics", "branches", "bands", "sources", "estimate"]),
@@ -52,7 +54,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("plan", &["model", "dynamics", "bands", "estimate", "residual", "diagnose"]),
-    ("fleet", &["model", "dynamics", "regression", "estimate"]),
+    ("fleet", &["model", "dynamics", "regression", "propulsion", "estimate"]),
     ("store", &[]),
     ("access", &[]),
     ("openid", &["access"]),

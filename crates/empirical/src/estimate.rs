@@ -175,6 +175,7 @@ fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
         uncertainty: None,
         posterior: None,
         validity: None,
+        propulsion: None,
         branch: None,
     }
 }

@@ -49,7 +49,7 @@ static int whole(FILE *file, int32_t *out, size_t count)
 static int sizes(FILE *file, model *m)
 {
     int32_t of[4];
-    if (fscanf(file, "sistership-fmu-1 %79s", m->token) != 1 || !whole(file, of, 4))
+    if (fscanf(file, "sistership-fmu-2 %79s", m->token) != 1 || !whole(file, of, 4))
         return 0;
     for (int k = 0; k < 4; k++)
         if (of[k] < 0 || of[k] > 10000000)
@@ -128,11 +128,14 @@ static int contents(FILE *file, model *m)
         if (!sound(m, m->program + k, k))
             return 0;
     if (!whole(file, m->force, 4) || !whole(file, m->mass, 16) || !whole(file, m->added, 4)
-        || !whole(file, m->kinematic, 4))
+        || !whole(file, m->kinematic, 4) || !whole(file, m->distance, 2))
         return 0;
     if (!all_within(m->force, 4, m->instructions) || !all_within(m->mass, 16, m->instructions)
         || !all_within(m->added, 4, m->instructions)
-        || !all_within(m->kinematic, 4, m->instructions))
+        || !all_within(m->kinematic, 4, m->instructions)
+        || !all_within(m->distance, 1, m->instructions)
+        || !all_within(m->distance + 1, 1, m->variables)
+        || (m->distance[0] < 0) != (m->distance[1] < 0))
         return 0;
     if (!whole(file, &m->has_gear, 1) || !whole(file, &m->has_roll, 1)
         || !whole(file, &m->has_mobility, 1))
@@ -329,6 +332,14 @@ void model_rates(model *m, double step_s)
     rate[PSI] = at(m, m->kinematic[2], s[R]);
     rate[PHI] = at(m, m->kinematic[3], m->has_roll ? s[P] : 0.0);
     rate[DELTA] = rudder_rate(m, step_s);
+    if (m->distance[0] >= 0)
+        m->value[m->distance[1]] = m->result[m->distance[0]];
+}
+
+int model_follows(const model *m, size_t variable)
+{
+    const int is_distance = m->distance[1] >= 0 && variable == (size_t)m->distance[1];
+    return (variable >= RATE && variable < ORDER) || is_distance;
 }
 
 static const char *check(const model *m)

@@ -16,6 +16,7 @@ mod modelica;
 mod outside;
 mod plan;
 mod python;
+mod range;
 mod rates;
 mod subject;
 mod wrapped;

@@ -8,7 +8,7 @@ use crate::expression::{Language, function};
 use crate::format::Format;
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
-use crate::{header, rates, wrapped};
+use crate::{header, range, rates, wrapped};
 
 /// MATLAB R2016b and later, Octave 6 and later.
 #[derive(Debug)]
@@ -83,6 +83,7 @@ const TEMPLATE: &str = include_str!("../templates/model.m");
 fn text(plan: &Plan) -> String {
     let mut help = vec!["Time derivative of the state of a ship manoeuvring model.".to_owned()];
     help.extend(header::lines(plan));
+    help.push(format!("{}: {}", range::NAME, range::MEANING));
     let help: Vec<String> = help
         .iter()
         .flat_map(|line| wrapped::comment("%", line))
@@ -94,8 +95,18 @@ fn text(plan: &Plan) -> String {
         .replace("@@unpack", &unpack(plan))
         .replace("@@statements", &rates::statements(plan, &Matlab).join("\n"))
         .replace("@@rudder", rudder(plan))
+        .replace("@@range", &range_text(plan))
         .replace("@@structure", &structure(plan))
         .replace("@@model", &plan.identifier)
+}
+
+/// Not a number where nobody knows what trials covered.
+fn range_text(plan: &Plan) -> String {
+    let Some(range::Distance { mut statements, result }) = range::beside(plan, &Matlab) else {
+        return format!("{} = NaN;", range::NAME);
+    };
+    statements.push(format!("{} = {result};", range::NAME));
+    statements.join("\n")
 }
 
 fn names(plan: &Plan) -> Vec<String> {

@@ -7,6 +7,7 @@ use sistership_dynamics::envelope::Envelope;
 use sistership_dynamics::equations::{Coefficients, EquationsOfMotion};
 use sistership_dynamics::gear::Gear;
 use sistership_dynamics::plant::Listed;
+use sistership_dynamics::validity::distance;
 use sistership_dynamics::{Plant, PlantError, Ship};
 use sistership_model::effect::{AppliedEffect, qualified};
 use sistership_model::law::Input;
@@ -100,10 +101,11 @@ impl Plan {
     pub fn new(subject: &Subject<'_>) -> Result<Self, ExportError> {
         let model = with_current(subject.model)?;
         let law = dressed(&model, subject.law)?;
-        let plant = Plant::of(
-            &EquationsOfMotion::of_law(&model, Cow::Borrowed(&law)),
-            Coefficients::Names,
-        )?;
+        let equations = EquationsOfMotion::of_law(&model, Cow::Borrowed(&law));
+        let known = equations.names();
+        let is_known = |name: &str| known.iter().any(|known| known == name);
+        let distance = model.validity.as_ref().map(|region| distance(region, &is_known));
+        let plant = Plant::with_distance(&equations, Coefficients::Names, distance.as_ref())?;
         let ship = Ship::new(subject.model, subject.law)?;
         let outside = taken(&model, &law, &plant);
         let coefficients = coefficients(&model, subject.law)?;

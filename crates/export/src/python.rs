@@ -7,7 +7,7 @@ use crate::expression::{Language, function};
 use crate::format::Format;
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
-use crate::{header, rates, wrapped};
+use crate::{header, range, rates, wrapped};
 
 /// Python 3.8 and later.
 #[derive(Debug)]
@@ -109,6 +109,7 @@ fn text(plan: &Plan) -> String {
         .replace("@@unpack", &unpack(plan))
         .replace("@@statements", &rates::statements(plan, &Python).join("\n"))
         .replace("@@rudder", &rudder(plan))
+        .replace("@@range", &range_text(plan))
         .replace(
             "@@order",
             if plan.gear.is_some() { "delta_order=math.radians(rudder_deg)" } else { "" },
@@ -120,6 +121,21 @@ fn text(plan: &Plan) -> String {
         .replace("@@duration", &format!("{:?}", (60.0 * plan.lpp_m / plan.speed_m_s).ceil()))
         .replace("@@step", &format!("{:?}", plan.step_s()));
     format!("{}\n{body}", lines.join("\n"))
+}
+
+fn range_text(plan: &Plan) -> String {
+    let Some(range::Distance { statements, result }) = range::alone(plan, &Python) else {
+        return String::new();
+    };
+    let meaning = wrapped::comment("    #", range::MEANING).join("\n");
+    format!(
+        "def {name}(state, inputs=INPUTS, coefficients=COEFFICIENTS):\n{meaning}\n    \
+         u, v, r, p, phi, psi, x, y, delta = state\n{unpack}\n{statements}\n    \
+         return {result}\n\n\n",
+        name = range::NAME,
+        unpack = unpack(plan),
+        statements = statements.join("\n")
+    )
 }
 
 fn dictionary(plan: &Plan) -> String {

@@ -17,6 +17,7 @@ pub mod model;
 pub mod name;
 pub mod particulars;
 pub mod posterior;
+pub mod propulsion;
 pub mod quantity;
 pub mod source;
 pub mod trial;

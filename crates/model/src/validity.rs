@@ -254,7 +254,7 @@ impl Excursion {
 
 /// What is no excursion, by half ranges: a hard turn at 35 deg where the rudder was recorded at
 /// 34.9.
-const SLACK: f64 = 0.005;
+pub const SLACK: f64 = 0.005;
 /// The half range of a channel that did not vary, by its size: a speed that was held to a per cent.
 const STILL: f64 = 0.01;
 

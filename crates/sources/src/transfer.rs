@@ -167,6 +167,7 @@ fn filled(
         uncertainty: None,
         posterior: None,
         validity: None,
+        propulsion: None,
         branch: None,
     })
 }

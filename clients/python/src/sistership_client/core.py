@@ -98,7 +98,7 @@ Me = TypedDict('Me', {'kind': 'str', 'name': 'str', 'roles': 'List[RoleView]'}, 
 MemberDrift = TypedDict('MemberDrift', {'condition': 'Condition', 'drift': 'Union[Drift, None]', 'ship': 'str'}, total=False)
 MemberView = TypedDict('MemberView', {'added_us': 'int', 'champion': 'Union[int, None]', 'method': 'Union[str, None]', 'ship': 'str'}, total=False)
 Mirror = Any  # What a parameter becomes when the ship is mirrored port to starboard.
-Model = TypedDict('Model', {'branch': 'Union[Branch, None]', 'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
+Model = TypedDict('Model', {'branch': 'Union[Branch, None]', 'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'propulsion': 'Union[Propulsion, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
 ModelKind = Any  # The word `model`.
 NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]', 'name': 'str', 'title': 'Union[str, None]'}, total=False)
 NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
@@ -121,6 +121,7 @@ PriorView = TypedDict('PriorView', {'created_us': 'int', 'document': 'Dict[str, 
 Problem = TypedDict('Problem', {'detail': 'str', 'errors': 'List[Fault]', 'instance': 'Union[str, None]', 'status': 'int', 'title': 'str', 'type': 'str'}, total=False)
 Promoted = TypedDict('Promoted', {'champions': 'int'}, total=True)
 Promotion = TypedDict('Promotion', {'actor': 'str', 'reason': 'str', 'ships': 'Union[List[str], None]'}, total=False)
+Propulsion = TypedDict('Propulsion', {'parameters': 'Dict[str, Quantity]'}, total=True)
 PublishedModelFile = TypedDict('PublishedModelFile', {'coefficients': 'Section', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Section', 'revolutions_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering'}, total=False)
 PublishedTurn = TypedDict('PublishedTurn', {'advance': 'Union[float, None]', 'both_sides': 'bool', 'rudder_deg': 'float', 'steady_radius': 'Union[float, None]', 'tactical_diameter': 'Union[float, None]', 'transfer': 'Union[float, None]', 'uncertainty': 'float'}, total=False)
 PublishedZigzag = TypedDict('PublishedZigzag', {'both_sides': 'bool', 'first_overshoot_deg': 'Union[float, None]', 'rudder_deg': 'float', 'second_overshoot_deg': 'Union[float, None]', 'switch_deg': 'float', 'uncertainty_deg': 'float'}, total=False)

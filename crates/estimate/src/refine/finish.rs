@@ -2,7 +2,6 @@
 //! taken.
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
-use sistership_dynamics::validity::covered;
 use sistership_model::Model;
 use sistership_model::posterior::Posterior;
 
@@ -14,11 +13,13 @@ use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
 use super::outcome::{Manoeuvres, RefineError, Refinement};
 use super::problem::Problem;
 use super::progress::{Progress, step};
+use super::propulsion::{with_balance, with_propulsion};
 use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
 use sistership_bands::{FoldQuantile, bands, fold_factor};
 use sistership_constraints::LimitError;
+use sistership_propulsion::PropulsionFault;
 use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.
@@ -28,6 +29,8 @@ enum CandidateRefusal {
     Constraints(LimitError),
     #[error("fails a standard manoeuvre that the source sails: {0}")]
     Manoeuvre(String),
+    #[error(transparent)]
+    Propulsion(#[from] PropulsionFault),
 }
 
 /// Why trials alone make a model or none.
@@ -39,8 +42,15 @@ fn is_empty(model: &Model) -> bool {
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
 }
 
-/// What a candidate gives with its standard manoeuvres, or why it may not be taken.
-type Accepted = Result<(Option<Fit>, StandardManoeuvres), CandidateRefusal>;
+/// A candidate on all trials.
+struct FittedCandidate {
+    fit: Option<Fit>,
+    model: Model,
+    manoeuvres: StandardManoeuvres,
+}
+
+/// What a candidate gives, or why it may not be taken.
+type Accepted = Result<FittedCandidate, CandidateRefusal>;
 
 /// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres
 /// that the source sails.
@@ -78,14 +88,9 @@ pub(super) fn finish(
             None => sailed(problem, candidates[best].solution.as_ref(), variants),
         };
         match accepted(sailed?, &before) {
-            Ok((fitted, after)) => {
-                return take(
-                    problem,
-                    (candidates, best),
-                    (fitted, variants),
-                    (before, after),
-                    progress,
-                );
+            Ok(fitted) => {
+                let taken = (fitted, variants);
+                return take(problem, (candidates, best), taken, before, progress);
             }
             Err(refusal) => {
                 (candidates[best].option.reason, candidates[best].option.error) =
@@ -108,42 +113,47 @@ fn sailed(
         }
         fitted => fitted?,
     };
-    let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
-    Ok(Ok((fitted, after)))
+    let model = match with_propulsion(problem, model_of(problem, fitted.as_ref())) {
+        Ok(model) => model,
+        Err(fault) => return Ok(Err(fault.into())),
+    };
+    let manoeuvres = standard_manoeuvres(&model, problem.law);
+    Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
 }
 
 /// What a candidate gives, where it sails what the source sails.
 fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
-    let (fitted, after) = sailed?;
-    let worse =
-        after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+    let fitted = sailed?;
+    let failures = &fitted.manoeuvres.failures;
+    let worse = failures.iter().find(|one| before.failures.is_empty() && !one.is_empty());
     match worse {
         Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
-        None => Ok((fitted, after)),
+        None => Ok(fitted),
     }
 }
 
 /// The refined model; the source where nothing was fitted.
 fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
-    let mut model = fitted
-        .map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients));
-    model.validity = covered(&problem.whole, problem.law);
-    model
+    fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients))
 }
 
 /// The refinement by a candidate, with its errors.
 fn take(
     problem: &Problem<'_>,
     (mut candidates, best): (Vec<CandidateFit>, usize),
-    (fitted, variants): (Option<Fit>, &[Variant]),
-    (before, after): (StandardManoeuvres, StandardManoeuvres),
+    (taken, variants): (FittedCandidate, &[Variant]),
+    before: StandardManoeuvres,
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
     candidates[best].option.chosen = true;
     let errors = candidates[best].solution.errors(problem, variants)?;
-    let mut fitted = fitted.map(|fit| fit.with_errors(errors));
-    let mut model = model_of(problem, fitted.as_ref());
+    let mut fitted = taken.fit.map(|fit| fit.with_errors(errors));
+    let coefficients = model_of(problem, fitted.as_ref()).coefficients;
+    let mut model = Model { coefficients, ..taken.model };
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
+    for one in &mut candidates[best].left_out {
+        one.propulsion.clone_from(&model.propulsion);
+    }
     if problem.settings.posterior_by_folds {
         let quantile = match problem.settings.folds_pooled {
             true => FoldQuantile::Normal,
@@ -153,11 +163,14 @@ fn take(
         let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
         widen(&mut model, fitted.as_mut(), factor);
     }
+    if model.propulsion.is_some() {
+        model = with_balance(problem, model);
+    }
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;
     let bands =
         bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
-    let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
+    let manoeuvres = Manoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
     refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
 }
 

@@ -142,6 +142,7 @@ fn with_candidates<T>(
     let deviations = standard_deviations(&training);
     let problem = Problem {
         law,
+        target: Some(request.target),
         source,
         training,
         replayed,

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use sistership_dynamics::tape::{Instruction, Op, Slot};
 use sistership_formula::{Comparison, Function};
 
-use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE};
+use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE, distance_reference};
 use crate::plan::{Operand, Plan};
 
 /// The file: whole numbers, and doubles by their bits.
@@ -14,7 +14,7 @@ pub fn text(plan: &Plan) -> String {
     let (tape, moving) = (listed.tape, plan.states().collect::<Vec<_>>());
     let starts = variables::starts(plan);
     let counts = [starts.len(), tape.len(), tape.terms().len(), moving.len()];
-    let mut lines = vec![format!("sistership-fmu-1 {}", plan.sha256), whole(counts), whole(moving)];
+    let mut lines = vec![format!("sistership-fmu-2 {}", plan.sha256), whole(counts), whole(moving)];
     lines.push(bits(&starts));
     lines.extend(tape.instructions().iter().map(|one| instruction(plan, one)));
     lines.push(whole(tape.terms().iter().flatten().copied()));
@@ -22,6 +22,7 @@ pub fn text(plan: &Plan) -> String {
     lines.push(places(listed.mass.as_flattened()));
     lines.push(places(&listed.accelerations));
     lines.push(places(&listed.kinematics));
+    lines.push(places(&[listed.distance, distance_reference(plan)]));
     let flags = [plan.gear.is_some(), plan.has_roll, listed.mobility.is_some()];
     lines.push(whole(flags.map(usize::from)));
     lines.push(bits(listed.mobility.unwrap_or_default().as_flattened()));
