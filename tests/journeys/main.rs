@@ -20,6 +20,7 @@ mod memory;
 mod operation;
 mod over_http;
 mod pages;
+mod possible_sources;
 mod predictions;
 mod python_client;
 mod python_wheel;

@@ -81,7 +81,7 @@ pub use chain::AuditHead;
 pub use checks::{MAX_NAME_CHARS, MAX_TEXT_BYTES};
 pub use clock::{Clock, Ids, ManualClock, SequentialIds, SystemClock, UuidIds};
 pub use commit::{Committed, Kept, Refinement};
-pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis};
+pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis, PartDiagnosis};
 pub use diagnoses::{Diagnosed, Diagnoses, NewDiagnosed};
 pub use effects::{EffectLibraries, EffectLibrary};
 pub use entry::AuditEntry;

@@ -6,7 +6,6 @@ use serde::Deserialize;
 use serde_json::Value;
 use sistership_model::version::RecipeTrial;
 use sistership_sources::similarity::Definition;
-use sistership_sources::source;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -18,6 +17,7 @@ use crate::web::{Name, Params, Place};
 use sistership_http::ship_search::vectors;
 use sistership_pipeline::archive::vessel;
 use sistership_pipeline::budget;
+use sistership_pipeline::champions::SourceModels;
 use sistership_pipeline::memory::trial_bytes;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -64,8 +64,9 @@ async fn similar(
         trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
     let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;
+    let models = SourceModels::read(app.archive(), &zoo).await?;
     let ranked =
-        move || source::similar(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
+        move || models.rank(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
     let ranked = app.compute(ranked).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

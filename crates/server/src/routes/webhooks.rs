@@ -16,10 +16,8 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Positive, Remark, WebAddress};
 use crate::web::{Id, Listing, Name, Paged, Params, Payload, Place};
+use sistership_pipeline::condition::DRIFT_LIMIT;
 use sistership_webhooks::check_url;
-
-/// How many times as much a champion leaves of new trials before drift is told, where nobody says.
-const DRIFT_ABOVE: f64 = 2.0;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -173,7 +171,7 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
         url: url.into_string(),
         secret: secret().map_err(Problem::internal)?,
         ship: ship.map(Name::into_string),
-        drift_above: drift_above.map_or(DRIFT_ABOVE, Positive::get),
+        drift_above: drift_above.map_or(DRIFT_LIMIT, Positive::get),
         events: events.into_iter().map(|event| event.as_str().to_owned()).collect(),
     };
     let row = app.store().webhooks().create(&new).await?;

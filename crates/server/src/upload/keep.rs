@@ -68,12 +68,14 @@ async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
     }
 }
 
-/// The diagnosis of a champion on what is new.
+/// The diagnosis of a champion on what is new, and on that with what came before.
 fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
     let trials: Vec<String> =
         kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
     let (ship, settings) = (ship.to_owned(), Default::default());
-    let asked = DiagnosisJob { ship: ship.clone(), number, trials, settings, key_sha256: None };
+    let (with_earlier, key_sha256) = (true, None);
+    let asked =
+        DiagnosisJob { ship: ship.clone(), number, trials, with_earlier, settings, key_sha256 };
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
     Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
 }

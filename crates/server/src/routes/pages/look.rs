@@ -25,7 +25,8 @@ pub(super) async fn ship(State(app): State<App>, Place(ship): Place<Name>) -> Re
     let beginning = pages::beginning(shell(&app), &ship, "/")?;
     let page = async move {
         let zoo = app.zoo_shown(gathered.vessel()).await?;
-        Ok(app.compute(move || gathered.html(&zoo)).await??)
+        let similar = gathered.similar(app.archive(), zoo).await?;
+        Ok(app.compute(move || gathered.html(similar)).await??)
     };
     Ok(begun(beginning, page))
 }
