@@ -5,7 +5,7 @@
 //! s; nothing of it is lowered from a law file. The hull is linear (regression, or slender-body
 //! theory) with a strip-wise cross-flow drag, the rudder a wing with lift and drag in a slipstream,
 //! and the resistance that of the ITTC friction line. `causes` has what may be hidden in their
-//! trials.
+//! trials. `foreign` has ships of eight kinds of propulsion by equations of its own.
 
 pub mod causes;
 pub mod clarke;

@@ -62,6 +62,7 @@ fn cells(judged: &Judged) -> [String; 2] {
 }
 
 fn cut(reason: &str) -> String {
+    let reason = reason.trim_start_matches("error: ");
     reason.replace('|', "/").chars().take(REASON).collect()
 }
 

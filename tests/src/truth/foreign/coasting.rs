@@ -1,7 +1,7 @@
 //! Runs with the propeller stopped and reversed, whose ends every model must reach.
 
 use super::craft::Craft;
-use super::simulate::{Track, simulate, start, step_s};
+use super::simulate::{Track, simulate, start};
 
 /// Share of the speed that is left at the end of a coasting run.
 const LEFT: f64 = 0.1;
@@ -36,6 +36,6 @@ impl Coasting {
         let astern = craft.orders_at(ASTERN * craft.rated_rps(), 0.0);
         let reversed = simulate(craft, start(craft, 1.0), REVERSED * length_s, |_, _| astern);
         let rest = reversed.speeds().iter().position(|u| *u <= 0.0);
-        Self { stopped, reversed, rest_s: rest.map(|index| index as f64 * step_s(craft)) }
+        Self { stopped, reversed, rest_s: rest.map(|index| index as f64 * craft.step_s()) }
     }
 }

@@ -15,6 +15,10 @@ use crate::truth::motion::Inertia;
 
 /// Added mass in surge by mass, chosen among 0.03 to 0.07 of ship forms.
 const SURGE_ADDED: f64 = 0.05;
+/// Length below which the step of the integration is short, m.
+const SMALL_M: f64 = 30.0;
+/// Steps of the integration, s, for small craft and others.
+const STEPS_S: [f64; 2] = [0.02, 0.1];
 /// Revolutions beyond any that drive a craft, 1/s.
 const MOST_RPS: f64 = 200.0;
 
@@ -72,6 +76,11 @@ impl Craft {
     /// Particulars.
     pub fn size(&self) -> &Size {
         &self.parts.size
+    }
+
+    /// Step of the integration, s.
+    pub fn step_s(&self) -> f64 {
+        STEPS_S[usize::from(self.size().lpp_m >= SMALL_M)]
     }
 
     /// Number of shafts.
@@ -189,7 +198,7 @@ impl Craft {
     fn gear_rate(&self, angle_rad: f64, order_rad: f64) -> f64 {
         let Steering { rate_rad_s, stop_rad, .. } = self.parts.steering;
         let order = order_rad.clamp(-stop_rad, stop_rad);
-        ((order - angle_rad) / super::simulate::step_s(self)).clamp(-rate_rad_s, rate_rad_s)
+        ((order - angle_rad) / self.step_s()).clamp(-rate_rad_s, rate_rad_s)
     }
 }
 

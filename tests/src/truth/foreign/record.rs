@@ -11,7 +11,7 @@ use sistership_model::trial::Channel;
 
 use super::craft::Craft;
 use super::motion::Motion;
-use super::simulate::{Track, mean_rps, step_s};
+use super::simulate::{Track, mean_rps};
 use super::size::Size;
 
 /// Standard deviations of the noise, and the sampling.
@@ -74,7 +74,7 @@ impl Instruments {
     /// Columns of a track by their names in files, time first. A craft that is steered by the
     /// difference of two thrusts has the revolutions of either side and no angle.
     pub fn columns(&self, craft: &Craft, track: &Track, rng: &mut ChaCha12Rng) -> Columns {
-        let every = (self.interval_s / step_s(craft)).round() as usize;
+        let every = (self.interval_s / craft.step_s()).round() as usize;
         let kept: Vec<&Motion> = track.motions.iter().step_by(every).collect();
         let recorded = &RECORDED[..if craft.rolls() { 8 } else { 6 }];
         let mut columns: Columns =

@@ -7,19 +7,10 @@ use super::craft::Craft;
 use super::motion::{Motion, Orders, SHAFTS};
 use crate::truth::manoeuvre::{Helm, Manoeuvre};
 
-/// Length below which the step is short, m.
-const SMALL_M: f64 = 30.0;
-/// Steps of the integration, s, for small craft and others.
-const STEPS_S: [f64; 2] = [0.02, 0.1];
 /// Lengths covered before the first order.
 const APPROACH: f64 = 1.0;
 /// Lengths covered in the turns by which craft are judged.
 const TURN_LENGTHS: f64 = 25.0;
-
-/// Step of the integration, s.
-pub fn step_s(craft: &Craft) -> f64 {
-    STEPS_S[usize::from(craft.size().lpp_m >= SMALL_M)]
-}
 
 /// States over time.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -94,20 +85,19 @@ pub fn simulate(
     duration_s: f64,
     mut orders: impl FnMut(f64, &Motion) -> Orders,
 ) -> Track {
-    let step = step_s(craft);
+    let step = craft.step_s();
     let (mut track, mut motion) = (Track::default(), start);
     for k in 0..=(duration_s / step).round() as usize {
         let t_s = k as f64 * step;
         track.t_s.push(t_s);
         track.motions.push(motion);
-        motion = advance(craft, &motion, &orders(t_s, &motion));
+        motion = advance(craft, &motion, &orders(t_s, &motion), step);
     }
     track
 }
 
-/// The state one step later, by the Runge-Kutta method of fourth order.
-pub fn advance(craft: &Craft, motion: &Motion, orders: &Orders) -> Motion {
-    let step = step_s(craft);
+/// The state a step (s) later, by the Runge-Kutta method of fourth order.
+pub fn advance(craft: &Craft, motion: &Motion, orders: &Orders, step: f64) -> Motion {
     let first = craft.rate(motion, orders);
     let second = craft.rate(&motion.advance(&first, 0.5 * step), orders);
     let third = craft.rate(&motion.advance(&second, 0.5 * step), orders);

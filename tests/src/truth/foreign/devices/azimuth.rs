@@ -37,7 +37,7 @@ impl Azimuth {
 impl Device for Azimuth {
     fn load(&self, flow: Flow, angle_rad: f64, n_rps: f64) -> Load {
         let axes = Axes::new(angle_rad);
-        let [along, across] = axes.from_craft((1.0 - self.wake) * flow.along, flow.across);
+        let [along, across] = axes.resolve((1.0 - self.wake) * flow.along, flow.across);
         let turned = self.screw.turned(along, n_rps);
         let thrust = self.thrust_n(along, n_rps, turned.thrust_n);
         let slipstream = self.screw.slipstream_m_s(along, thrust);

@@ -88,12 +88,12 @@ impl Axes {
         Self { sin, cos }
     }
 
-    /// A vector of the craft along and across the device.
-    fn from_craft(self, surge: f64, sway: f64) -> [f64; 2] {
+    /// Resolves a vector of the craft along and across the device.
+    fn resolve(self, surge: f64, sway: f64) -> [f64; 2] {
         [surge * self.cos - sway * self.sin, surge * self.sin + sway * self.cos]
     }
 
-    /// A vector of the device in surge and sway.
+    /// Resolves a vector of the device in surge and sway.
     fn to_craft(self, [along, across]: [f64; 2]) -> [f64; 2] {
         [along * self.cos + across * self.sin, across * self.cos - along * self.sin]
     }

@@ -23,7 +23,7 @@ pub struct Outboard {
 impl Device for Outboard {
     fn load(&self, flow: Flow, angle_rad: f64, n_rps: f64) -> Load {
         let axes = Axes::new(angle_rad);
-        let [along, across] = axes.from_craft((1.0 - self.wake) * flow.along, flow.across);
+        let [along, across] = axes.resolve((1.0 - self.wake) * flow.along, flow.across);
         let turned = self.screw.turned(along, n_rps);
         let slipstream = self.screw.slipstream_m_s(along, turned.thrust_n);
         let kept = 1.0 - self.ventilated * angle_rad.sin().powi(2);

@@ -28,7 +28,7 @@ impl Device for Pod {
     fn load(&self, flow: Flow, angle_rad: f64, n_rps: f64) -> Load {
         let axes = Axes::new(angle_rad);
         let seen = self.straightening * flow.across;
-        let [along, across] = axes.from_craft((1.0 - self.wake) * flow.along, seen);
+        let [along, across] = axes.resolve((1.0 - self.wake) * flow.along, seen);
         let turned = self.screw.turned(along, n_rps);
         let slipstream = self.screw.slipstream_m_s(along, turned.thrust_n);
         let density = self.screw.density_kg_m3;

@@ -62,8 +62,7 @@ impl Device for ScrewAndRudder {
         let advance = self.advance(flow);
         let turned = self.screw.turned(advance, n_rps);
         let axes = Axes::new(angle_rad);
-        let [along, across] =
-            axes.from_craft(self.axial(advance, turned.thrust_n), self.across(flow));
+        let [along, across] = axes.resolve(self.axial(advance, turned.thrust_n), self.across(flow));
         let [surge, sway] = axes.to_craft(self.foil.forces(along, across));
         let walk = self.walk * turned.torque_n_m / (0.35 * self.screw.diameter_m);
         Load {

@@ -24,7 +24,8 @@ pub fn parts(draw: &mut Draw) -> Parts {
         // Denny's formula for one of the hulls.
         wetted_m2: 1.7 * lpp_m * draught_m + 0.5 * size.volume_m3 / draught_m,
         form: around,
-        allowance: 0.0008,
+        // Brackets and thrusters are large beside hulls of this size.
+        allowance: draw.between(0.005, 0.012),
         wave: [wave, 0.42],
     };
     let hull = Hull::new(&size, form, resistance);
@@ -54,7 +55,7 @@ fn form(draw: &mut Draw) -> Form {
     Form {
         section: draw.between(0.8, 1.0),
         bow: draw.between(3.0, 5.0),
-        stern: draw.between(0.45, 0.75),
+        stern: draw.between(0.35, 0.7),
         lost: draw.between(0.2, 0.5),
         lift: draw.between(0.06, 0.15),
         drag: [draw.between(0.6, 1.0), draw.between(0.0, 0.6)],
