@@ -148,8 +148,8 @@ mod tests {
             (0..2).for_each(|j| {
                 assert!((source[j] + solved[j] / deviation(j) - direct[j]).abs() < 1e-10)
             });
-            let (_, expected) =
-                path.best_alpha(0, lambda, &source, &Validation::new(&left_out), (0.0, 0.0));
+            let by_alpha = path.error_by_alpha(0, lambda, &source, &Validation::new(&left_out));
+            let expected = by_alpha.at(0.0);
             assert!((error - expected).abs() < 1e-10, "{lambda}: {error} {expected}");
             assert!(
                 (whitened.residual_variance(0, lambda) - path.residual_variance(0, choice)).abs()
