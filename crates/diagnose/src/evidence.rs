@@ -67,16 +67,18 @@ impl DiscrepancyFactor {
 }
 
 impl MarginalInformation {
-    /// Integrates the first `coefficients` columns out; `None` where the information is not
-    /// positive.
-    pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Option<Self> {
+    /// Integrates the first `coefficients` columns out.
+    ///
+    /// # Errors
+    /// Says that the information on the coefficients is not positive.
+    pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Result<Self, RefineError> {
         let c = fixed.weighted_mean.len();
         let e = gram.products.nrows() - 1 - c;
         let products = &gram.products;
         let own = products.view((1, 1), (c, c)) + &fixed.information;
         let cross = products.view((1, 1 + c), (c, e)).into_owned();
         let right = products.view((1, 0), (c, 1)).column(0) + &fixed.weighted_mean;
-        let coefficients = Cholesky::new(own)?;
+        let coefficients = Cholesky::new(own).ok_or_else(not_positive)?;
         let answers = coefficients.solve(&cross);
         let shift = coefficients.solve(&right);
         let information = products.view((1 + c, 1 + c), (e, e)) - cross.transpose() * &answers;
@@ -84,7 +86,7 @@ impl MarginalInformation {
         let log_determinant: f64 =
             2.0 * coefficients.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         let deviance = products[(0, 0)] + gram.log_variance - right.dot(&shift) + log_determinant;
-        Some(Self { deviance, information, right: remaining, answers, shift })
+        Ok(Self { deviance, information, right: remaining, answers, shift })
     }
 
     /// Some of the effects' columns, with others integrated out under their priors.
