@@ -207,3 +207,29 @@ impl MarginalInformation {
 pub(super) fn not_positive() -> RefineError {
     RefineError::Data("the trials' information is not positive".into())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// One coefficient and one effect: what is left of the effect is its Schur complement, and
+    /// information that is not positive is an error, not an absence of evidence.
+    #[test]
+    fn coefficients_are_integrated_out_or_the_reason_is_told() {
+        let mut gram = Gram::empty(3);
+        gram.products =
+            DMatrix::from_row_slice(3, 3, &[9.0, 2.0, 1.0, 2.0, 4.0, 3.0, 1.0, 3.0, 5.0]);
+        let fixed = CoefficientPrior {
+            information: DMatrix::from_element(1, 1, 1.0),
+            weighted_mean: DVector::from_element(1, 0.5),
+        };
+        let reduced = MarginalInformation::new(&gram, &fixed).unwrap();
+        assert!((reduced.information[(0, 0)] - (5.0 - 9.0 / 5.0)).abs() < 1e-12);
+        assert!((reduced.right[0] - (1.0 - 3.0 * 2.5 / 5.0)).abs() < 1e-12);
+        assert!((reduced.deviance - (9.0 - 2.5 * 2.5 / 5.0 + 5.0_f64.ln())).abs() < 1e-12);
+        gram.products[(1, 1)] = -2.0;
+        let refusal = MarginalInformation::new(&gram, &fixed).unwrap_err().to_string();
+        assert!(refusal.contains("information is not positive"), "{refusal}");
+    }
+}

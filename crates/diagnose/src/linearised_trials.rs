@@ -305,3 +305,7 @@ fn noise(
     };
     read.into_iter().filter_map(one).collect()
 }
+
+#[cfg(test)]
+#[path = "linearised_trials_tests.rs"]
+mod tests;
