@@ -12,7 +12,9 @@ use super::hypothesis::JudgedHypothesis;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::model_with;
-use sistership_estimate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
+use sistership_estimate::refine::{
+    Alternative, Blocks, RefineError, alternatives, fit, trial_moments,
+};
 use sistership_regression::{Moments, RidgeChoice};
 use sistership_sources::transfer::approach_of;
 
@@ -32,10 +34,11 @@ pub(super) fn refits(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
     restart_s: f64,
-) -> Vec<Refit> {
+) -> Result<Vec<Refit>, RefineError> {
     let all = model_with(search.model, &judged.candidates, Some(&judged.covariance));
-    let without =
-        (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
+    let without = (0..request.trials.len())
+        .map(|trial| without(request, search, judged, trial))
+        .collect::<Result<_, _>>()?;
     let found = Refit { how: None, all, without };
     let corrected = (!judged.candidates.is_empty())
         .then(|| CorrectedRecords::new(request, &found.all))
@@ -48,7 +51,7 @@ pub(super) fn refits(
         );
         fitted.extend(jointly(request, &found, restart_s));
     }
-    std::iter::once(found).chain(fitted).collect()
+    Ok(std::iter::once(found).chain(fitted).collect())
 }
 
 /// The trials but one; of a single one, itself.
@@ -66,14 +69,13 @@ fn without(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
     trial: usize,
-) -> Model {
+) -> Result<Model, RefineError> {
     let keep = |other: usize| other != trial || request.trials.len() == 1;
-    let fitted =
-        judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
-    fitted.map_or_else(
-        || request.model.clone(),
-        |(_, candidates)| model_with(search.model, &candidates, None),
-    )
+    let (_, candidates) = judged.of_trials(&search.fixed, &keep)?;
+    Ok(match candidates.is_empty() {
+        true => request.model.clone(),
+        false => model_with(search.model, &candidates, None),
+    })
 }
 
 fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {

@@ -14,10 +14,13 @@
 
 mod columns;
 mod filter;
+mod filter_noise;
+mod filter_value;
 mod followed;
 mod gram;
 mod instruments;
 mod jumps;
+mod kalman_filter;
 mod lanes;
 mod likelihood;
 mod linearise;
@@ -34,9 +37,11 @@ mod symmetric_products;
 mod tangents;
 mod tapes;
 mod thresholds;
+mod transition;
 
 pub use columns::{Columns, EffectCandidate, Nuisance, NuisanceKind, lacked_name};
-pub use filter::{Discrepancies, errors, filter, filter_first, responses, whitened};
+pub use filter::{Discrepancies, Whitened, errors, filter, filter_first, responses, whitened};
+pub use filter_noise::unknown_noise;
 pub use gram::Gram;
 pub use likelihood::deviances;
 pub use linearise::linearise;

@@ -56,7 +56,7 @@ fn refined(source: &Model, blocks: &Blocks, trials: &[Trial], rng: &mut ChaCha8R
     let (training, validation) = split(&tables, rng);
     let fold =
         Fold::new(blocks, source, &moments(blocks, &training), &moments(blocks, &validation));
-    let choices = tune(&[fold], &RANGE, LAMBDAS);
+    let choices = tune(&[fold], &RANGE, LAMBDAS).expect("finite errors");
     let fit = fit(blocks, &moments(blocks, &tables), source, &choices);
     let mut model = source.clone();
     model.coefficients.extend(
