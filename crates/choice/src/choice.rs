@@ -99,6 +99,7 @@ mod tests {
             variance,
             coefficients,
             ridge: None,
+            folds: Vec::new(),
             reason: None,
         }
     }

@@ -7,10 +7,13 @@
 
 mod branch;
 mod choice;
+mod correction;
 mod entrant;
+mod extremes;
 mod ladder;
 mod population;
 mod sailed;
+mod scatter;
 mod search;
 mod start;
 mod taken;

@@ -36,6 +36,7 @@ fn searched_by(search: &Search<'_>) -> Settings {
     let lengths_s = |lengths: f64| length_s.map(|(l, approach)| lengths * l / approach.speed_m_s);
     Settings {
         restart_s: settings.restart_s.or(lengths_s(SEARCH.restart)),
+        longer_restarts_s: longer_restarts_s(search, &lengths_s),
         smoothing_s: settings.smoothing_s.or(lengths_s(SEARCH.smoothing)),
         part_s: settings.part_s.or_else(|| lengths_s(SEARCH.part).filter(|_| !few)),
         in_parts: settings.in_parts || few,
@@ -56,6 +57,21 @@ fn searched_by(search: &Search<'_>) -> Settings {
     }
 }
 
+/// Restart intervals at which a bias shows, up to the longest trial as a whole; of trials that are
+/// left out in parts no longer ones than those, so that all candidates have the same.
+fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
+    let (settings, fitted) = (search.settings, search.fitted());
+    if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
+        return settings.longer_restarts_s.clone();
+    }
+    let longest_s = fitted.iter().map(|trial| trial.duration_s()).fold(0.0, f64::max);
+    let longer = lengths_s(SEARCH.longer_restart);
+    let whole = lengths_s(1.0).map(|length_s| longest_s + length_s);
+    let has_roll = search.entrants.iter().any(|entrant| entrant.law.has_roll());
+    let whole = whole.filter(|_| !has_roll || fitted.len() >= settings.folds);
+    longer.into_iter().chain(whole).collect()
+}
+
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
@@ -74,6 +90,8 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     next.extend(alone);
     // What ships have in common says little of one as it is, and much of how far it may be.
     next.extend(population);
+    // The reference is reported whatever comes of it.
+    next.extend(search.reference().filter(|reference| !next.contains(reference)));
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
     descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
@@ -156,7 +174,8 @@ fn descend(
     let (begun, place) = (Instant::now(), tried.len());
     let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
         let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
-        tried.push(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength: None });
+        let (refinement, roll_strength, refusal) = (None, None, None);
+        tried.push(Tried { entrant, rung, weighed, refinement, cost_s, roll_strength, refusal });
         descend((search, known), others, rest, tried, progress)
     };
     let is_taken = |all: &[Weighed]| {
@@ -213,4 +232,33 @@ fn leading(tried: &[Tried]) -> Vec<usize> {
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
     near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_estimate::testing::{mariner, trials};
+    use sistership_model::Zoo;
+    use sistership_model::trial::Trial;
+
+    #[test]
+    fn whole_trials_are_simulated_where_they_are_held_out_whole() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let sailed = trials(&model, &law, 0.0);
+        let target = zoo.vessel("mariner").unwrap();
+        let intervals = |count: usize| {
+            let trials: Vec<&Trial> = sailed.iter().take(count).collect();
+            let settings = &Settings::default();
+            let search =
+                Search { target, entrants: &[], trials: &trials, population: &[], settings };
+            let searched = searched_by(&search);
+            (searched.restart_s.unwrap(), searched.longer_restarts_s)
+        };
+        let (shortest_s, longer_s) = intervals(4);
+        let longest_s = sailed.iter().map(Trial::duration_s).fold(0.0, f64::max);
+        assert!((longer_s[0] / shortest_s - 2.0).abs() < 1e-9);
+        assert!(longer_s.len() == 2 && longer_s[1] > longest_s, "{longer_s:?}");
+        assert_eq!(intervals(2).1, Vec::<f64>::new(), "parts of two trials");
+    }
 }

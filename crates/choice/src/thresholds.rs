@@ -36,17 +36,16 @@ pub(super) struct SearchThresholds {
     /// Most ships of a population, by rank of similarity, a count. Source: chosen, more than the
     /// zoo has; each is asked at every state.
     pub population: usize,
-    /// Most trials beside which a population enters, a count. Source: derived: one less than
-    /// branches are tried of. What ships have in common and a branch beside a law are two ways to
-    /// say what a law alone does not, and of so many trials the second says more
-    /// (docs/evidence/population.md).
-    pub population_trials: usize,
     /// `k_v`: weight of the variance where no trial reaches beside the error on trials left out,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub elsewhere: f64,
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// `docs/evidence/plain.md`, which has half and double; as long as trajectories are fitted.
     pub restart: f64,
+    /// `T_l`: a longer restart interval at which the same trials are simulated, beside the whole of
+    /// each, by `L/U`, dimensionless. Source: derived: between the shortest and a turning circle or
+    /// zigzag, of some 20 `L/U`.
+    pub longer_restart: f64,
     /// `T_p`: how long a part is where three trials or more are left out part by part, by `L/U`,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub part: f64,
@@ -75,9 +74,9 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     kept: 1e9,
     sources: 5,
     population: 48,
-    population_trials: 11,
     elsewhere: 5.0,
     restart: 5.0,
+    longer_restart: 10.0,
     part: 10.0,
     smoothing: 0.2,
     calibration: 30_000,

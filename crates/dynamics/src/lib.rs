@@ -8,6 +8,7 @@ pub mod envelope;
 pub mod equations;
 pub mod error;
 pub mod gear;
+pub mod horizons;
 pub mod instruments;
 pub mod integrate;
 pub mod interpolate;

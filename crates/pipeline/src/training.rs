@@ -1,6 +1,8 @@
 //! The recipe of a learned branch, from what is asked.
 
-use sistership_branches::{BranchChoice, BranchKind, BranchSettings, Kinds, choose};
+use sistership_branches::{
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Kinds, choose,
+};
 use sistership_estimate::refine::RefineError;
 use sistership_model::trial::Trial;
 use sistership_model::version::{RecipeTrial, SourceVersion, code_revision};
@@ -58,7 +60,9 @@ pub async fn chosen(
     let work = move || -> Result<BranchChoice, DeriveError> {
         let read: Vec<&Trial> = read.iter().collect();
         let told = |kind: BranchKind| progress(0.1, &format!("trying {}", kind.name()));
-        let choice = choose(&stored.model, &law, &read, (&settings, Kinds::Every), &told)?;
+        let folds = HeldOutFold::of_one(&stored.model, read.len());
+        let on = HeldOutTrials { law: &law, trials: &read, folds: &folds };
+        let choice = choose(&stored.model, &on, (&settings, Kinds::Every), &told)?;
         choice.ok_or(DeriveError::Refine(RefineError::Cancelled))
     };
     tokio::task::spawn_blocking(work).await?

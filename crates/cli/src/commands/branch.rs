@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use sistership_branches::{
-    BranchChoice, BranchKind, BranchSettings, Judgement, Kinds, Training, Weights, choose, judge,
-    train, with_branch,
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Judgement, Kinds,
+    Training, Weights, choose, judge, train, with_branch,
 };
 use sistership_model::branch::BranchMode;
 use sistership_model::{Law, Model, Trial, Zoo};
@@ -188,8 +188,9 @@ fn trained(
             note(&format!("trying {} on trials left out", kind.name()));
             true
         };
-        let choice =
-            choose(model, law, trials, (settings, Kinds::Every), &told).map_err(refused)?;
+        let folds = HeldOutFold::of_one(model, trials.len());
+        let on = HeldOutTrials { law, trials, folds: &folds };
+        let choice = choose(model, &on, (settings, Kinds::Every), &told).map_err(refused)?;
         match choice.as_ref().and_then(|choice| choice.taken) {
             Some(kind) => (choice, settings.of(kind)),
             None => return Ok((choice, None)),

@@ -36,12 +36,14 @@ Examples:
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
 Without --source, --law and --method, every eligible source is tried under every law that was
-measured, laws without a source, and of at most 11 trials what the published models of all other
-ships say. What these hold is taken unless something is better on manoeuvres left out at a level of
-95 %; else, of what is within one standard error of the best there, that which has the least error
-together with what single trials move elsewhere. With
-twelve trials and more learned branches are tried beside it, and one that wins on trials left out by
-more than its uncertainty is taken: its weights are written beside the model, m.weights.json for m.yaml.
+measured, laws without a source, and what the published models of all other ships say. What these
+hold is taken unless something is better on manoeuvres left out at a level of 95 %; else, of what is
+within one standard error of the best there, that which has the least error together with what
+single trials move elsewhere. The most similar ship, refined with the l2 prior, is always among
+them, marked as the reference. With twelve trials and more learned corrections are tried beside what
+is taken, on trials that neither half has seen, and one that is surely better there, no worse at
+other rudder angles and speeds, and no less certain of the standard manoeuvres is taken: its weights
+are written beside the model, m.weights.json for m.yaml.
 The source's coefficients are the prior: with a method named, options go from the source outwards,
 and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
 

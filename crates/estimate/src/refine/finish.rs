@@ -37,7 +37,7 @@ enum CandidateRefusal {
 const NO_MODEL: &str = "a law without coefficients is no model";
 
 /// Whether a law's coefficients are all zero: what stands for the source where there is none.
-fn is_empty(model: &Model) -> bool {
+pub(super) fn is_empty(model: &Model) -> bool {
     let mut values = model.coefficients.values().peekable();
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
 }
@@ -98,6 +98,20 @@ pub(super) fn finish(
             }
         }
     }
+}
+
+/// The model of the best candidate, fitted on all trials.
+///
+/// # Errors
+/// No candidate's simulations go on to their end, or the constraints cannot be kept.
+pub(super) fn best_model(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    variants: &[Variant],
+) -> Result<Model, RefineError> {
+    let reasons = || candidates.iter().filter_map(|one| one.option.reason.as_deref());
+    let best = best(candidates).ok_or_else(|| RefineError::diverged(reasons()))?;
+    Ok(model_of(problem, candidates[best].solution.fit(variants)?.as_ref()))
 }
 
 /// What a candidate gives on all trials with its standard manoeuvres, where it keeps the

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use sistership_model::Model;
 use sistership_model::trial::Trial;
 
 use super::candidate::{CandidateFit, best};
@@ -38,8 +39,20 @@ pub struct Weighed {
     pub coefficients: usize,
     /// Of a ridge, its family of terms and the strength of its prior.
     pub ridge: Option<(Family, f64)>,
+    /// The model of each fold, fitted without it; none of the source as carried over, and where
+    /// trials were held out in parts.
+    pub folds: Vec<FoldModel>,
     /// Why it cannot be taken, if so.
     pub reason: Option<String>,
+}
+
+/// A model with the trials that it was fitted without.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoldModel {
+    /// The model.
+    pub model: Model,
+    /// The places of those trials among the ones that have a say.
+    pub held_out: Vec<usize>,
 }
 
 impl Weighed {
@@ -52,6 +65,7 @@ impl Weighed {
             variance: None,
             coefficients: 0,
             ridge: None,
+            folds: Vec::new(),
             reason: Some(reason),
         }
     }
@@ -81,8 +95,21 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
         },
         coefficients: candidate.size,
         ridge: candidate.solution.ridge().and_then(ridge),
+        folds: folds(problem, &candidate.left_out),
         reason: candidate.option.reason.clone(),
     }
+}
+
+fn folds(problem: &Problem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
+    if problem.training.len() != problem.whole.len() || problem.training.len() < 2 {
+        return Vec::new();
+    }
+    let one = |(fold, model): (usize, &Model)| {
+        let trials = 0..problem.training.len();
+        let held_out = trials.filter(|trial| problem.fold_of(*trial) == fold).collect();
+        FoldModel { model: model.clone(), held_out }
+    };
+    left_out.iter().enumerate().map(one).collect()
 }
 
 /// Means by trial: parts of one count together, for they depend on each other; of one or two trials
