@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use rand_chacha::ChaCha12Rng;
 use sistership_tests::synthetic::replica;
+use sistership_tests::truth::foreign::Kind;
 use sistership_tests::truth::foreign::coasting::Coasting;
 use sistership_tests::truth::foreign::craft::Craft;
-use sistership_tests::truth::foreign::programme::{further, programme, unseen};
+use sistership_tests::truth::foreign::programme::{further, programme, slow_speed, unseen};
 use sistership_tests::truth::foreign::record::{Columns, Instruments, write_trials, write_vessel};
 use sistership_tests::truth::foreign::simulate::{Run, Track, turning};
-use sistership_tests::truth::foreign::{Kind, slow_speed};
 
 /// Simulations of unseen manoeuvres start anew after so many lengths.
 const RESTART_LENGTHS: f64 = 10.0;

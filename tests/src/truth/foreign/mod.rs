@@ -104,8 +104,3 @@ impl Kind {
         steerable(seed, self as usize, draw)
     }
 }
-
-/// Speed of the slower trials by that of the craft, by seed.
-pub fn slow_speed(seed: u64) -> f64 {
-    0.55 + 0.05 * (seed % 4) as f64
-}
