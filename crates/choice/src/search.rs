@@ -57,19 +57,21 @@ fn searched_by(search: &Search<'_>) -> Settings {
     }
 }
 
-/// Restart intervals at which a bias shows, up to the longest trial as a whole; of trials that are
-/// left out in parts no longer ones than those, so that all candidates have the same.
+/// The restart interval at which a bias shows: longer than every trial, so that each is simulated as
+/// a whole; as long as parts where some laws have trials left out in those, so that all candidates
+/// have the same.
 fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
     let (settings, fitted) = (search.settings, search.fitted());
     if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
         return settings.longer_restarts_s.clone();
     }
     let longest_s = fitted.iter().map(|trial| trial.duration_s()).fold(0.0, f64::max);
-    let longer = lengths_s(SEARCH.longer_restart);
-    let whole = lengths_s(1.0).map(|length_s| longest_s + length_s);
     let has_roll = search.entrants.iter().any(|entrant| entrant.law.has_roll());
-    let whole = whole.filter(|_| !has_roll || fitted.len() >= settings.folds);
-    longer.into_iter().chain(whole).collect()
+    let longer_s = match has_roll && fitted.len() < settings.folds {
+        true => lengths_s(SEARCH.part),
+        false => lengths_s(1.0).map(|length_s| longest_s + length_s),
+    };
+    longer_s.into_iter().collect()
 }
 
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
@@ -197,10 +199,12 @@ fn descend(
     Ok(())
 }
 
-/// Entrants with their errors, the least first; those that did not sail are left out.
+/// Entrants with their errors at the shortest restart interval, the least first; those that did not
+/// sail are left out. What goes wrong in whole trials the next stage may put right.
 fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
+    let sailed = tried.filter(|one| one.weighed.error.is_some());
     let mut order: Vec<(usize, f64)> =
-        tried.filter_map(|one| Some((one.entrant, one.weighed.error?))).collect();
+        sailed.filter_map(|one| Some((one.entrant, one.weighed.shortest?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
     order
 }
@@ -257,8 +261,8 @@ mod tests {
         };
         let (shortest_s, longer_s) = intervals(4);
         let longest_s = sailed.iter().map(Trial::duration_s).fold(0.0, f64::max);
-        assert!((longer_s[0] / shortest_s - 2.0).abs() < 1e-9);
-        assert!(longer_s.len() == 2 && longer_s[1] > longest_s, "{longer_s:?}");
+        assert!(longer_s.len() == 1 && longer_s[0] > longest_s, "{longer_s:?}");
+        assert!(longest_s > shortest_s);
         assert_eq!(intervals(2).1, Vec::<f64>::new(), "parts of two trials");
     }
 }

@@ -42,10 +42,6 @@ pub(super) struct SearchThresholds {
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// `docs/evidence/plain.md`, which has half and double; as long as trajectories are fitted.
     pub restart: f64,
-    /// `T_l`: a longer restart interval at which the same trials are simulated, beside the whole of
-    /// each, by `L/U`, dimensionless. Source: derived: between the shortest and a turning circle or
-    /// zigzag, of some 20 `L/U`.
-    pub longer_restart: f64,
     /// `T_p`: how long a part is where three trials or more are left out part by part, by `L/U`,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub part: f64,
@@ -76,7 +72,6 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     population: 48,
     elsewhere: 5.0,
     restart: 5.0,
-    longer_restart: 10.0,
     part: 10.0,
     smoothing: 0.2,
     calibration: 30_000,
