@@ -95,7 +95,7 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     // The reference is reported whatever comes of it.
     next.extend(search.reference().filter(|reference| !next.contains(reference)));
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
-    let next = leading(&tried);
+    let next = leading(search, &tried);
     descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
     taken(search, tried, progress)
 }
@@ -230,12 +230,16 @@ fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
 }
 
 /// The entrants that lead in weak form: trajectories seldom gain more than
-/// [`SEARCH`]`.trajectory_gain`.
-fn leading(tried: &[Tried]) -> Vec<usize> {
+/// [`SEARCH`]`.trajectory_gain`. A population, which is near wherever other ships hold the law, takes
+/// the place of none of the others.
+fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
-    near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
+    let is_population = |entrant: &usize| search.entrants[*entrant].held_by == HeldBy::Population;
+    let (population, others): (Vec<usize>, Vec<usize>) =
+        near.map(|(entrant, _)| entrant).partition(is_population);
+    others.into_iter().take(SEARCH.trajectories).chain(population).collect()
 }
 
 #[cfg(test)]

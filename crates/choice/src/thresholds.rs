@@ -9,7 +9,8 @@ pub(super) struct SearchThresholds {
     /// `g_t`: error in weak form by the least of it up to which trajectories are fitted,
     /// dimensionless. Source: `docs/evidence/plain.md`.
     pub trajectory_gain: f64,
-    /// Most entrants of which trajectories are fitted, a count. Source: `docs/evidence/plain.md`.
+    /// Most entrants of which trajectories are fitted, beside a population, a count. Source:
+    /// `docs/evidence/plain.md`.
     pub trajectories: usize,
     /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
     /// other alone, and a scatter has one degree of freedom.
