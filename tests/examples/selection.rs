@@ -69,7 +69,7 @@ fn main() {
         "| --- | --: | --: | --- | --: | --: | --: | --: | --- | --: | --- | --: | --: | --: |"
     );
     let mut sums: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
-    for name in NAMES.into_iter().filter(|name| wanted.split(',').any(|w| name.contains(w))) {
+    for name in NAMES.into_iter().filter(|name| wanted.split('/').any(|part| name.contains(part))) {
         for &seed in &seeds {
             let case = case(&zoo, name, seed);
             for count in counts

@@ -95,6 +95,7 @@ mod tests {
         Weighed {
             step: String::new(),
             error,
+            shortest: error,
             each,
             variance,
             coefficients,

@@ -57,19 +57,21 @@ fn searched_by(search: &Search<'_>) -> Settings {
     }
 }
 
-/// Restart intervals at which a bias shows, up to the longest trial as a whole; of trials that are
-/// left out in parts no longer ones than those, so that all candidates have the same.
+/// The restart interval at which a bias shows: longer than every trial, so that each is simulated as
+/// a whole; as long as parts where some laws have trials left out in those, so that all candidates
+/// have the same.
 fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
     let (settings, fitted) = (search.settings, search.fitted());
     if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
         return settings.longer_restarts_s.clone();
     }
     let longest_s = fitted.iter().map(|trial| trial.duration_s()).fold(0.0, f64::max);
-    let longer = lengths_s(SEARCH.longer_restart);
-    let whole = lengths_s(1.0).map(|length_s| longest_s + length_s);
     let has_roll = search.entrants.iter().any(|entrant| entrant.law.has_roll());
-    let whole = whole.filter(|_| !has_roll || fitted.len() >= settings.folds);
-    longer.into_iter().chain(whole).collect()
+    let longer_s = match has_roll && fitted.len() < settings.folds {
+        true => lengths_s(SEARCH.part),
+        false => lengths_s(1.0).map(|length_s| longest_s + length_s),
+    };
+    longer_s.into_iter().collect()
 }
 
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
@@ -93,7 +95,7 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     // The reference is reported whatever comes of it.
     next.extend(search.reference().filter(|reference| !next.contains(reference)));
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
-    let next = leading(&tried);
+    let next = leading(search, &tried);
     descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
     taken(search, tried, progress)
 }
@@ -197,10 +199,12 @@ fn descend(
     Ok(())
 }
 
-/// Entrants with their errors, the least first; those that did not sail are left out.
+/// Entrants with their errors at the shortest restart interval, the least first; those that did not
+/// sail are left out. What goes wrong in whole trials the next stage may put right.
 fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
+    let sailed = tried.filter(|one| one.weighed.error.is_some());
     let mut order: Vec<(usize, f64)> =
-        tried.filter_map(|one| Some((one.entrant, one.weighed.error?))).collect();
+        sailed.filter_map(|one| Some((one.entrant, one.weighed.shortest?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
     order
 }
@@ -226,12 +230,16 @@ fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
 }
 
 /// The entrants that lead in weak form: trajectories seldom gain more than
-/// [`SEARCH`]`.trajectory_gain`.
-fn leading(tried: &[Tried]) -> Vec<usize> {
+/// [`SEARCH`]`.trajectory_gain`. A population, which is near wherever other ships hold the law, takes
+/// the place of none of the others.
+fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
-    near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
+    let is_population = |entrant: &usize| search.entrants[*entrant].held_by == HeldBy::Population;
+    let (population, others): (Vec<usize>, Vec<usize>) =
+        near.map(|(entrant, _)| entrant).partition(is_population);
+    others.into_iter().take(SEARCH.trajectories).chain(population).collect()
 }
 
 #[cfg(test)]
@@ -257,8 +265,8 @@ mod tests {
         };
         let (shortest_s, longer_s) = intervals(4);
         let longest_s = sailed.iter().map(Trial::duration_s).fold(0.0, f64::max);
-        assert!((longer_s[0] / shortest_s - 2.0).abs() < 1e-9);
-        assert!(longer_s.len() == 2 && longer_s[1] > longest_s, "{longer_s:?}");
+        assert!(longer_s.len() == 1 && longer_s[0] > longest_s, "{longer_s:?}");
+        assert!(longest_s > shortest_s);
         assert_eq!(intervals(2).1, Vec::<f64>::new(), "parts of two trials");
     }
 }

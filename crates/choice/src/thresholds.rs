@@ -9,7 +9,8 @@ pub(super) struct SearchThresholds {
     /// `g_t`: error in weak form by the least of it up to which trajectories are fitted,
     /// dimensionless. Source: `docs/evidence/plain.md`.
     pub trajectory_gain: f64,
-    /// Most entrants of which trajectories are fitted, a count. Source: `docs/evidence/plain.md`.
+    /// Most entrants of which trajectories are fitted, beside a population, a count. Source:
+    /// `docs/evidence/plain.md`.
     pub trajectories: usize,
     /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
     /// other alone, and a scatter has one degree of freedom.
@@ -42,10 +43,6 @@ pub(super) struct SearchThresholds {
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// `docs/evidence/plain.md`, which has half and double; as long as trajectories are fitted.
     pub restart: f64,
-    /// `T_l`: a longer restart interval at which the same trials are simulated, beside the whole of
-    /// each, by `L/U`, dimensionless. Source: derived: between the shortest and a turning circle or
-    /// zigzag, of some 20 `L/U`.
-    pub longer_restart: f64,
     /// `T_p`: how long a part is where three trials or more are left out part by part, by `L/U`,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub part: f64,
@@ -76,7 +73,6 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     population: 48,
     elsewhere: 5.0,
     restart: 5.0,
-    longer_restart: 10.0,
     part: 10.0,
     smoothing: 0.2,
     calibration: 30_000,

@@ -39,3 +39,48 @@ pub(super) fn compare_longer(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Model;
+    use sistership_model::trial::Trial;
+
+    use super::super::candidate::UnchangedSource;
+    use super::super::settings::Settings;
+    use super::super::simulated::simulate_training;
+    use super::*;
+    use crate::testing::{mariner, trials, with};
+
+    fn candidate(problem: &Problem<'_>, model: &Model) -> CandidateFit {
+        let left_out = vec![model.clone(); problem.fold_count()];
+        let simulated = simulate_training(problem, &left_out, &|trial| problem.fold_of(trial));
+        let step = (String::new(), None);
+        let fit = CandidateFit::new(problem, step, UnchangedSource, 1, simulated.unwrap());
+        CandidateFit { left_out, ..fit }
+    }
+
+    #[test]
+    fn a_bias_shows_in_whole_trials_and_what_is_far_off_is_out() {
+        let (model, law) = mariner();
+        let sailed = trials(&model, &law, 0.02);
+        let sailed: Vec<&Trial> = sailed.iter().collect();
+        let settings = Settings {
+            restart_s: Some(60.0),
+            longer_restarts_s: vec![1000.0],
+            ..Settings::default()
+        };
+        let problem = Problem::of_model(&model, &law, &sailed, settings);
+        let biased = with(&model, |name| if name == "N_0" { 1.5 } else { 1.0 });
+        let far = with(&model, |name| if name == "N_delta" { 1.5 } else { 1.0 });
+        let mut all = [&model, &biased, &far].map(|model| candidate(&problem, model));
+        compare_longer(&problem, &mut all).unwrap();
+        let [own, biased, far] = all;
+        let ratio = |place: usize| biased.horizons[place].mean / own.horizons[place].mean;
+        let (short, whole) = (ratio(0), ratio(1));
+        assert!(short < 1.5 && whole > 1.5 * short, "{short} {whole}");
+        assert!(biased.option.error.unwrap() > own.option.error.unwrap());
+        assert!(far.option.error.is_none() && far.option.reason.is_some());
+        assert_eq!((own.horizons.len(), far.horizons.len()), (2, 1));
+    }
+}

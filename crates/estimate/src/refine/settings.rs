@@ -377,3 +377,22 @@ impl Settings {
         self.smoothing_s.filter(|_| self.held_out.is_empty())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_in_the_place_of_a_source_is_named() {
+        let of = |prior, positions: &[f64], source: Option<&str>| {
+            let mixture_positions = positions.to_vec();
+            let settings = Settings { prior, mixture_positions, ..Settings::default() };
+            settings.origin(source).to_owned()
+        };
+        assert_eq!(of(Prior::Source, &[], Some("wpcc/1")), "wpcc/1");
+        assert_eq!(of(Prior::Source, &[], None), TRIALS_ALONE);
+        assert_eq!(of(Prior::Population, &[], Some("wpcc/1")), "a population of ships");
+        assert_eq!(of(Prior::Mixture, &[0.5], Some("wpcc/1")), "wpcc/1");
+        assert_eq!(of(Prior::Mixture, &[1.0], Some("wpcc/1")), "the estimate from particulars");
+    }
+}

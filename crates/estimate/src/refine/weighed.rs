@@ -27,8 +27,11 @@ pub enum Extent {
 pub struct Weighed {
     /// What it is, for people.
     pub step: String,
-    /// Standardised mean squared error; none where a simulation diverged.
+    /// Standardised mean squared error, the geometric mean over restart intervals; none where a
+    /// simulation diverged at the shortest.
     pub error: Option<f64>,
+    /// That at the shortest restart interval.
+    pub shortest: Option<f64>,
     /// The same by trial.
     pub each: BTreeMap<String, f64>,
     /// Jackknife variance of what is simulated under rudders that no trial had, on the same scales:
@@ -61,6 +64,7 @@ impl Weighed {
         Self {
             step: String::new(),
             error: None,
+            shortest: None,
             each: BTreeMap::new(),
             variance: None,
             coefficients: 0,
@@ -88,6 +92,7 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
     Weighed {
         step: candidate.option.step.clone(),
         error: candidate.option.error.filter(|error| error.is_finite()),
+        shortest: candidate.horizons.first().map(|horizon| horizon.mean),
         each: by_trial(problem, &candidate.each),
         variance: match candidate.size {
             0 => Some(0.0),
