@@ -10,6 +10,7 @@ mod crash;
 mod crowd;
 mod diagnosis_on_files;
 mod diagnosis_over_http;
+mod drift;
 mod exports;
 mod families;
 mod fleet;

@@ -45,6 +45,7 @@ mod objects;
 mod objects_error;
 mod objects_place;
 mod page;
+mod postgres_pool;
 mod questions;
 mod record;
 mod reports;

@@ -54,7 +54,13 @@ statements! {
         (SELECT m.* FROM diagnoses m WHERE m.made_id = n.value ORDER BY m.id DESC LIMIT 200)) x \
         ORDER BY x.id DESC LIMIT 200) d ORDER BY n.value, d.id DESC"
     );
-    DELETED = of_names!("t.id", "trials t WHERE t.id = n.value AND t.deleted_us IS NOT NULL");
+    DELETED = pair(
+        "SELECT t.id FROM json_each($1) n CROSS JOIN trials t WHERE t.id = n.value AND \
+        t.deleted_us IS NOT NULL",
+        "SELECT t.id FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN \
+        LATERAL (SELECT o.id FROM trials o WHERE o.id = n.value AND o.deleted_us IS NOT NULL LIMIT \
+        1) t"
+    );
     FACTS = of_names!("f.ship, f.value", "ship_facts f WHERE f.ship = n.value AND f.fact = $2");
     // Here and below a limit keeps PostgreSQL from joining all rows.
     SERIES = pair(

@@ -13,7 +13,9 @@ use utoipa_axum::routes;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use crate::rights::visible;
 use crate::web::{Name, Params, Place};
+use sistership_access::Role;
 use sistership_http::ship_search::vectors;
 use sistership_pipeline::archive::vessel;
 use sistership_pipeline::budget;
@@ -43,7 +45,7 @@ fn yes() -> bool {
 
 /// Rank the zoo for a ship, and say which ships may be its source
 ///
-/// Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
+/// Ships are those for which you have a role. Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
 /// ranked; `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships",
@@ -67,6 +69,8 @@ async fn similar(
     let models = SourceModels::read(app.archive(), &zoo).await?;
     let ranked =
         move || models.rank(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
-    let ranked = app.compute(ranked).await?;
+    let mut ranked = app.compute(ranked).await?;
+    ranked.ranking =
+        visible(app.store(), Role::Reader, ranked.ranking, |ranked| &ranked.ship).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

@@ -16,6 +16,7 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Positive, Remark, WebAddress};
 use crate::web::{Id, Listing, Name, Paged, Params, Payload, Place};
+use sistership_http::reply::path;
 use sistership_pipeline::condition::DRIFT_LIMIT;
 use sistership_webhooks::check_url;
 
@@ -175,7 +176,7 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
         events: events.into_iter().map(|event| event.as_str().to_owned()).collect(),
     };
     let row = app.store().webhooks().create(&new).await?;
-    let location = format!("/v1/webhooks/{}", row.id);
+    let location = path(&["v1", "webhooks", &row.id]);
     let about = WebhookView::of(&app, row).await?;
     let view = NewWebhookView { secret: new.secret, about };
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
