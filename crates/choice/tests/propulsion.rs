@@ -8,11 +8,12 @@ use sistership_choice::{Asked, Start, best_start};
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, Trajectory, at, straight};
 use sistership_dynamics::{Method, Order, Run, Ship};
-use sistership_estimate::refine::Settings;
+use sistership_estimate::refine::{Method as Estimator, Request, Settings, refine};
+use sistership_estimate::testing::{mariner, trials, with};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_propulsion::check;
+use sistership_propulsion::{PropulsionFault, check};
 
 /// Revolutions of ships whose law takes none, 1/s.
 const REVOLUTIONS: f64 = 1.5;
@@ -126,6 +127,30 @@ fn what_is_taken_of_a_ship_without_revolutions_in_its_law_stops() {
     let start = found(&zoo, &stranger).unwrap();
     println!("{}", line(&stranger, &start));
     assert!(stops(&start));
+}
+
+#[test]
+fn a_named_method_gives_a_law_without_revolutions_a_balance() {
+    let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+    let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let settings = Settings { method: Estimator::Weak, ..Settings::default() };
+    let request = Request {
+        target: zoo.vessel("mariner").unwrap(),
+        source: &model,
+        source_law: None,
+        law: &law,
+        trials: &trials,
+        population: &[],
+        settings: &settings,
+    };
+    let made = refine(&request, &|_, _| true).unwrap();
+    assert_eq!(check(&Ship::new(&made.model, &law).unwrap()), Ok(()));
+    let resistance = &made.model.propulsion.as_ref().unwrap().parameters["resistance"];
+    println!("{resistance:?}");
+    assert!(resistance.standard_error.unwrap() < 0.4 * resistance.value);
+    assert!(made.remarks.iter().any(|remark| remark.contains("surge is a balance")));
+    assert_eq!(check(&Ship::new(&model, &law).unwrap()), Err(PropulsionFault::NoRevolutions));
 }
 
 #[test]
