@@ -57,38 +57,3 @@ fn with_range(problem: &Problem<'_>, mut model: Model) -> Model {
     model.validity = covered(&problem.whole, own.as_ref().unwrap_or(problem.law));
     model
 }
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-    use crate::refine::{Method, Request, Settings, refine};
-    use crate::testing::{mariner, trials, with};
-    use sistership_dynamics::Ship;
-    use sistership_model::{Trial, Zoo};
-
-    #[test]
-    fn a_law_without_revolutions_gets_a_balance_that_stops_the_ship() {
-        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
-        let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
-        let trials: Vec<&Trial> = trials.iter().collect();
-        let settings = Settings { method: Method::Weak, ..Settings::default() };
-        let request = Request {
-            target: zoo.vessel("mariner").unwrap(),
-            source: &model,
-            source_law: None,
-            law: &law,
-            trials: &trials,
-            population: &[],
-            settings: &settings,
-        };
-        let made = refine(&request, &|_, _| true).unwrap();
-        let ship = Ship::new(&made.model, &law).unwrap();
-        assert_eq!(check(&ship), Ok(()));
-        let resistance = &made.model.propulsion.as_ref().unwrap().parameters["resistance"];
-        println!("{resistance:?}");
-        assert!(resistance.standard_error.unwrap() < 0.4 * resistance.value);
-        assert!(made.remarks.iter().any(|remark| remark.contains("surge is a balance")));
-        assert_eq!(check(&Ship::new(&model, &law).unwrap()), Err(PropulsionFault::NoRevolutions));
-    }
-}
