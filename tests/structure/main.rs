@@ -22,7 +22,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("export", &["formula", "model", "dynamics"]),
     ("validation", &["model", "dynamics"]),
     ("empirical", &["formula", "model", "dynamics", "bands"]),
-    ("sources", &["formula", "model", "dynamics"]),
+    ("sources", &["formula", "model", "dynamics", "empirical"]),
     ("constraints", &["model", "dynamics"]),
     ("propulsion", &["model", "dynamics"]),
     (

@@ -290,6 +290,8 @@ fn noise(
         Channel::Psi,
         Channel::X,
         Channel::Y,
+        Channel::UWater,
+        Channel::VWater,
     ];
     let one = |channel: Channel| {
         let scatter = Instrument::of_scatter(

@@ -4,6 +4,7 @@
 pub mod branch;
 mod branch_share;
 pub mod candidates;
+mod covered_environment;
 pub mod envelope;
 pub mod equations;
 pub mod error;

@@ -7,6 +7,7 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::validity::{Excursion, Face, Region, SLACK};
 
+use crate::covered_environment::covered_environment;
 use crate::state::{StateVector, Trajectory, at};
 
 /// What bounds a region, with its place in the state; revolutions stand beside it.
@@ -19,7 +20,7 @@ const BOUNDED: [(Channel, Option<usize>); 5] = [
 ];
 
 /// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered;
-/// channels that one of them lacks are left out.
+/// channels that one of them lacks are left out. Beside it, the wind and depth that they recorded.
 pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
     let bounds =
         |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());
@@ -33,7 +34,7 @@ pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
         .filter(|(channel, _)| bounds(*channel))
         .filter_map(|(channel, _)| column(channel))
         .collect();
-    Region::of(&columns)
+    Some(Region { environment: covered_environment(trials), ..Region::of(&columns)? })
 }
 
 /// How far a motion is outside of a region, by half ranges, as a formula of its channels; 0 inside.

@@ -111,7 +111,8 @@ impl fmt::Display for FileTime {
 pub struct TrialConventions {
     /// Which way positive rudder turns the ship.
     pub rudder_positive: RudderSign,
-    /// What `u` and `v` are speeds over or through.
+    /// What columns of `u` and `v` are speeds over or through; those of `u_water` and `v_water`
+    /// are through the water always.
     pub velocity: VelocityFrame,
     /// How wind is given.
     pub wind: WindConvention,

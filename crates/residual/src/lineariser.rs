@@ -1,5 +1,6 @@
 //! Along a path, block by block of samples.
 
+use sistership_dynamics::instruments::THROUGH_WATER;
 use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
 
@@ -108,7 +109,8 @@ impl<'a> PathLineariser<'a> {
         let columns = &self.system.columns;
         let acting = (0..columns.candidates.len())
             .filter(|&c| !columns.candidates[c].form.measures.is_empty());
-        let water = self.system.frame == VelocityFrame::Water;
+        let has_log = THROUGH_WATER.iter().any(|&(log, _)| self.path.record.has(log));
+        let water = has_log || self.system.frame == VelocityFrame::Water;
         let seeing = (0..columns.candidates.len())
             .filter(|&c| water && !columns.candidates[c].form.sees.is_empty());
         acting.chain(seeing).flat_map(|c| columns.places(c)).collect()

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use sistership_dynamics::equations::{Attitude, Coefficients, EquationsOfMotion, Lowering};
-use sistership_dynamics::instruments::{input_names, readings};
+use sistership_dynamics::instruments::{THROUGH_WATER, input_names, readings};
 use sistership_dynamics::state::RECORDED;
 use sistership_dynamics::tape::Tape;
 use sistership_formula::Expr;
@@ -76,7 +76,7 @@ impl ResidualSystem {
         let equations = EquationsOfMotion::of_law(model, Cow::Owned(law.dressed(model, &forms)));
         let build = SystemBuilder { equations: &equations, columns: &columns };
         let (axes, states) = (equations.axes(), equations.states());
-        let channels = RECORDED.iter().filter_map(|&(channel, place)| {
+        let channels = RECORDED.iter().chain(&THROUGH_WATER).filter_map(|&(channel, place)| {
             Some((channel, states.iter().position(|&s| s == place)?))
         });
         let channels: Vec<(Channel, usize)> = channels.collect();

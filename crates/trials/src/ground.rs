@@ -1,6 +1,5 @@
 //! Course and speed over ground become surge and sway velocity.
 
-use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
 use crate::declarations::Antenna;
@@ -47,10 +46,6 @@ pub(crate) fn velocities(
     let message =
         format!("u and v come of course and speed over ground and the heading; they are {of}");
     findings.warning(None, None, message);
-    if recording.trial.velocity == VelocityFrame::Water {
-        let message = "speeds through the water are declared, but these are over ground";
-        findings.error(None, None, message);
-    }
     recording.trial.channels.insert(Channel::U, u);
     recording.trial.channels.insert(Channel::V, v);
 }

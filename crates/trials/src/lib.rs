@@ -66,6 +66,7 @@ mod testing;
 mod unit_guess;
 mod units;
 mod vocabulary;
+mod water;
 mod workbook;
 
 pub use declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};

@@ -17,7 +17,9 @@ use crate::source::{Content, Sensor, Source};
 use crate::stream::TableRows;
 use crate::table::Table;
 use crate::taker::RowsFile;
-use crate::{csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, workbook};
+use crate::{
+    csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, water, workbook,
+};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
 ///
@@ -236,6 +238,7 @@ fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
     derived::yaw_rate(recording, wanted, findings);
     ground::velocities(recording, antenna, findings);
     derived::velocities(recording, wanted, findings);
+    water::settle(recording, findings);
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From a file's headers to the columns that are read.
 
-use sistership_model::manifest::WindKind;
+use sistership_model::manifest::{VelocityFrame, WindKind};
 use sistership_model::trial::Channel;
 
 use crate::declarations::Declarations;
@@ -146,18 +146,20 @@ impl Resolver<'_> {
         }
     }
 
-    /// Apparent wind goes to its own channels, so that nothing downstream can take it for the true
-    /// one.
+    /// Apparent wind and speeds through the water go to their own channels, so that nothing
+    /// downstream can take them for the true wind and for speeds over the ground.
     fn redirect(&self, target: Target) -> Target {
-        match (self.mapping.conventions.wind.kind, target) {
-            (WindKind::Apparent, Target::Channel(Channel::WindSpeed)) => {
-                Target::Channel(Channel::ApparentWindSpeed)
-            }
-            (WindKind::Apparent, Target::Channel(Channel::WindFrom)) => {
-                Target::Channel(Channel::ApparentWindFrom)
-            }
-            _ => target,
-        }
+        let Target::Channel(channel) = target else { return target };
+        let conventions = &self.mapping.conventions;
+        let is_apparent = conventions.wind.kind == WindKind::Apparent;
+        let is_through_water = conventions.velocity == VelocityFrame::Water;
+        Target::Channel(match channel {
+            Channel::WindSpeed if is_apparent => Channel::ApparentWindSpeed,
+            Channel::WindFrom if is_apparent => Channel::ApparentWindFrom,
+            Channel::U if is_through_water => Channel::UWater,
+            Channel::V if is_through_water => Channel::VWater,
+            other => other,
+        })
     }
 
     /// Columns that carry a canonical name, for channels that the manifest leaves open.

@@ -1,6 +1,7 @@
 //! Everything of a refinement that its user must be able to defend.
 
 use sistership_model::Model;
+use sistership_model::estimated_particulars::estimated_words;
 use sistership_model::propulsion::Propulsion;
 use sistership_model::quantity::Quantity;
 
@@ -183,18 +184,7 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     if problem.training.len() == 1 {
         remarks.push("a single trial: only the most conservative range was tried".to_owned());
     }
-    let scaled = problem
-        .transferred
-        .particulars
-        .iter()
-        .filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
-    let names: Vec<&str> = scaled.map(|(name, _)| name.as_str()).collect();
-    if !names.is_empty() {
-        remarks.push(format!(
-            "the ship does not state {}: scaled from the source ship",
-            names.join(", ")
-        ));
-    }
+    remarks.extend(estimated_words(&problem.transferred.particulars));
     remarks
 }
 

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use sistership_fields::{
     DrawCount, ModelName, Positive, StepCount, StepLength, WaterSpeed, WindSpeed,
 };
+use sistership_model::environment::Environment;
 use utoipa::ToSchema;
 
 use crate::inputs::InitialState;
@@ -56,6 +57,17 @@ pub struct WindRequest {
     speed_m_s: WindSpeed,
     /// Where it comes from, clockwise from north.
     from_rad: f64,
+}
+
+impl SessionRequest {
+    /// The surroundings that are asked for.
+    pub(super) fn environment(&self) -> Environment {
+        Environment {
+            wind_speed_m_s: self.wind.map(|wind| wind.speed_m_s.get()),
+            current_speed_m_s: self.current.map(|current| current.speed_m_s.get()),
+            depth_m: self.depth_m.map(Positive::get),
+        }
+    }
 }
 
 impl CurrentRequest {

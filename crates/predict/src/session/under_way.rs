@@ -4,6 +4,7 @@ use sistership_dynamics::integrate::Method;
 use sistership_dynamics::plant::{Inputs, Work};
 use sistership_dynamics::state::at;
 use sistership_dynamics::{Order, Ship, SideBySide, StateVector, Stopped};
+use sistership_model::environment::UncoveredInput;
 
 use super::request::{OrdersRequest, StepsRequest};
 use super::sample::{Sample, band};
@@ -20,6 +21,8 @@ pub struct Session {
     pub(super) beside: Option<Beside>,
     pub(super) state: StateVector,
     pub(super) order: Order,
+    /// Wind, current and depth of which the model's trials tell nothing.
+    pub(super) uncovered: Vec<UncoveredInput>,
     /// Other inputs of the law, by their places.
     pub(super) others: Vec<(usize, f64)>,
     pub(super) t_s: f64,

@@ -25,7 +25,7 @@ const UNUSUAL: f64 = 10.0;
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     position(recording, findings);
     heading(recording, findings);
-    for channel in [Channel::U, Channel::V] {
+    for channel in [Channel::U, Channel::V, Channel::UWater, Channel::VWater] {
         speed(recording, channel, findings);
     }
 }
