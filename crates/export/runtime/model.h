@@ -29,7 +29,7 @@ typedef struct model {
     int32_t force[4], mass[16], added[4], kinematic[4];
     int32_t has_gear, has_roll, has_mobility;
     double mobility[16];
-    double limit_rad, rate_rad_s, time_constant_s;
+    double limit_rad, rate_rad_s, time_constant_s, band_rad;
     double most_speed, most_yaw, most_roll;
 } model;
 

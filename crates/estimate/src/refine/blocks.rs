@@ -42,6 +42,8 @@ pub struct Block {
     pub(crate) mass: Vec<Vec<Option<usize>>>,
     /// The axes of the mass matrix' columns.
     pub(crate) columns: Vec<Axis>,
+    /// What effects add to the accelerations of these, where they do.
+    pub(crate) additions: Vec<Option<usize>>,
     /// What the regression solves for is this matrix times the coefficients of its axes.
     pub mixing: DMatrix<f64>,
 }
@@ -152,6 +154,7 @@ fn block(
             group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?,
         );
     }
+    let additions = lowering.additions(group)?;
     let mixing = DMatrix::identity(axes.len(), axes.len());
     let shrinkage = names[0]
         .iter()
@@ -167,6 +170,7 @@ fn block(
         rests,
         mass,
         columns: group.to_vec(),
+        additions,
         mixing,
     }))
 }
