@@ -16,6 +16,7 @@ mod fleet;
 mod full_disk;
 mod import;
 mod lacking;
+mod matrix;
 mod memory;
 mod operation;
 mod over_http;
