@@ -17,6 +17,7 @@ mod fleet;
 mod full_disk;
 mod import;
 mod lacking;
+mod matrix;
 mod memory;
 mod operation;
 mod over_http;

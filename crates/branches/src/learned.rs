@@ -1,10 +1,12 @@
 //! A branch with its weights, ready to be asked at every step of a simulation.
 
-use sistership_dynamics::branch::{Instant, LearnedBranch};
+use sistership_dynamics::branch::{AdditionFormulas, AdditionGradient, Instant, LearnedBranch};
 use sistership_model::branch::{Branch, BranchMode, BranchOutput};
 use sistership_model::coefficient::Axis;
 
 use crate::domain::FadedDomain;
+use crate::formula::formulas;
+use crate::gradient::OutputGradient;
 use crate::regressor::Regressor;
 use crate::sample::scaled;
 use crate::weights::Weights;
@@ -12,9 +14,9 @@ use crate::weights::Weights;
 /// A branch with its weights.
 #[derive(Debug, Clone)]
 pub struct Learned {
-    mode: BranchMode,
-    outputs: Vec<(usize, BranchOutput, Regressor)>,
-    domain: FadedDomain,
+    pub(crate) mode: BranchMode,
+    pub(crate) outputs: Vec<(usize, BranchOutput, Regressor)>,
+    pub(crate) domain: FadedDomain,
 }
 
 /// Most inputs of an output: each signal once, with room.
@@ -41,7 +43,7 @@ impl Learned {
 }
 
 /// What an output answers, m/s2 (rad/s2), within what its training held.
-fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f64 {
+pub(crate) fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f64 {
     let mut inputs = [0.0; MOST_INPUTS];
     let count = output.inputs.len();
     let pairs = inputs.iter_mut().zip(&output.inputs);
@@ -69,5 +71,25 @@ impl LearnedBranch for Learned {
             added[*place] = share * (answer - replaced);
         }
         added
+    }
+
+    fn gradient(&self, instant: &Instant) -> AdditionGradient {
+        let mut gradient = AdditionGradient::default();
+        let share = self.domain.share(instant);
+        if share == 0.0 {
+            return gradient;
+        }
+        let by_share = self.domain.gradient(instant);
+        for (place, output, regressor) in &self.outputs {
+            let replaces = self.mode != BranchMode::Parallel;
+            let own =
+                OutputGradient::new(output, regressor, instant).joined(replaces, instant, *place);
+            own.add_to(&mut gradient, *place, (share, &by_share));
+        }
+        gradient
+    }
+
+    fn formulas(&self) -> AdditionFormulas {
+        formulas(self)
     }
 }

@@ -9,6 +9,8 @@ mod dependence;
 mod domain;
 mod draws;
 mod forest;
+mod formula;
+mod gradient;
 mod held_out;
 pub mod horizon;
 mod importance;

@@ -7,7 +7,7 @@ use sistership_branches::{
 use sistership_dynamics::error::SquaredError;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_dynamics::{PlantError, Ship};
+use sistership_dynamics::{Plant, PlantError, Ship};
 use sistership_model::branch::{BranchMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::{Channel, Trial};
@@ -130,9 +130,10 @@ fn what_does_not_belong_together_is_refused_by_name() {
     let (Foundation { law, model: bare }, model, weights) = forest();
     assert!(matches!(ship(&bare, &law, &weights), Err(JoinError::None(_))));
     assert!(matches!(Ship::new(&model, &law), Err(PlantError::Weights { .. })));
+    assert!(matches!(Ship::sisters(&model, &law), Err(PlantError::Weights { .. })));
     assert_eq!(
-        Ship::sisters(&model, &law).unwrap_err(),
-        PlantError::Branch(model.name.clone()),
+        Plant::new(&model, &law).err(),
+        Some(PlantError::Branch(model.name.clone())),
         "a view by formulas cannot have a branch"
     );
     let mut other = weights.clone();

@@ -28,6 +28,11 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
     climbed(&Search { settings: &settings, ..*search }, progress)
 }
 
+/// Samples on which a search has the noise model learned, where nothing else is asked.
+pub fn calibration_samples() -> usize {
+    SEARCH.calibration
+}
+
 /// What the search sets beside what is asked of it.
 fn searched_by(search: &Search<'_>) -> Settings {
     let (settings, fitted) = (search.settings, search.fitted());

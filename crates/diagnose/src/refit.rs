@@ -28,7 +28,8 @@ pub(super) struct Refit {
 
 /// What is weighed: the coefficients as they are; fitted with the effects as they were found; and,
 /// where the effects on the ship are linear, fitted together with them. Regressions read the trials
-/// as instruments would have shown them that do not err.
+/// as instruments would have shown them that do not err. Beside a learned correction the
+/// coefficients stay as they are: it was trained on what these leave, and would not suit others.
 pub(super) fn refits(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -40,9 +41,8 @@ pub(super) fn refits(
         .map(|trial| without(request, search, judged, trial))
         .collect::<Result<_, _>>()?;
     let found = Refit { how: None, all, without };
-    let corrected = (!judged.candidates.is_empty())
-        .then(|| CorrectedRecords::new(request, &found.all))
-        .flatten();
+    let may_move = !judged.candidates.is_empty() && request.model.branch.is_none();
+    let corrected = may_move.then(|| CorrectedRecords::new(request, &found.all)).flatten();
     let mut fitted = Vec::new();
     if let Some(corrected) = corrected {
         let request = &Request { trials: &corrected.trials(), ..*request };

@@ -110,7 +110,7 @@ static int all_within(const int32_t *place, size_t count, size_t most)
 
 static int contents(FILE *file, model *m)
 {
-    double figures[6];
+    double figures[7];
     if (!whole(file, m->moving, m->states) || !numbers(file, m->start, m->variables))
         return 0;
     for (size_t k = 0; k < m->states; k++)
@@ -140,7 +140,7 @@ static int contents(FILE *file, model *m)
     if (!whole(file, &m->has_gear, 1) || !whole(file, &m->has_roll, 1)
         || !whole(file, &m->has_mobility, 1))
         return 0;
-    if (!numbers(file, m->mobility, 16) || !numbers(file, figures, 6))
+    if (!numbers(file, m->mobility, 16) || !numbers(file, figures, 7))
         return 0;
     m->limit_rad = figures[0];
     m->rate_rad_s = figures[1];
@@ -148,6 +148,7 @@ static int contents(FILE *file, model *m)
     m->most_speed = figures[3];
     m->most_yaw = figures[4];
     m->most_roll = figures[5];
+    m->band_rad = figures[6];
     return 1;
 }
 
@@ -310,9 +311,11 @@ static double rudder_rate(const model *m, double step_s)
 {
     if (!m->has_gear)
         return 0.0;
-    const double order = limited(m->value[ORDER], m->limit_rad);
+    const double angle = m->value[STATE + DELTA];
+    const double ordered = limited(m->value[ORDER], m->limit_rad);
+    const double order = fmin(fmax(angle, ordered - m->band_rad), ordered + m->band_rad);
     const double time = fmax(m->time_constant_s, step_s);
-    return limited((order - m->value[STATE + DELTA])/time, m->rate_rad_s);
+    return limited((order - angle)/time, m->rate_rad_s);
 }
 
 void model_rates(model *m, double step_s)

@@ -31,7 +31,7 @@ typedef struct model {
     int32_t distance[2];
     int32_t has_gear, has_roll, has_mobility;
     double mobility[16];
-    double limit_rad, rate_rad_s, time_constant_s;
+    double limit_rad, rate_rad_s, time_constant_s, band_rad;
     double most_speed, most_yaw, most_roll;
 } model;
 

@@ -156,11 +156,16 @@ fn rates_text(plan: &Plan) -> String {
         Some(gear) => format!(
             "    const double limit = {:?}, fastest = {:?};\n    \
              const double time = fmax({:?}, step_s);\n    \
-             const double order = fmin(fmax(in->delta_order, -limit), limit);\n    \
+             const double ordered = fmin(fmax(in->delta_order, -limit), limit);\n    \
+             const double order = {};\n    \
              rate->delta = fmin(fmax((order - s->delta)/time, -fastest), fastest);",
             gear.limit_rad(),
             gear.rate_rad_s(),
-            gear.time_constant_s()
+            gear.time_constant_s(),
+            match plan.band_rad {
+                0.0 => "ordered".to_owned(),
+                band => format!("fmin(fmax(s->delta, ordered - {band:?}), ordered + {band:?})"),
+            }
         ),
     };
     let statements = rates::statements(plan, &C).join("\n");

@@ -4,6 +4,7 @@
 //! with the effects that a model carries, can be exported, and says the same elsewhere.
 
 mod c;
+mod correction;
 mod error;
 mod expression;
 mod fmu;

@@ -124,6 +124,7 @@ fn rudder(plan: &Plan) -> &'static str {
         None => "xdot(9) = 0;",
         Some(_) => {
             "order = min(max(delta_order, -model.gear.limit_rad), model.gear.limit_rad);\n\
+             order = min(max(delta, order - model.gear.band_rad), order + model.gear.band_rad);\n\
              xdot(9) = (order - delta)/max(model.gear.time_constant_s, model.step_s);\n\
              xdot(9) = min(max(xdot(9), -model.gear.rate_rad_s), model.gear.rate_rad_s);"
         }
@@ -150,6 +151,7 @@ fn structure(plan: &Plan) -> String {
         lines.push(format!("model.gear.limit_rad = {:?};", gear.limit_rad()));
         lines.push(format!("model.gear.rate_rad_s = {:?};", gear.rate_rad_s()));
         lines.push(format!("model.gear.time_constant_s = {:?};", gear.time_constant_s()));
+        lines.push(format!("model.gear.band_rad = {:?};", plan.band_rad));
     }
     lines.push("model.c = struct();".to_owned());
     lines.extend(

@@ -172,8 +172,10 @@ fn rudder(plan: &Plan) -> String {
     let Some(gear) = &plan.gear else { return "  der(delta) = 0.0;".to_owned() };
     let (limit, fastest) = (gear.limit_rad(), gear.rate_rad_s());
     let time = gear.time_constant_s().max(plan.step_s());
-    format!(
-        "  der(delta) = max(-{fastest:?}, min({fastest:?}, \
-         (max(-{limit:?}, min({limit:?}, delta_order)) - delta)/{time:?}));"
-    )
+    let ordered = format!("max(-{limit:?}, min({limit:?}, delta_order))");
+    let order = match plan.band_rad {
+        0.0 => ordered,
+        band => format!("min(max(delta, {ordered} - {band:?}), {ordered} + {band:?})"),
+    };
+    format!("  der(delta) = max(-{fastest:?}, min({fastest:?}, ({order} - delta)/{time:?}));")
 }

@@ -169,8 +169,12 @@ fn unpack(plan: &Plan) -> String {
 
 fn rudder(plan: &Plan) -> String {
     let Some(gear) = &plan.gear else { return "    delta_dot = 0.0".to_owned() };
+    let band = match plan.band_rad {
+        0.0 => String::new(),
+        band => format!("    order = min(max(delta, order - {band:?}), order + {band:?})\n"),
+    };
     format!(
-        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n    \
+        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n{band}    \
          delta_dot = min(max((order - delta)/max({:?}, step_s), -fastest), fastest)",
         gear.limit_rad(),
         gear.rate_rad_s(),

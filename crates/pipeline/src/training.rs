@@ -12,6 +12,7 @@ use crate::archive::{Archive, document};
 use crate::derive::Progress;
 use crate::error::DeriveError;
 use crate::recipe::{TrainingKind, TrainingRecipe};
+use crate::start::library_of;
 
 /// The recipe of a branch beside a version, everything settled that was not asked.
 ///
@@ -38,6 +39,7 @@ pub async fn training_recipe(
         foundation: SourceVersion { ship, number, sha256 },
         law_sha256,
         trials,
+        effects_sha256: library_of(archive).await?.sha256.clone(),
         settings,
         code_revision: code_revision().to_owned(),
     })
@@ -68,8 +70,8 @@ pub async fn chosen(
     tokio::task::spawn_blocking(work).await?
 }
 
-/// The version of a line without a learned branch that one with such a branch was trained beside;
-/// the version itself where it has none, nothing where it was made elsewhere.
+/// The version of a line without a learned correction that one with such a correction came of; the
+/// version itself where it has none, nothing where it was made elsewhere.
 ///
 /// # Errors
 /// The store does not answer, or a version does not read.
@@ -78,9 +80,13 @@ pub async fn foundation_of(
     ship: &str,
     number: i64,
 ) -> Result<Option<i64>, DeriveError> {
-    let stored = document(&archive.store.versions().get(ship, number).await?)?;
-    Ok(match stored.model.branch {
-        None => Some(number),
-        Some(_) => stored.recipe.starts_from().map(|foundation| foundation.number),
-    })
+    let mut number = number;
+    loop {
+        let stored = document(&archive.store.versions().get(ship, number).await?)?;
+        if stored.model.branch.is_none() {
+            return Ok(Some(number));
+        }
+        let Some(earlier) = stored.recipe.starts_from() else { return Ok(None) };
+        number = earlier.number;
+    }
 }

@@ -13,6 +13,7 @@
 //! their products ([`Gram`]) are all that fitting, evidence and comparison need.
 
 mod columns;
+mod correction;
 mod filter;
 mod filter_noise;
 mod filter_value;

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use sistership_branches::{
     BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Judgement, Kinds,
-    Training, Weights, choose, judge, train, with_branch,
+    Training, attach, choose, judge, train, with_branch,
 };
 use sistership_model::branch::BranchMode;
 use sistership_model::{Law, Model, Trial, Zoo};
+use sistership_pipeline::derive::corrected_with_uncertainty;
 
 use super::branch_document::BranchDocument;
 use super::branch_text;
@@ -117,7 +118,7 @@ impl From<Mode> for BranchMode {
 /// A branch with what it was trained by and what it is worth.
 struct Trained {
     model: Model,
-    weights: Weights,
+    weights: Vec<u8>,
     training: Training,
     judgement: Option<Judgement>,
 }
@@ -139,11 +140,11 @@ pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     let mut files = WrittenFiles { out: arguments.out.as_deref(), report: None };
     guard(&files, &read)?;
     note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
-    let (choice, trained) = trained(&model, &law, &trials::trials(&read), &settings)?;
+    let (choice, trained) = trained((zoo, &model, &law), &trials::trials(&read), &settings)?;
     match (out, beside_file, &trained) {
         (Some(out), Some(beside), Some(trained)) => {
             // Weights first: a model that is there has them.
-            beside.write(&trained.weights.bytes().map_err(refused)?)?;
+            beside.write(&trained.weights)?;
             out.write(model_file(zoo, &trained.model, "with a learned branch")?.as_bytes())?;
         }
         (Some(_), ..) => note("no branch is taken, and --out writes nothing"),
@@ -178,8 +179,7 @@ fn refused(error: impl std::fmt::Display) -> Failure {
 
 /// The branch that is asked for, or the one that trials left out take.
 fn trained(
-    model: &Model,
-    law: &Law,
+    (zoo, model, law): (&Zoo, &Model, &Law),
     trials: &[&Trial],
     settings: &BranchSettings,
 ) -> Result<(Option<BranchChoice>, Option<Trained>), Failure> {
@@ -202,7 +202,12 @@ fn trained(
     note("training the branch, and judging it on trials left out");
     let (branch, weights) = train(model, law, trials, &training).map_err(refused)?;
     let judgement = judge(model, law, trials, &training).map_err(refused)?;
-    let model = with_branch(model, branch);
+    let weights = weights.bytes().map_err(refused)?;
+    let mut model = with_branch(model, branch);
+    attach(&mut model, &weights).map_err(refused)?;
+    note("learning what these trials leave open beside it");
+    let effects: Vec<_> = zoo.effects().cloned().collect();
+    let model = corrected_with_uncertainty(model, law, &effects, trials);
     Ok((choice, Some(Trained { model, weights, training, judgement })))
 }
 

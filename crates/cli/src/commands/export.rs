@@ -25,7 +25,7 @@ Examples:
   sistership import --bundle my-ship.bundle --signed-by key.pub.pem --data-dir there
 
 What is written is what `sistership manoeuvre` sails: the law with the model's effects, the steering
-gear, and a current as an input. A model with a learned branch is refused.
+gear, what was learned beside them, and a current as an input.
 
 A bundle is of a ship in a store: its versions with what they were derived from, trials and reports,
 which another store takes with every hash and all lineage.";

@@ -66,7 +66,7 @@ fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
             let (estimate, law) = estimate_of(zoo, &vessel, None)?;
             Ok((estimate.model, law))
         }
-        _ => named::foundation(zoo, name),
+        _ => named::model(zoo, name),
     }
 }
 

@@ -182,7 +182,7 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         None => refined(zoo, (&target, &source), laws, &settings, &read)?,
     };
     let refinement = calibrated(zoo, refinement, &law, &read);
-    let branch = TrainedBeside::new(&refinement, &law, ladder.as_ref(), &read)?;
+    let branch = TrainedBeside::new((zoo, &law), &refinement, ladder.as_ref(), &read)?;
     if let Some(out) = out {
         let model = branch.as_ref().map_or(&refinement.model, |branch| &branch.model);
         // Weights first: a model that is there has them.

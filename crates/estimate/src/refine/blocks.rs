@@ -42,6 +42,8 @@ pub struct Block {
     pub(crate) mass: Vec<Vec<Option<usize>>>,
     /// The axes of the mass matrix' columns.
     pub(crate) columns: Vec<Axis>,
+    /// What effects add to the accelerations of these, where they do.
+    pub(crate) additions: Vec<Option<usize>>,
     /// What the regression solves for is this matrix times the coefficients of its axes.
     pub mixing: DMatrix<f64>,
     /// Its inverse: from what the regression solves for to the coefficients of the axes.
@@ -156,6 +158,7 @@ fn block(
         );
     }
     let unmixed = DMatrix::identity(axes.len(), axes.len());
+    let additions = lowering.additions(group)?;
     let shrinkage = names[0]
         .iter()
         .map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage))
@@ -172,6 +175,7 @@ fn block(
         columns: group.to_vec(),
         mixing: unmixed.clone(),
         unmixing: unmixed,
+        additions,
     }))
 }
 

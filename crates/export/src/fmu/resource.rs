@@ -30,12 +30,13 @@ pub fn text(plan: &Plan) -> String {
     lines.join("\n") + "\n"
 }
 
-fn figures(plan: &Plan) -> [f64; 6] {
+fn figures(plan: &Plan) -> [f64; 7] {
     let gear = plan
         .gear
         .map_or([0.0; 3], |gear| [gear.limit_rad(), gear.rate_rad_s(), gear.time_constant_s()]);
     let most = &plan.envelope;
-    [gear[0], gear[1], gear[2], most.speed_m_s(), most.yaw_rate_rad_s(), most.roll_rad()]
+    let most = [most.speed_m_s(), most.yaw_rate_rad_s(), most.roll_rad()];
+    [gear[0], gear[1], gear[2], most[0], most[1], most[2], plan.band_rad]
 }
 
 fn whole<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {

@@ -77,7 +77,7 @@ fn version(diagnosed: &Diagnosed, of: &VersionHead) -> Result<Option<NewVersion>
         law: document.model.law.clone(),
         method: DIAGNOSIS.to_owned(),
         document: document.canonical().map_err(failed)?,
-        weights: None,
+        weights: document.model.branch.as_ref().map(|branch| branch.weights_sha256.clone()),
     }))
 }
 

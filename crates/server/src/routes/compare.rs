@@ -47,7 +47,7 @@ async fn compare(
     for name in &names {
         let version = resolve(app.store(), "version", name).await?;
         let law = app.law(&version.head.law).await?;
-        asked.versions.push((name.clone(), version, law));
+        asked.versions.push((name.clone(), app.archive().model(&version).await?, law));
     }
     for id in &ids {
         let missing = || Problem::invalid("trial", format!("there is no trial `{id}`"));

@@ -10,7 +10,6 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::branches::without_branch;
 use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::named_trials::{named, no_trials};
@@ -84,7 +83,6 @@ async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
     on_ship(app.store(), Role::Engineer, &version.head.model).await?;
-    without_branch(app, &version).await?;
     settings
         .check()
         .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;

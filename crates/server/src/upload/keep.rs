@@ -21,7 +21,6 @@ use sistership_http::spool::{Spool, temporary};
 use sistership_http::upload::{Arrived, Upload};
 use sistership_pipeline::budget;
 use sistership_pipeline::line::{CHAMPION, alias};
-use sistership_pipeline::training::foundation_of;
 
 /// How often samples are put again that were removed before their rows were written.
 const TRIES: usize = 3;
@@ -59,13 +58,9 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
     Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
 }
 
-/// The number of the ship's champion, or of the foundation of its learned branch: a diagnosis looks
-/// at laws.
+/// The number of the ship's champion.
 async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
-    match alias(app.store(), ship, CHAMPION).await? {
-        None => Ok(None),
-        Some(champion) => Ok(foundation_of(app.archive(), ship, champion.version_number).await?),
-    }
+    Ok(alias(app.store(), ship, CHAMPION).await?.map(|champion| champion.version_number))
 }
 
 /// The diagnosis of a champion on what is new, and on that with what came before.
