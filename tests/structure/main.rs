@@ -16,7 +16,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("containers", &[]),
     ("trials", &["formula", "model", "containers"]),
     ("regression", &[]),
-    ("branches", &["model", "dynamics"]),
+    ("branches", &["formula", "model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
     ("export", &["formula", "model", "dynamics"]),
     ("validation", &["model", "dynamics"]),
