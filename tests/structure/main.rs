@@ -17,7 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("columns", &[]),
     ("trials", &["formula", "model", "containers", "columns"]),
     ("regression", &[]),
-    ("branches", &["model", "dynamics"]),
+    ("branches", &["formula", "model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
     ("export", &["formula", "model", "dynamics"]),
     ("validation", &["model", "dynamics"]),

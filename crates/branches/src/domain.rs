@@ -11,7 +11,7 @@ use sistership_dynamics::branch::Instant;
 use sistership_formula::{Comparison, Expr, Function};
 use sistership_model::validity::{Face, Region};
 
-use crate::formula::{added, divided, subtracted};
+use crate::expressions::{added, divided, subtracted};
 
 /// The channels of a region, as an instant has them.
 const CHANNELS: [&str; 5] = ["u", "v", "r", "delta", "n"];

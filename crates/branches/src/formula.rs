@@ -5,8 +5,9 @@ use sistership_dynamics::branch::{AdditionFormulas, LAW_RATES};
 use sistership_formula::{Comparison, Expr, Function};
 use sistership_model::branch::{BranchInput, BranchMode, BranchOutput, Signal};
 
+use crate::domain::FadedDomain;
+use crate::expressions::{added, divided, subtracted};
 use crate::kernels::Kernels;
-use crate::learned::Learned;
 use crate::perceptron::Perceptron;
 use crate::regressor::Regressor;
 use crate::tree::Tree;
@@ -65,15 +66,19 @@ impl FormulaWriter {
     }
 }
 
-/// Everything that a correction adds.
-pub(crate) fn formulas(learned: &Learned) -> AdditionFormulas {
+/// Everything that a correction adds, by its outputs with their places among the rates.
+pub(crate) fn formulas(
+    mode: BranchMode,
+    outputs: &[(usize, BranchOutput, Regressor)],
+    domain: &FadedDomain,
+) -> AdditionFormulas {
     let mut writer = FormulaWriter::default();
-    let share = learned.domain.formula(&mut |expr| writer.value(expr));
+    let share = domain.formula(&mut |expr| writer.value(expr));
     let share = writer.value(share);
     let mut added: [Option<Expr>; 3] = [None, None, None];
-    for (place, output, regressor) in &learned.outputs {
+    for (place, output, regressor) in outputs {
         let answer = answer(&mut writer, output, regressor);
-        let difference = match learned.mode {
+        let difference = match mode {
             BranchMode::Parallel => answer,
             BranchMode::Convert | BranchMode::Serial => {
                 subtracted(answer, Expr::Name(LAW_RATES[*place].to_owned()))
@@ -143,18 +148,6 @@ pub(crate) fn split(input: Expr, bound: f64, [below, above]: [Expr; 2]) -> Expr 
 
 fn sum(terms: impl Iterator<Item = Expr>) -> Expr {
     terms.reduce(added).unwrap_or(Expr::Number(0.0))
-}
-
-pub(crate) fn added(a: Expr, b: Expr) -> Expr {
-    Expr::Add(Box::new(a), Box::new(b))
-}
-
-pub(crate) fn subtracted(a: Expr, b: Expr) -> Expr {
-    Expr::Subtract(Box::new(a), Box::new(b))
-}
-
-pub(crate) fn divided(a: Expr, by: f64) -> Expr {
-    Expr::Divide(Box::new(a), Box::new(Expr::Number(by)))
 }
 
 impl Tree {

@@ -4,7 +4,7 @@
 use sistership_dynamics::branch::{AdditionGradient, Instant};
 use sistership_model::branch::{BranchInput, BranchOutput, Signal};
 
-use crate::learned::answer;
+use crate::answer::answer;
 use crate::regressor::Regressor;
 use crate::sample::scaled;
 

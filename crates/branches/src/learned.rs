@@ -4,23 +4,20 @@ use sistership_dynamics::branch::{AdditionFormulas, AdditionGradient, Instant, L
 use sistership_model::branch::{Branch, BranchMode, BranchOutput};
 use sistership_model::coefficient::Axis;
 
+use crate::answer::{MOST_INPUTS, answer};
 use crate::domain::FadedDomain;
 use crate::formula::formulas;
 use crate::gradient::OutputGradient;
 use crate::regressor::Regressor;
-use crate::sample::scaled;
 use crate::weights::Weights;
 
 /// A branch with its weights.
 #[derive(Debug, Clone)]
 pub struct Learned {
-    pub(crate) mode: BranchMode,
-    pub(crate) outputs: Vec<(usize, BranchOutput, Regressor)>,
-    pub(crate) domain: FadedDomain,
+    mode: BranchMode,
+    outputs: Vec<(usize, BranchOutput, Regressor)>,
+    domain: FadedDomain,
 }
-
-/// Most inputs of an output: each signal once, with room.
-const MOST_INPUTS: usize = 16;
 
 impl Learned {
     /// Of a branch and weights that suit it; none where its domain bounds what no branch sees, or
@@ -40,16 +37,6 @@ impl Learned {
     pub fn domain(&self) -> &FadedDomain {
         &self.domain
     }
-}
-
-/// What an output answers, m/s2 (rad/s2), within what its training held.
-pub(crate) fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f64 {
-    let mut inputs = [0.0; MOST_INPUTS];
-    let count = output.inputs.len();
-    let pairs = inputs.iter_mut().zip(&output.inputs);
-    pairs.for_each(|(value, input)| *value = scaled(input, instant));
-    let [low, high] = output.range;
-    (output.scale * regressor.answer(&inputs[..count])).clamp(low, high)
 }
 
 impl LearnedBranch for Learned {
@@ -90,6 +77,6 @@ impl LearnedBranch for Learned {
     }
 
     fn formulas(&self) -> AdditionFormulas {
-        formulas(self)
+        formulas(self.mode, &self.outputs, &self.domain)
     }
 }

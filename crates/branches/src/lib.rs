@@ -3,11 +3,13 @@
 //! [`train`] makes a branch and its weights, [`ship`] joins them to the model's own law. The same
 //! foundation, trials, recipe and seed give the same bytes (decision 20).
 
+mod answer;
 mod boosted;
 mod choice;
 mod dependence;
 mod domain;
 mod draws;
+mod expressions;
 mod forest;
 mod formula;
 mod gradient;

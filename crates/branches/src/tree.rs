@@ -28,8 +28,8 @@ impl Tree {
         }
     }
 
-    /// A node: the input of a split (none of a leaf), the place of the right child, and the bound of
-    /// the split or the leaf's answer.
+    /// A node: the input of a split (none of a leaf), the place of the right child, and the bound
+    /// of the split or the leaf's answer.
     pub fn node(&self, at: usize) -> (Option<usize>, usize, f64) {
         let (input, right, value) = self.0[at];
         ((input != LEAF).then_some(usize::from(input)), right as usize, value)

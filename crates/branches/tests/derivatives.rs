@@ -86,7 +86,7 @@ fn smooth_corrections_have_the_derivatives_of_what_they_add() {
         let (mut seen, mut faded) = (0, 0);
         for at in instants(&model, 60) {
             let found = gradient(&*learned, &at);
-            // A kink of the share or of the bounds between the steps would show in their difference.
+            // A kink of the share or of the bounds between the steps shows in their difference.
             let fine = differences(&*learned, &at, scales.map(|scale| 1e-6 * scale));
             let coarse = differences(&*learned, &at, scales.map(|scale| 3e-5 * scale));
             let size = |row: usize| {

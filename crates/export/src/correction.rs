@@ -1,5 +1,5 @@
-//! What a model has learned beside its law, as formulas that add to the accelerations as effects do:
-//! so every format writes it as it writes the law.
+//! What a model has learned beside its law, as formulas that add to the accelerations as effects
+//! do: so every format writes it as it writes the law.
 
 use std::borrow::Cow;
 

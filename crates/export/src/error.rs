@@ -7,9 +7,9 @@ use sistership_dynamics::PlantError;
 pub enum ExportError {
     /// What it has learned follows accelerations that exports do not have.
     #[error(
-        "`{model}` has a learned correction that is told the accelerations of the law `{law}`, whose \
-         masses change with the motion: exports solve such a law after all else; train a parallel \
-         correction, or export the model without `branch`"
+        "`{model}` has a learned correction that is told the accelerations of the law `{law}`, \
+         whose masses change with the motion: exports solve such a law after all else; train a \
+         parallel correction, or export the model without `branch`"
     )]
     Correction {
         /// The model.

@@ -174,8 +174,8 @@ fn rudder(plan: &Plan) -> String {
         band => format!("    order = min(max(delta, order - {band:?}), order + {band:?})\n"),
     };
     format!(
-        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n{band}    \
-         delta_dot = min(max((order - delta)/max({:?}, step_s), -fastest), fastest)",
+        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n{band}\
+         \u{20}   delta_dot = min(max((order - delta)/max({:?}, step_s), -fastest), fastest)",
         gear.limit_rad(),
         gear.rate_rad_s(),
         gear.time_constant_s()

@@ -1,10 +1,11 @@
-//! A learned correction at the samples of a block: what it adds to the law's accelerations, and what
-//! it makes of their derivatives.
+//! A learned correction at the samples of a block: what it adds to the law's accelerations, and
+//! what it makes of their derivatives.
 //!
 //! With `a(x)` the law's accelerations and `c(x, a)` the correction, those of the ship are `a + c`.
-//! Their derivative with anything that the law depends on is `(I + dc/da) da`, to which `dc/dx` comes
-//! for states and inputs that the correction sees itself. So coefficients and effects keep acting
-//! on the law around it, and where a correction takes the law's place they act by as much less.
+//! Their derivative with anything that the law depends on is `(I + dc/da) da`, to which `dc/dx`
+//! comes for states and inputs that the correction sees itself. So coefficients and effects keep
+//! acting on the law around it, and where a correction takes the law's place they act by as much
+//! less.
 
 use std::sync::Arc;
 

@@ -61,7 +61,7 @@ pub use progress::{Iterate, MonotoneProgress, Progress, Watch};
 pub use replayed_trials::{ReplayedTrials, Thinning};
 pub use request::Request;
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
-pub use rows::{Table, trial_moments, trial_moments_beside, trial_tables};
+pub use rows::{Table, trial_moments, trial_tables};
 pub use selection::{fit_model, refine, refine_wanted, refine_watched, weigh};
 pub use settings::{Method, Prior, Range, Settings, TRIALS_ALONE};
 pub use settings_check::SettingFault;

@@ -9,7 +9,7 @@ use sistership_model::trial::Trial;
 
 use super::frame::{FORMAT, Frame};
 use super::packed;
-use sistership_estimate::refine::{Block, RefineError, trial_moments, trial_moments_beside};
+use sistership_estimate::refine::{Block, RefineError, trial_moments, trial_tables};
 use sistership_regression::Moments;
 
 /// The statistics of one trial.
@@ -64,7 +64,9 @@ impl TrialStatistics {
             Some(beside) => {
                 let added = beside.along(trial)?;
                 let known = |axis: Axis, sample: usize| added.at(axis, sample);
-                trial_moments_beside(blocks, trial, difference_s, &known)?
+                let tables = trial_tables(blocks, trial, difference_s, &known)?;
+                let pairs = blocks.blocks.iter().zip(&tables);
+                pairs.map(|(one, table)| Moments::of_columns(table, one.regressors())).collect()
             }
         };
         let regressions = frame
