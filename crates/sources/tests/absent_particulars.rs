@@ -69,7 +69,7 @@ fn faults(zoo: &Zoo, sources: &[Model], vessel: &Arc<Vessel>, names: &[&str]) ->
 fn unnamed(zoo: &Zoo, whole: &Model, model: &Model, names: &[&str]) -> Option<String> {
     let estimated = estimated_particulars(&model.particulars);
     // What follows from others that the ship states is no estimate.
-    if names.iter().all(|name| is_implied(model, name)) {
+    if names.iter().any(|name| is_implied(model, name)) {
         return None;
     }
     let law = zoo.law(&whole.law).unwrap();
