@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(attempts.begin(ann, start), Err(FORGOTTEN));
         assert_eq!(attempts.begin(attempt("bob", "a"), start), Ok(()));
         assert_eq!(attempts.begin(ann, start + FORGOTTEN), Ok(()));
-        for n in 0..2 * KNOWN {
+        for n in 0..KNOWN / 2 {
             let name = n.to_string();
             assert!(attempts.begin(attempt(&name, &name), start).is_ok());
         }

@@ -20,8 +20,8 @@ pub struct EvidenceLimits {
     pub false_alarm: f64,
     /// `beta`: probability of finding nothing where something of usual size is missing,
     /// dimensionless. Source: the probability by which a diagnosis states its detection limits
-    /// (`diagnose::DetectionLimit`). At half and double of both, three trials that leave something
-    /// are cleared by five to eight clean ones (test below).
+    /// (`diagnose::DetectionLimit`). At half and double of each, three trials that leave something
+    /// are cleared by four to seven clean ones (docs/evidence/condition.md).
     pub miss: f64,
 }
 
