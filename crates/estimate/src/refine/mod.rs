@@ -25,7 +25,6 @@ mod population;
 mod posterior;
 mod problem;
 mod progress;
-mod propulsion;
 mod published;
 mod replayed_trials;
 mod request;
