@@ -14,12 +14,12 @@ use sistership_tests::truth::manoeuvre::Manoeuvre;
 use sistership_tests::truth::motion::{Truth, sail_from};
 use sistership_tests::truth::stalled::Stalled;
 
-/// Sources and the laws that are fitted: one without revolutions, a polynomial in them, the source's
-/// own propeller.
+/// Sources and the laws that are fitted: one without revolutions, a polynomial in them, the
+/// source's own propeller.
 const CASES: [(&str, &str); 3] =
     [("mariner", "abkowitz"), ("kvlcc2", "low-speed"), ("kvlcc2", "mmg")];
-/// How long, by the time in which the ship sails its length; a resistance by the square of the speed
-/// leaves a tenth after nine times mass over resistance, which is up to 40 of that.
+/// How long, by the time in which the ship sails its length; a resistance by the square of the
+/// speed leaves a tenth after nine times mass over resistance, which is up to 40 of that.
 const LENGTHS: f64 = 400.0;
 
 fn trials(ship: &dyn Truth) -> Vec<Trial> {
@@ -104,8 +104,8 @@ fn what_is_fitted_at_constant_revolutions_stops_and_goes_astern() {
     }
 }
 
-/// Times in which half of the speed is lost, by that in which the ship sails its length: of a model,
-/// and of the ship itself.
+/// Times in which half of the speed is lost, by that in which the ship sails its length: of a
+/// model, and of the ship itself.
 fn half_time(ship: &Ship, truth: &dyn Truth) -> [usize; 2] {
     let speed = ship.approach_speed_m_s();
     let own = sailed(ship, 1.0, 0.0);

@@ -97,8 +97,8 @@ fn last(ship: &Ship, start: f64, turns: f64) -> Option<f64> {
     Some(track.states.last()?[at::U] / speed)
 }
 
-/// A line of the table; the propeller stopped, reversed, and reversed from rest, without the balance,
-/// with it, and by the ship itself.
+/// A line of the table; the propeller stopped, reversed, and reversed from rest: without the
+/// balance, with it, and by the ship itself.
 fn line(stranger: &Stranger, start: &Start) -> String {
     let (model, law) = (&start.refinement.model, &*start.entrant.law);
     let without = Model { propulsion: None, ..model.clone() };

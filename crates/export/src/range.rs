@@ -10,8 +10,8 @@ use crate::plan::Plan;
 /// The output's name.
 pub const NAME: &str = "outside_range";
 /// What it is.
-pub const MEANING: &str = "how far speeds, yaw rate, rudder and revolutions are outside of what the \
-    trials covered, by half their range; 0 inside";
+pub const MEANING: &str = "how far speeds, yaw rate, rudder and revolutions are outside of what \
+    the trials covered, by half their range; 0 inside";
 
 /// The output: statements, and what it is by them.
 pub struct Distance {

@@ -50,7 +50,8 @@ fn c_says_how_far_outside_it_is() {
         .map(|([u, n], _)| format!("    s.u = {u:?}; in.n = {n:?};\n    say();\n"))
         .collect();
     let main = format!(
-        "\n#include <stdio.h>\nint main(void)\n{{\n    {name}_state s = {name}_approach_state();\n    \
+        "\n#include <stdio.h>\nint main(void)\n{{\n    \
+         {name}_state s = {name}_approach_state();\n    \
          {name}_inputs in = {name}_approach_inputs();\n#define say() printf(\"%.17g\\n\", \
          {name}_outside_range(&s, &in))\n{points}    return 0;\n}}\n"
     );

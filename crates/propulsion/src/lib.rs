@@ -3,9 +3,11 @@
 
 mod balance;
 mod check;
+mod context;
 mod covered;
 mod slope;
 mod thresholds;
 
 pub use balance::{Evidence, balance, needs_balance};
 pub use check::{PropulsionFault, check};
+pub use context::{Context, words};

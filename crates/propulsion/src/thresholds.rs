@@ -23,9 +23,9 @@ pub(crate) struct BalanceThresholds {
     /// beside what the posterior says, dimensionless. Source: chosen; docs/evidence/propulsion.md
     /// has half and double.
     pub slope_deviation: f64,
-    /// Thrust of the reversed propeller at rest by that ahead, dimensionless. Source: chosen, as the
-    /// blades' camber and trailing edges are the wrong way round; docs/evidence/propulsion.md has
-    /// half and double of the loss.
+    /// Thrust of the reversed propeller at rest by that ahead, dimensionless. Source: chosen, as
+    /// the blades' camber and trailing edges are the wrong way round; docs/evidence/propulsion.md
+    /// has half and double of the loss.
     pub backing: f64,
     /// Revolutions over which a law gives way, by those of the approach, dimensionless. Source:
     /// chosen; docs/evidence/propulsion.md has half and double.

@@ -10,16 +10,16 @@ use super::candidate::{CandidateFit, Solution, best};
 use super::family::Family;
 use super::gathered::{ChosenCandidate, refinement};
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
+use super::mixture;
 use super::outcome::{Manoeuvres, RefineError, Refinement};
 use super::problem::Problem;
 use super::progress::{Progress, step};
-use super::propulsion::{with_balance, with_propulsion};
 use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
 use sistership_bands::{FoldQuantile, bands, fold_factor};
 use sistership_constraints::LimitError;
-use sistership_propulsion::PropulsionFault;
+use sistership_propulsion::{Context, PropulsionFault};
 use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.
@@ -42,14 +42,12 @@ pub(super) fn is_empty(model: &Model) -> bool {
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
 }
 
-/// A candidate on all trials.
 struct FittedCandidate {
     fit: Option<Fit>,
     model: Model,
     manoeuvres: StandardManoeuvres,
 }
 
-/// What a candidate gives, or why it may not be taken.
 type Accepted = Result<FittedCandidate, CandidateRefusal>;
 
 /// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres
@@ -89,8 +87,7 @@ pub(super) fn finish(
         };
         match accepted(sailed?, &before) {
             Ok(fitted) => {
-                let taken = (fitted, variants);
-                return take(problem, (candidates, best), taken, before, progress);
+                return take(problem, (candidates, best), (fitted, variants), before, progress);
             }
             Err(refusal) => {
                 (candidates[best].option.reason, candidates[best].option.error) =
@@ -127,12 +124,11 @@ fn sailed(
         }
         fitted => fitted?,
     };
-    let model = match with_propulsion(problem, model_of(problem, fitted.as_ref())) {
-        Ok(model) => model,
-        Err(fault) => return Ok(Err(fault.into())),
-    };
-    let manoeuvres = standard_manoeuvres(&model, problem.law);
-    Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
+    let model = context(problem).with_propulsion(model_of(problem, fitted.as_ref()));
+    Ok(model.map_err(CandidateRefusal::from).map(|model| {
+        let manoeuvres = standard_manoeuvres(&model, problem.law);
+        FittedCandidate { fit: fitted, model, manoeuvres }
+    }))
 }
 
 /// What a candidate gives, where it sails what the source sails.
@@ -144,6 +140,12 @@ fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
         Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
         None => Ok(fitted),
     }
+}
+
+fn context<'a>(problem: &'a Problem<'_>) -> Context<'a> {
+    let of_ship = |target| mixture::estimated(target, problem.transferred.speed_m_s).ok();
+    let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
+    Context { law: problem.law, trials: &problem.whole, estimate }
 }
 
 /// The refined model; the source where nothing was fitted.
@@ -165,9 +167,6 @@ fn take(
     let coefficients = model_of(problem, fitted.as_ref()).coefficients;
     let mut model = Model { coefficients, ..taken.model };
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
-    for one in &mut candidates[best].left_out {
-        one.propulsion.clone_from(&model.propulsion);
-    }
     if problem.settings.posterior_by_folds {
         let quantile = match problem.settings.folds_pooled {
             true => FoldQuantile::Normal,
@@ -177,9 +176,7 @@ fn take(
         let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
         widen(&mut model, fitted.as_mut(), factor);
     }
-    if model.propulsion.is_some() {
-        model = with_balance(problem, model);
-    }
+    let model = context(problem).with_posterior(model);
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;
     let bands =

@@ -2,7 +2,6 @@
 
 use sistership_model::Model;
 use sistership_model::estimated_particulars::estimated_words;
-use sistership_model::propulsion::Propulsion;
 use sistership_model::quantity::Quantity;
 
 use super::candidate::CandidateFit;
@@ -13,7 +12,7 @@ use super::ridge::Fit;
 use super::settings::Settings;
 use super::simulated::simulate_all;
 use super::thresholds::SELECTION;
-use sistership_sources::rolling::HYDROSTATICS;
+use sistership_sources::rolling::roll_words;
 
 /// The candidate that was taken among all, its model and its fit; none where the source was kept.
 pub(super) struct ChosenCandidate {
@@ -39,7 +38,7 @@ pub(super) fn refinement(
         .as_ref()
         .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
     let mut remarks = remarks(problem, best, &lambdas);
-    remarks.extend(model.propulsion.as_ref().map(balance_words));
+    remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::words));
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }
@@ -134,34 +133,6 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
         }
     };
     model.coefficients.iter().map(one).collect()
-}
-
-/// What holds where the trials do not reach.
-fn balance_words(propulsion: &Propulsion) -> String {
-    let of = |name: &str| propulsion.value(name).unwrap_or(f64::NAN);
-    let resistance = propulsion.parameters.get("resistance");
-    let deviation = resistance.and_then(|one| one.standard_error).unwrap_or(f64::NAN);
-    format!(
-        "outside {:.2} to {:.2} 1/s and {:.2} to {:.2} m/s surge is a balance of resistance and \
-         open-water thrust: {:.4} kN (standard error {:.4}) at {:.2} m/s and {:.2} 1/s",
-        of("n_full_from"),
-        of("n_full_to"),
-        of("u_full_from"),
-        of("u_full_to"),
-        of("resistance") / 1e3,
-        deviation / 1e3,
-        of("speed"),
-        of("revolutions")
-    )
-}
-
-/// What stands for a source's roll, of which it says nothing.
-fn roll_words(carried: &Model) -> Option<String> {
-    let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
-    carried.coefficients.values().find(is_hydrostatic)?;
-    let what = "the source says nothing of roll: the prior has the stiffness of the ship's \
-        metacentric height and a tenth of the critical damping";
-    Some(what.to_owned())
 }
 
 fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {

@@ -26,7 +26,6 @@ mod population;
 mod posterior;
 mod problem;
 mod progress;
-mod propulsion;
 mod published;
 mod replayed_trials;
 mod request;

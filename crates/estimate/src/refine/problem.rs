@@ -18,7 +18,6 @@ use super::settings::Settings;
 /// What does not change while candidates are compared.
 pub(super) struct Problem<'a> {
     pub law: &'a Law,
-    /// The ship; none where a model is its own source.
     pub target: Option<&'a Vessel>,
     /// The source's name.
     pub source: &'a str,
