@@ -1,17 +1,14 @@
-//! What the Kalman filter along a part of a trial gives: prediction errors of readings, and of every
-//! column, divided by their predicted deviation.
+//! Prediction errors of the readings of a part of a trial, and of every column, divided by their
+//! predicted deviation.
 
 use sistership_estimate::refine::RefineError;
-use sistership_model::uncertainty::Discrepancy;
 
+use super::discrepancies::Discrepancies;
 use super::gram::Gram;
 use super::kalman_filter::KalmanFilter;
 use super::linearised::Linearised;
 use super::noise::Noise;
 use sistership_dynamics::wide::{Wide, widest};
-
-/// The discrepancy of each acceleration, in the order of the filter's axes.
-pub type Discrepancies = Vec<Discrepancy>;
 
 /// Rows of prediction errors, and the sum of the logarithms of their predicted variances.
 pub type Whitened = (Vec<f64>, f64);

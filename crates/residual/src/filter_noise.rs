@@ -4,7 +4,7 @@ use sistership_estimate::refine::RefineError;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Discrepancy;
 
-use super::Discrepancies;
+use super::discrepancies::Discrepancies;
 use super::linearised::Linearised;
 use super::noise::{Instrument, Noise};
 use super::thresholds::RESIDUAL;

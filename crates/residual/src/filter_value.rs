@@ -25,6 +25,10 @@ pub(super) trait FilterValue:
     /// Whether products with it need not be added: zero, where asking costs less than adding.
     fn is_idle(self) -> bool;
 
+    /// A sum of rows of a matrix by their weights: `stride` numbers from the beginning of one row
+    /// to that of the next.
+    fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]);
+
     /// A row of numbers of each part, side by side; `room` is where they are gathered if they must
     /// be.
     fn row<'a>(
@@ -59,6 +63,17 @@ impl FilterValue for f64 {
     #[inline(always)]
     fn is_idle(self) -> bool {
         self == 0.0
+    }
+
+    /// Row after row, each in wide instructions.
+    #[inline(always)]
+    fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
+        sum.fill(0.0);
+        for (weight, row) in weights.iter().zip(rows.chunks(stride)) {
+            if *weight != 0.0 {
+                axpy(*weight, row, sum);
+            }
+        }
     }
 
     #[inline(always)]
@@ -132,13 +147,24 @@ impl FilterValue for ValueLanes {
         false
     }
 
+    /// Number after number, each of which is a wide register.
+    #[inline(always)]
+    fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
+        for (column, to) in sum.iter_mut().enumerate() {
+            let mut own = Self([0.0; LANES]);
+            for (weight, row) in weights.iter().zip(rows.chunks(stride)) {
+                own.add_product(*weight, row[column]);
+            }
+            *to = own;
+        }
+    }
+
     #[inline(always)]
     fn row<'a>(
         parts: &[&'a Linearised],
         of: impl Fn(usize, &'a Linearised) -> &'a [f64],
         room: &'a mut Vec<Self>,
     ) -> &'a [Self] {
-        room.clear();
         room.resize(of(0, parts[0]).len(), Self([0.0; LANES]));
         for (lane, part) in parts.iter().enumerate() {
             room.iter_mut().zip(of(lane, part)).for_each(|(to, from)| to.0[lane] = *from);

@@ -10,7 +10,7 @@
 use nalgebra::{DMatrix, DVector};
 use sistership_estimate::refine::RefineError;
 
-use super::Discrepancies;
+use super::discrepancies::Discrepancies;
 use super::filter_noise::FilterNoise;
 use super::filter_value::{FilterValue, axpy};
 use super::linearised::Linearised;
@@ -96,8 +96,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
     /// path, and what columns move.
     #[inline(always)]
     fn move_deviations(&mut self, k: usize) {
-        let Self { parts, transition, states, order, width, deviations, moved, gathered, .. } =
-            self;
+        let Self { parts, transition, states, width, deviations, moved, gathered, .. } = self;
         let (n, width) = (*states, *width);
         let columns = parts[0].sizes.columns;
         let block = parts[0].sizes.axes * columns;
@@ -107,12 +106,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             gathered,
         );
         for (row, target) in moved.chunks_exact_mut(width).take(n).enumerate() {
-            target.fill(V::splat(0.0));
-            for (i, weight) in transition.row(row).iter().enumerate().take(*order) {
-                if !weight.is_idle() {
-                    axpy(*weight, &deviations[i * width..][..width], target);
-                }
-            }
+            V::combine(transition.row(row), deviations, width, target);
             for (lane, part) in parts.iter().enumerate() {
                 *target[0].lane_mut(lane) += part.defect[Self::sample(part, k, 2) * n + row];
             }
@@ -139,12 +133,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         let Self { transition, states, order, covariance, product, .. } = self;
         let (n, order) = (*states, *order);
         for (row, target) in product.chunks_exact_mut(order).take(n).enumerate() {
-            target.fill(V::splat(0.0));
-            for (i, weight) in transition.row(row).iter().enumerate() {
-                if !weight.is_idle() {
-                    axpy(*weight, &covariance[i * order..][..order], target);
-                }
-            }
+            V::combine(transition.row(row), covariance, order, target);
         }
         for (axis, kept) in transition.kept().iter().enumerate() {
             let (at, from) = ((n + axis) * order, &covariance[(n + axis) * order..][..order]);
@@ -155,10 +144,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             let left = &product[row * order..][..order];
             let target = &mut covariance[row * order..][..=row];
             let (by_states, by_axes) = target.split_at_mut(n.min(row + 1));
-            by_states.fill(V::splat(0.0));
-            for (i, weight) in left.iter().enumerate() {
-                axpy(*weight, transition.column(i), by_states);
-            }
+            V::combine(left, transition.columns(), n, by_states);
             for ((to, left), kept) in by_axes.iter_mut().zip(&left[n..]).zip(transition.kept()) {
                 *to = *left * *kept;
             }

@@ -14,6 +14,7 @@
 
 mod columns;
 mod correction;
+mod discrepancies;
 mod filter;
 mod filter_noise;
 mod filter_value;
@@ -41,7 +42,8 @@ mod thresholds;
 mod transition;
 
 pub use columns::{Columns, EffectCandidate, Nuisance, NuisanceKind, lacked_name};
-pub use filter::{Discrepancies, Whitened, errors, filter, filter_first, responses, whitened};
+pub use discrepancies::Discrepancies;
+pub use filter::{Whitened, errors, filter, filter_first, responses, whitened};
 pub use filter_noise::unknown_noise;
 pub use gram::Gram;
 pub use likelihood::deviances;

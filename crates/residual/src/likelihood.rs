@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use sistership_dynamics::wide::{Wide, widest};
 use sistership_estimate::refine::RefineError;
 
-use super::filter::{Discrepancies, errors};
+use super::discrepancies::Discrepancies;
+use super::filter::errors;
 use super::filter_value::{LANES, ValueLanes};
 use super::kalman_filter::KalmanFilter;
 use super::linearised::Linearised;

@@ -4,7 +4,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use sistership_estimate::refine::RefineError;
 
-use super::filter::Discrepancies;
+use super::discrepancies::Discrepancies;
 use super::kalman_filter::KalmanFilter;
 use super::linearised::Linearised;
 use super::noise::Noise;

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::filter_noise::FilterNoise;
-use super::filter_value::{FilterValue, axpy};
+use super::filter_value::FilterValue;
 use super::linearised::Linearised;
 
 /// The transition matrix of an interval, to second order in its time: rows of states over states
@@ -55,12 +55,7 @@ impl<V: FilterValue> Transition<V> {
         let half = V::splat(0.5);
         for row in 0..n {
             let slopes = &jacobian[row * n..][..n];
-            square.fill(V::splat(0.0));
-            for (i, weight) in slopes.iter().enumerate() {
-                if !weight.is_idle() {
-                    axpy(*weight, &jacobian[i * n..][..n], square);
-                }
-            }
+            V::combine(slopes, jacobian, n, square);
             for column in 0..n {
                 let unit = V::splat(f64::from(u8::from(row == column)));
                 let mut value = unit;
@@ -105,10 +100,10 @@ impl<V: FilterValue> Transition<V> {
         &self.rows[state * order..][..order]
     }
 
-    /// What each state becomes of one state or discrepancy.
+    /// What each state becomes of each state and discrepancy, by these.
     #[inline(always)]
-    pub fn column(&self, place: usize) -> &[V] {
-        &self.columns[place * self.states..][..self.states]
+    pub fn columns(&self) -> &[V] {
+        &self.columns
     }
 
     /// By how much each acceleration moves a state.
