@@ -52,8 +52,8 @@ pub struct JudgedTrial {
 pub struct TrialError {
     /// Root mean squares by channel, SI.
     pub rmse: BTreeMap<String, f64>,
-    /// Standardised mean squared error (Wakita 2022, Eq. 26), the geometric mean of simulations that
-    /// restart every ten ship lengths and of the whole trial; what is not simulated since one
+    /// Standardised mean squared error (Wakita 2022, Eq. 26), the geometric mean of simulations
+    /// that restart every ten ship lengths and of the whole trial; what is not simulated since one
     /// stopped counts as an unrelated motion would.
     pub standardised_mse: f64,
     /// Why the simulation stopped early, if it did; the root mean squares are until then.
@@ -73,9 +73,9 @@ impl Judgement {
     }
 }
 
-/// Judges a training on trials left out, a part of them at a time, beside a foundation that may have
-/// been fitted on all of them, which this favours; none where there is one trial only, and nothing
-/// is left to train on.
+/// Judges a training on trials left out, a part of them at a time, beside a foundation that may
+/// have been fitted on all of them, which this favours; none where there is one trial only, and
+/// nothing is left to train on.
 ///
 /// # Errors
 /// As [`train`](crate::train()).

@@ -83,7 +83,8 @@ pub(super) fn branch(
     Ok(correction.checked(choice).unwrap_or_else(|error| BranchChoice::untried(untrained(&error))))
 }
 
-const IN_PARTS: &str = "none was tried: the trials were held out in parts, not whole, so that every model has seen all";
+const IN_PARTS: &str = "none was tried: the trials were held out in parts, not whole, so that every \
+                        model has seen all";
 
 fn few(trials: usize) -> String {
     format!(

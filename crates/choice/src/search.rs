@@ -62,9 +62,9 @@ fn searched_by(search: &Search<'_>) -> Settings {
     }
 }
 
-/// The restart interval at which a bias shows: longer than every trial, so that each is simulated as
-/// a whole; as long as parts where some laws have trials left out in those, so that all candidates
-/// have the same.
+/// The restart interval at which a bias shows: longer than every trial, so that each is simulated
+/// as a whole; as long as parts where some laws have trials left out in those, so that all
+/// candidates have the same.
 fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
     let (settings, fitted) = (search.settings, search.fitted());
     if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
@@ -235,8 +235,8 @@ fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
 }
 
 /// The entrants that lead in weak form: trajectories seldom gain more than
-/// [`SEARCH`]`.trajectory_gain`. A population, which is near wherever other ships hold the law, takes
-/// the place of none of the others.
+/// [`SEARCH`]`.trajectory_gain`. A population, which is near wherever other ships hold the law,
+/// takes the place of none of the others.
 fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
     let least = order.first().map_or(0.0, |(_, error)| *error);
