@@ -93,7 +93,9 @@ async fn of_champion(server: &TestServer, version: i64) {
     let drift = read(server, &format!("/v1/ships/{NAME}/drift")).await;
     assert!(drift["reason"].is_null() && drift["version"] == version, "{drift}");
     assert!(drift["trials"].as_array().is_some_and(|trials| trials.len() == 4), "{drift}");
-    let body = json!({ "ship": NAME, "source": NAME, "settings": { "method": "published" } });
+    let settings =
+        json!({ "method": "published", "bands": { "samples": 10 }, "calibration_samples": 1 });
+    let body = json!({ "ship": NAME, "source": NAME, "settings": settings });
     queued(server, "/v1/refinements", &body).await;
     in_bulk(server, version).await;
 }
