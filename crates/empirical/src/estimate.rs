@@ -101,14 +101,14 @@ pub fn estimate(
     complete_particulars(&mut particulars, [FULLNESS]);
     let at = |particulars: &Particulars| regress(library, ship, particulars, speed_m_s);
     let Regressed { around, coefficients, blades } = at(&particulars)?;
-    let fullness = fullness_effect(&particulars, &at)?;
+    let [by_around, by_coefficients] = fullness_effect(&particulars, &at)?;
     let spread = |values: &[Combined], effect: &DVector<f64>| {
         covariance(values) + effect * effect.transpose()
     };
     let mut estimate = Estimate {
         model: empty(library, vessel, speed_m_s),
-        around_covariance: spread(&around, &fullness.around),
-        coefficients_covariance: spread(&coefficients, &fullness.coefficients),
+        around_covariance: spread(&around, &by_around),
+        coefficients_covariance: spread(&coefficients, &by_coefficients),
         around,
         coefficients,
         thrust: ThrustCurve { series: library.series.clone(), blades },
@@ -151,16 +151,12 @@ fn regress(
     Ok(Regressed { around, coefficients, blades: inputs.get("propeller_blades") })
 }
 
-/// What one standard error of an estimated block coefficient changes; nothing where it is stated.
-struct FullnessEffect {
-    around: DVector<f64>,
-    coefficients: DVector<f64>,
-}
-
+/// What one standard error of an estimated block coefficient changes in what is around the
+/// coefficients, and in these; nothing where it is stated.
 fn fullness_effect(
     particulars: &Particulars,
     at: &dyn Fn(&Particulars) -> Result<Regressed, EstimateError>,
-) -> Result<FullnessEffect, EstimateError> {
+) -> Result<[DVector<f64>; 2], EstimateError> {
     let estimated = particulars.get(FULLNESS).filter(|one| one.source.starts_with(ESTIMATED));
     let error = estimated.and_then(|one| one.standard_error).unwrap_or(0.0);
     let moved = |by: f64| {
@@ -173,10 +169,7 @@ fn fullness_effect(
         let pairs = more.iter().zip(less).map(|(a, b)| 0.5 * (a.mean - b.mean));
         DVector::from_iterator(more.len(), pairs)
     };
-    Ok(FullnessEffect {
-        around: half(&fuller.around, &finer.around),
-        coefficients: half(&fuller.coefficients, &finer.coefficients),
-    })
+    Ok([half(&fuller.around, &finer.around), half(&fuller.coefficients, &finer.coefficients)])
 }
 
 fn take(
