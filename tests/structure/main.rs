@@ -5,7 +5,7 @@ mod circles;
 mod modules;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
 const ALLOWED: &[(&str, &[&str])] = &[
@@ -254,17 +254,13 @@ fn doc_comments_have_no_code_that_nobody_runs() {
 }
 
 /// The largest crate, without its tests: beyond this a room does several things.
-const LINES_OF_A_CRATE: usize = 9000;
+const LINES_OF_A_CRATE: usize = 9500;
 
 #[test]
 fn no_crate_is_too_large() {
     for (name, _) in ALLOWED {
-        // What a crate offers to tests of others is compiled for tests only.
-        let of_tests =
-            |path: &Path| path.iter().any(|part| part == "testing" || part == "testing.rs");
         let lines: usize = modules::texts(&folder(name).join("src"))
             .iter()
-            .filter(|(path, _)| !of_tests(path))
             .map(|(_, text)| text.lines().count())
             .sum();
         assert!(lines <= LINES_OF_A_CRATE, "crates/{name} has {lines} lines without its tests");
