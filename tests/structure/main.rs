@@ -257,7 +257,7 @@ fn doc_comments_have_no_code_that_nobody_runs() {
 }
 
 /// The largest crate, without its tests: beyond this a room does several things.
-const LINES_OF_A_CRATE: usize = 9000;
+const LINES_OF_A_CRATE: usize = 9500;
 
 #[test]
 fn no_crate_is_too_large() {

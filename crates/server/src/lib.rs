@@ -24,6 +24,7 @@ mod workers;
 pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
 pub use routes::openapi;
 pub use server::{Running, Server};
+pub use sistership_listen::{ForwardedHeader, TrustedProxies};
 pub use sistership_openid::Settings as OpenIdSettings;
 pub use sistership_store::{ObjectsPlace, S3Place};
 pub use start_error::StartError;

@@ -4,9 +4,10 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_listen::{ForwardedHeader, TrustedProxies};
 use sistership_openid::OpenIdArguments;
-use sistership_server::{Config, DEFAULT_LISTEN, Limits, Running, Server, StartError};
+use sistership_server::{
+    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, Running, Server, StartError, TrustedProxies,
+};
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
