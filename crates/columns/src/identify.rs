@@ -214,8 +214,11 @@ impl Outcome<'_> {
     }
 
     fn is_certain(&self, at: usize, probability: f64) -> bool {
-        let Some(what) = self.best.columns[at] else { return true };
         let own = &self.search.own[at];
+        let Some(what) = self.best.columns[at] else {
+            let known = own.header.other().is_some() || own.summary.is_counter;
+            return known || own.summary.count == 0;
+        };
         let settled = self.search.settled.iter().any(|one| one.column == at);
         let borne = own.named(what.role) >= NAMED || self.related(what.role) >= RELATED;
         settled || (probability > CERTAIN && borne)

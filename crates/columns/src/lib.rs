@@ -7,6 +7,7 @@
 //! readings are nearly as likely.
 
 mod data;
+mod faults;
 mod header;
 mod hypothesis;
 mod identify;
@@ -27,6 +28,7 @@ mod whole;
 mod words;
 
 pub use data::{ColumnData, RecordingSample};
+pub use faults::{FilteredChannel, SampleFault, backward_times, sample_faults};
 pub use identify::{GivenColumn, identify};
 pub use outcome::{Alternative, Identification, IdentifiedColumn, ThrusterPair};
 pub use role::{Kind, Role, Side, Unit};

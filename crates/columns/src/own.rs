@@ -7,14 +7,14 @@ use crate::role::{Kind, Role};
 use crate::summary::Summary;
 
 /// Log odds of a given channel where a header names none: one of some thirty quantities.
-const UNNAMED: f64 = -3.5;
+const UNNAMED: f64 = -3.2;
 /// What a header that clearly names something else takes from a channel, at most.
 const NAMED_OTHERWISE: f64 = 8.0;
 /// Log odds lost with a unit that is not the written one.
 const OTHER_UNIT: f64 = 9.0;
 /// Log odds lost with a reversed sign, and of a rudder's, which is common.
 const REVERSED: f64 = 4.5;
-const REVERSED_RUDDER: f64 = 0.7;
+const REVERSED_RUDDER: f64 = 3.6;
 /// Standard deviation, in natural logarithms, with which ranges fade.
 const FADE: f64 = 0.45;
 /// Log odds that a range can take.
@@ -151,8 +151,13 @@ impl OwnEvidence {
         let place = matches!(what.role, Role::Latitude | Role::Longitude);
         // A place moves by minutes of arc in a trial, and is written with many digits.
         let moves = if place && summary.spread * what.unit.to_si > 0.2 { -10.0 } else { 0.0 };
+        let swings = match (summary.swings, what.role) {
+            (true, Role::Psi | Role::Course) => -6.0,
+            (true, Role::Phi | Role::P) => 1.5,
+            _ => 0.0,
+        };
         let counted = if summary.is_counter { -6.0 } else { 0.0 };
-        returns + negative + constant + moves + counted
+        returns + negative + constant + moves + counted + swings
     }
 }
 
@@ -166,6 +171,6 @@ fn unusual(what: &Hypothesis) -> f64 {
         "rad" | "rad/s" | "rpm" | "rps" => 0.3,
         "deg/min" => 1.0,
         "kn" => 2.5,
-        _ => 4.5,
+        _ => 3.5,
     }
 }

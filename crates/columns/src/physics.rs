@@ -122,6 +122,7 @@ impl<'a> Physics<'a> {
         all.extend(self.track(of).iter().flat_map(|track| track.relations(self, of)));
         all.extend(self.steering(of));
         all.extend(self.propulsion(of));
+        all.extend(self.heel(of));
         all.extend(self.alike(of));
         all
     }
@@ -198,6 +199,21 @@ impl<'a> Physics<'a> {
         let ahead = speed_m_s / revolutions.max(1e-9);
         let figure = self.figure(|| format!("{ahead:.2} m ahead a turn"));
         Some(Relation { roles: [n, Role::Other, Role::Other], odds, figure })
+    }
+
+    /// A ship that turns heels, to one side or the other.
+    fn heel(&self, of: &Assignment) -> Option<Relation> {
+        let ((i, _), (j, _)) = (of.find(Role::Phi)?, of.find(Role::R)?);
+        let correlation = self.correlation(i, j).abs();
+        let odds = 4.0 * (correlation - 0.3).max(0.0);
+        let figure = self.figure(|| format!("heels with the yaw rate by {correlation:.2}"));
+        Some(Relation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
+    }
+
+    /// Correlation of the means over coarse blocks.
+    fn correlation(&self, i: usize, j: usize) -> f64 {
+        let means = |at: usize| self.signals.scales.first().map(|scale| &scale.columns[at].mean);
+        means(i).zip(means(j)).map_or(0.0, |(a, b)| rudder::correlation(a, b))
     }
 
     /// Two instruments of one quantity.

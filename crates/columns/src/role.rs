@@ -161,7 +161,7 @@ impl Role {
     }
 
     /// Usual range of the largest magnitude, SI.
-    pub(crate) fn largest(self) -> [f64; 2] {
+    pub fn largest(self) -> [f64; 2] {
         self.properties().largest
     }
 

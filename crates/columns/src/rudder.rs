@@ -50,7 +50,7 @@ pub(crate) fn lagged(delta: &[f64], r: &[f64]) -> f64 {
 }
 
 /// Pearson's correlation; zero where one side is constant.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().max(1) as f64;
     let (ma, mb) = (a.iter().sum::<f64>() / n, b.iter().sum::<f64>() / n);
     let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);

@@ -2,6 +2,7 @@
 
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::role::Role;
+use crate::rudder::correlation;
 use crate::search::Search;
 
 /// Correlation of changes and integrals from which one column is another's rate.
@@ -28,10 +29,9 @@ fn rates(search: &Search) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     for i in (0..search.own.len()).filter(|&i| !search.hypotheses[i].is_empty()) {
         for j in (0..search.own.len()).filter(|&j| j != i && !search.hypotheses[j].is_empty()) {
-            let each = signals
-                .scales
-                .iter()
-                .map(|scale| centred(&scale.columns[i].change, &scale.columns[j].integral).abs());
+            let each = signals.scales.iter().map(|scale| {
+                correlation(&scale.columns[i].change, &scale.columns[j].integral).abs()
+            });
             let correlation = each.fold(0.0, f64::max);
             if correlation > RATE {
                 found.push((correlation, (i, j)));
@@ -41,18 +41,6 @@ fn rates(search: &Search) -> Vec<(usize, usize)> {
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.truncate(MOST);
     found.into_iter().map(|(_, pair)| pair).collect()
-}
-
-fn centred(a: &[f64], b: &[f64]) -> f64 {
-    let n = a.len().max(1) as f64;
-    let (ma, mb) = (a.iter().sum::<f64>() / n, b.iter().sum::<f64>() / n);
-    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
-    for (a, b) in a.iter().zip(b) {
-        aa += (a - ma).powi(2);
-        ab += (a - ma) * (b - mb);
-        bb += (b - mb).powi(2);
-    }
-    if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
 }
 
 /// Every way to take the rest of the pairs.

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 /// Periods at which directions return to zero, with the unit that each means.
 const PERIODS: [(f64, &str); 2] = [(360.0, "deg"), (TAU, "rad")];
+/// Crossings of the mean that zigzags do not reach.
+const SWINGS: usize = 60;
 /// Samples between which an average across the period may lie.
 const AVERAGED: usize = 8;
 /// Deviations from the median of neighbours, in robust standard deviations, that are taken out
@@ -30,6 +32,10 @@ pub(crate) struct Summary {
     pub step: f64,
     /// Part of steps within 10 % of the median.
     pub regular: f64,
+    /// Part of steps within 1 % of the median.
+    pub steady: f64,
+    /// Whether it swings about its mean, as roll does and no heading.
+    pub swings: bool,
     /// Whether it counts rows.
     pub is_counter: bool,
     /// Part of steps that are zero.
@@ -46,6 +52,7 @@ impl Summary {
         let steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let period = period(&sorted);
         let first = sorted[0];
+        let swings = swings(&sorted);
         sorted.sort_by(f64::total_cmp);
         let mut summary = Self {
             count: sorted.len(),
@@ -53,6 +60,7 @@ impl Summary {
             spread: quantile(&sorted, 0.99) - quantile(&sorted, 0.01),
             negative: share(&sorted, |value| value < 0.0),
             period,
+            swings: swings && period.is_none(),
             ..Self::default()
         };
         let mut magnitudes: Vec<f64> = sorted.iter().map(|value| value.abs()).collect();
@@ -74,12 +82,13 @@ impl Summary {
         let step = quantile(&steps, 0.5);
         self.step = step;
         self.regular = share(&steps, |one| (one - step).abs() <= 0.1 * step.abs());
+        self.steady = share(&steps, |one| (one - step).abs() <= 0.01 * step.abs());
     }
 
     /// Whether values grow as a clock does.
     pub(crate) fn is_clock(&self) -> bool {
         // One step in fifty may be out of order: that is a fault of the file.
-        self.count > 2 && self.forward > 0.98 && self.step > 0.0 && self.still < 0.9
+        self.count > 1 && self.forward > 0.98 && self.step > 0.0 && self.still < 0.9
     }
 }
 
@@ -91,6 +100,28 @@ pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
 pub(crate) fn share(values: &[f64], holds: impl Fn(f64) -> bool) -> f64 {
     let count = values.iter().filter(|value| holds(**value)).count();
     count as f64 / values.len().max(1) as f64
+}
+
+/// Whether the mean is crossed more often than any manoeuvre takes a heading across it.
+fn swings(values: &[f64]) -> bool {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let (low, high) = values.iter().fold((0.0_f64, 0.0_f64), |(low, high), value| {
+        (low.min(value - mean), high.max(value - mean))
+    });
+    // Noise about the mean is no swing: a tenth of the range has to be passed.
+    let (mut side, mut crossings) = (0.0, 0);
+    for value in values.iter().map(|value| value - mean) {
+        let now = if value > 0.1 * high {
+            1.0
+        } else if value < 0.1 * low {
+            -1.0
+        } else {
+            side
+        };
+        crossings += usize::from(now * side < 0.0);
+        side = now;
+    }
+    crossings > SWINGS
 }
 
 /// A direction that returns: it keeps within a period, fills it, and jumps by one.

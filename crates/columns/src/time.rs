@@ -30,7 +30,7 @@ pub(crate) fn column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usiz
         if !runs {
             return None;
         }
-        let regular = 4.0 * summary.regular;
+        let regular = 3.0 * summary.regular + 4.0 * summary.steady;
         let counter = if summary.is_counter { -5.0 } else { 0.0 };
         let first = if at == 0 { 1.0 } else { 0.0 };
         let named = own.named(Role::Time) - own.none().min(6.0);

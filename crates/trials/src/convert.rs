@@ -47,6 +47,7 @@ pub(crate) fn convert(
             Target::Raw(raw) => {
                 recording.raw.insert(raw, values);
             }
+            Target::Unidentified(_) => {}
         }
     }
     for (channel, mut values) in means(&mut recording, findings) {

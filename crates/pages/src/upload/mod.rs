@@ -51,6 +51,7 @@ struct MappingPage<'a> {
     port: bool,
     water: bool,
     refuse: bool,
+    drop: bool,
     derived: [(&'static str, bool); 3],
     manifest: String,
 }
@@ -81,6 +82,7 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
         port: conventions.rudder_positive == RudderSign::PortTurn,
         water: conventions.velocity == VelocityFrame::Water,
         refuse: conventions.missing == Missing::Refuse,
+        drop: conventions.missing == Missing::Drop,
         derived: DERIVED.map(|(name, one)| (name, derive.contains(&one))),
         manifest: of.manifest.to_yaml().unwrap_or_default(),
     };

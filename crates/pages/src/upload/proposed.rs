@@ -26,6 +26,8 @@ pub(super) const TARGETS: [&str; 26] = [
     "n_p",
     "course",
     "speed",
+    "v_north",
+    "v_east",
     "wind_speed",
     "wind_from",
     "apparent_wind_speed",
