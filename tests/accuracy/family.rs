@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
-use sistership_dynamics::state::at;
 use sistership_fleet::bulk::{BulkSettings, Prior, refined_model, solve};
 use sistership_fleet::family::{Member, learn};
 use sistership_fleet::statistics::TrialStatistics;
 use sistership_model::{Law, Model};
+use sistership_simulation::state::at;
 
 use ships::{Sailed, Sistership, draw, foundation, sail, statistics};
 

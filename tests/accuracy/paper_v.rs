@@ -20,12 +20,12 @@ mod weak;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_dynamics::{Method, Ship, Trajectory};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
-use sistership_sources::transfer::{Approach, transfer};
+use sistership_priors::transfer::{Approach, transfer};
+use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::{Method, Ship, Trajectory};
 
 use published::{Block, TABLE_5};
 use refined::refinements;

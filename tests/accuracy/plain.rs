@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use serde_json::Value;
-use sistership_branches::attach;
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_learned::attach;
 use sistership_model::{Model, Trial, Vessel, Zoo};
-use sistership_sources::source::{best_source, similar};
-use sistership_sources::transfer::{approach_of, transfer};
+use sistership_priors::source::{best_source, similar};
+use sistership_priors::transfer::{approach_of, transfer};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
 use sistership_tests::binary;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::dimensions::Dimensions;

@@ -1,10 +1,10 @@
 //! Our ships against another group's implementations of the same laws, and against published
 //! turning circles.
 
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
-use sistership_dynamics::state::{at, straight};
-use sistership_dynamics::{Method, Order, Run, Ship, Trajectory};
 use sistership_model::Zoo;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
+use sistership_simulation::state::{at, straight};
+use sistership_simulation::{Method, Order, Run, Ship, Trajectory};
 use sistership_tests::shared;
 
 /// Largest differences in position (m) and heading (deg) against a reference file until a time.

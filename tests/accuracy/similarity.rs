@@ -2,8 +2,8 @@
 //! Kanazawa 2023, 5.1.2.
 
 use sistership_model::Zoo;
-use sistership_sources::similarity::{CharacteristicVector, Definition};
-use sistership_sources::source::similar;
+use sistership_priors::similarity::{CharacteristicVector, Definition};
+use sistership_priors::source::similar;
 
 /// Table 5 as printed: the normalised vectors.
 const TABLE_5: [(&str, [f64; 5]); 5] = [

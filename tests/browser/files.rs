@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use sistership_cli::sea_trials::{TrialManoeuvre, record};
-use sistership_dynamics::Ship;
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Channel;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
 
 /// The Mariner's, as a person types them.
 pub const PARTICULARS: [(&str, &str); 6] = [

@@ -10,7 +10,7 @@ use std::net::TcpListener;
 
 use driver::Browser;
 use serde_json::Value;
-use sistership_openid::testing::RealProvider;
+use sistership_auth::openid::testing::RealProvider;
 use sistership_store::testing::TestDatabase;
 use sistership_tests::binary;
 use sistership_tests::server::TestServer;

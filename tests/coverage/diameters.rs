@@ -1,9 +1,9 @@
 //! Tactical diameters at 35 deg of rudder.
 
-use sistership_bands::{Sampling, draws};
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{Manoeuvre, ManoeuvreSettings, Turn, sail_together};
+use sistership_assessment::uncertainty::{Sampling, draws};
 use sistership_model::{Law, Model};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, Turn, sail_together};
 
 const TURN_DEG: f64 = 35.0;
 

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use sistership_bands::Sampling;
-use sistership_dynamics::Ship;
-use sistership_estimate::refine::{Family, Method, Request, Settings, refine};
+use sistership_assessment::uncertainty::Sampling;
+use sistership_identification::refine::{Family, Method, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_simulation::Ship;
 use sistership_tests::synthetic::{Orders, Trouble, relative, replica, trial};
 
 use super::diameters::{band, diameter};

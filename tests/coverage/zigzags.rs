@@ -2,11 +2,11 @@
 //! than it says.
 
 use rayon::prelude::*;
-use sistership_bands::Sampling;
-use sistership_dynamics::Ship;
-use sistership_estimate::refine::{Method, Request, Settings, refine};
+use sistership_assessment::uncertainty::Sampling;
+use sistership_identification::refine::{Method, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::Ship;
 use sistership_tests::synthetic::{Orders, Trouble, relative, replica, trial};
 
 use super::diameters::{band, diameter};

@@ -1,6 +1,6 @@
 //! What begins within a trial is found with its time.
 
-use sistership_diagnose::{ChangeCourse, Request, Settings, Verdict, diagnose};
+use sistership_diagnosis::{ChangeCourse, Request, Settings, Verdict, diagnose};
 use sistership_model::Trial;
 
 use sistership_tests::hidden_effects::baseline::{BASELINE, library};

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use sistership_diagnose::Diagnosis;
-use sistership_estimate::refine;
+use sistership_diagnosis::Diagnosis;
+use sistership_identification::refine;
 use sistership_model::Trial;
 use sistership_tests::hidden_effects::baseline::Baseline;
 use sistership_tests::hidden_effects::truth::ZOO;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use sistership_diagnose::{Diagnosis, Request, Settings, Verdict, diagnose};
+use sistership_diagnosis::{Diagnosis, Request, Settings, Verdict, diagnose};
 use sistership_model::{Law, Model, Trial};
 use sistership_tests::shared;
 use sistership_trials::load_path;

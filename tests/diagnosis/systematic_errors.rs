@@ -1,7 +1,7 @@
 //! An instrument that erred when the model was fitted errs later, too: that is not new, and what is
 //! new is found beside it.
 
-use sistership_diagnose::{Diagnosis, Settings};
+use sistership_diagnosis::{Diagnosis, Settings};
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 

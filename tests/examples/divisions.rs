@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use rayon::prelude::*;
-use sistership_diagnose::Diagnosis;
+use sistership_diagnosis::Diagnosis;
 use sistership_model::Trial;
 use sistership_tests::undeclared_wind::{
     baseline, diagnosed, divided, names_wind, trials, with_placebo,
@@ -56,7 +56,7 @@ impl Outcome {
 
 /// Names with their evidence.
 fn named(diagnosis: &Diagnosis) -> String {
-    let one = |found: &sistership_diagnose::Found| format!("{} {:.0}", found.name, found.evidence);
+    let one = |found: &sistership_diagnosis::Found| format!("{} {:.0}", found.name, found.evidence);
     diagnosis.effects.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 

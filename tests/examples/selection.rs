@@ -11,15 +11,15 @@ use std::process::Command;
 use std::time::Instant;
 
 use serde_json::Value;
-use sistership_branches::{BranchKind, BranchSettings, corrected};
-use sistership_choice::{Asked, best_start};
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_dynamics::state::{StateVector, at, straight};
-use sistership_estimate::refine::Settings;
+use sistership_identification::refine::Settings;
+use sistership_learned::{BranchKind, BranchSettings, corrected};
 use sistership_model::trial::Channel;
 use sistership_model::{Model, Trial, Vessel, Zoo};
+use sistership_model_selection::{Asked, best_start};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::state::{StateVector, at, straight};
 
 #[path = "../src/esso_osaka.rs"]
 #[allow(dead_code, unused_imports)]

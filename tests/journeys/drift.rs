@@ -4,8 +4,8 @@ use reqwest::Method;
 use reqwest::multipart::{Form, Part};
 use serde_json::Value;
 use sistership_cli::sea_trials::TrialManoeuvre;
+use sistership_jobs::condition::DRIFT_LIMIT;
 use sistership_model::Trial;
-use sistership_pipeline::condition::DRIFT_LIMIT;
 use sistership_tests::server::{TestServer, json as answer};
 
 use super::over_http::{create, refine_weakly, upload_few};

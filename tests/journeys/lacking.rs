@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 use sistership_cli::sea_trials::{TrialManoeuvre, record};
-use sistership_dynamics::Ship;
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
 
 /// The name of the ship.
 pub const NAME: &str = "lacking";

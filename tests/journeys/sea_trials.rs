@@ -2,8 +2,8 @@
 
 use serde_json::json;
 use sistership_cli::sea_trials::{TrialManoeuvre, record};
-use sistership_dynamics::Ship;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
 use sistership_trials::samples::to_csv;
 
 /// The name of the ship of the journeys.

@@ -1,12 +1,12 @@
 //! A source of one law as the prior of another: what the trials do not tell stays as the source
 //! says.
 
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::{RECORDED, at};
-use sistership_estimate::refine::{Family, Method, Refinement, Request, Settings, refine};
+use sistership_identification::refine::{Family, Method, Refinement, Request, Settings, refine};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
-use sistership_sources::transfer::{approach_of, blank};
+use sistership_priors::transfer::{approach_of, blank};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::{RECORDED, at};
 
 use super::{model, ready};
 

@@ -1,7 +1,7 @@
 //! The craft that are foreign to the zoo: steady on the approach, symmetric where they should be,
 //! of decaying energy without propulsion, and physical with the propeller stopped and reversed.
 
-use sistership_dynamics::state::at;
+use sistership_simulation::state::at;
 use sistership_tests::truth::foreign::Kind;
 use sistership_tests::truth::foreign::coasting::Coasting;
 use sistership_tests::truth::foreign::craft::Craft;

@@ -12,8 +12,8 @@ mod truth;
 
 use std::sync::Arc;
 
-use sistership_dynamics::Ship;
 use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::Ship;
 
 /// The models of the zoo that sail.
 const SHIPS: [&str; 6] = ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"];

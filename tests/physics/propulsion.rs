@@ -1,11 +1,11 @@
 //! Trials at constant revolutions, and the propeller stopped and reversed: whatever the law that is
 //! fitted, a ship comes to rest, stops and goes astern.
 
-use sistership_dynamics::state::{StateVector, Trajectory, at, straight};
-use sistership_dynamics::{Method, Order, Run, Ship};
-use sistership_estimate::refine::{Family, Method as Estimator, Request, Settings, refine};
+use sistership_identification::refine::{Family, Method as Estimator, Request, Settings, refine};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::{Method, Order, Run, Ship};
 use sistership_tests::truth;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::family;

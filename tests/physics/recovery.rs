@@ -2,12 +2,12 @@
 //! source.
 
 use rand::{RngExt, SeedableRng};
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::{RECORDED, at};
-use sistership_dynamics::{Method, Trajectory};
-use sistership_estimate::refine::{Range, Request, Settings, refine};
+use sistership_identification::refine::{Range, Request, Settings, refine};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::{RECORDED, at};
+use sistership_simulation::{Method, Trajectory};
 
 use super::{model, ready};
 

@@ -1,9 +1,9 @@
 //! The prime system: a geometrically similar ship sails the same path in lengths.
 
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Vessel, Zoo};
-use sistership_sources::transfer::transfer;
+use sistership_priors::transfer::transfer;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
 
 use super::{model, ready};
 

@@ -1,9 +1,9 @@
 //! A simulation that leaves the physical range stops with a reason; it never returns infinities.
 
 use proptest::prelude::*;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
-use sistership_dynamics::state::straight;
-use sistership_dynamics::{Method, Order, Run, Trajectory};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
+use sistership_simulation::state::straight;
+use sistership_simulation::{Method, Order, Run, Trajectory};
 
 use super::{SHIPS, model, ready};
 

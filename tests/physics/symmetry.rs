@@ -2,11 +2,11 @@
 //! declared asymmetries.
 
 use proptest::prelude::*;
-use sistership_dynamics::StateVector;
-use sistership_dynamics::plant::Work;
-use sistership_dynamics::state::at;
 use sistership_model::coefficient::{Axis, CoefficientName};
 use sistership_model::{Law, Model};
+use sistership_simulation::StateVector;
+use sistership_simulation::plant::Work;
+use sistership_simulation::state::at;
 
 use super::{SHIPS, model, ready};
 

@@ -2,8 +2,8 @@
 //! are named, of bounded energy.
 
 use proptest::prelude::*;
-use sistership_dynamics::StateVector;
-use sistership_dynamics::state::{at, straight};
+use sistership_simulation::StateVector;
+use sistership_simulation::state::{at, straight};
 use sistership_tests::truth::causes;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::family;

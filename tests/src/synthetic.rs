@@ -3,11 +3,11 @@
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard};
-use sistership_dynamics::state::{RECORDED, StateVector, at, straight};
-use sistership_dynamics::{Method, Order, Ship, Trajectory};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard};
+use sistership_simulation::state::{RECORDED, StateVector, at, straight};
+use sistership_simulation::{Method, Order, Ship, Trajectory};
 
 /// What a ship is told to do.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +58,7 @@ pub fn trial(
     let mut gusts = [0.0; 3].map(|_: f64| rng.sample::<f64, _>(StandardNormal));
     let n_rps = ship.revolutions_at(ship.approach_speed_m_s());
     let kept = (-step_s / (trouble.gust_time * time_s)).exp();
-    let mut work = sistership_dynamics::plant::Work::default();
+    let mut work = sistership_simulation::plant::Work::default();
     for k in 0..=(100.0 * lengths) as usize {
         if k.is_multiple_of(5) {
             track.push(k as f64 * step_s, state, n_rps);

@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use sistership_diagnose::{Diagnosis, Settings};
-use sistership_estimate::refine::{self, Family, Method};
+use sistership_diagnosis::{Diagnosis, Settings};
+use sistership_identification::refine::{self, Family, Method};
 use sistership_model::Trial;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
-use sistership_sources::transfer::{approach_of, blank};
+use sistership_priors::transfer::{approach_of, blank};
 use sistership_store::sha256_hex;
 
 use crate::hidden_effects::baseline::{self, Baseline};

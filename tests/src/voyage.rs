@@ -7,11 +7,11 @@ use std::io::{self, Write};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::plant::Work;
-use sistership_dynamics::state::{RECORDED, StateVector, at, straight};
-use sistership_dynamics::{Method, Order as Helm, Ship};
 use sistership_model::trial::Channel;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::plant::Work;
+use sistership_simulation::state::{RECORDED, StateVector, at, straight};
+use sistership_simulation::{Method, Order as Helm, Ship};
 
 const SPEED_M_S: f64 = 10.47;
 /// Steps of the simulation, s.

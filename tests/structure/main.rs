@@ -1,202 +1,118 @@
-//! Dependencies run one way: manifests and modules are read, and an edge that `ARCHITECTURE.md`
-//! does not allow fails, as does a circle between the modules of a crate.
+//! Structure of the workspace, read from manifests and sources: the five wings and the direction of
+//! their dependencies, circles between the modules of a crate, and the language of the sources.
 
 mod circles;
 mod modules;
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: &[(&str, &[&str])] = &[
-    ("formula", &[]),
-    ("model", &["formula"]),
-    ("dynamics", &["formula", "model"]),
-    ("stretches", &[]),
-    ("containers", &[]),
-    ("columns", &[]),
-    ("trials", &["formula", "model", "containers", "columns"]),
-    ("regression", &[]),
-    ("branches", &["formula", "model", "dynamics"]),
-    ("bands", &["model", "dynamics"]),
-    ("export", &["formula", "model", "dynamics"]),
-    ("validation", &["model", "dynamics"]),
-    ("empirical", &["formula", "model", "dynamics", "bands"]),
-    ("sources", &["formula", "model", "dynamics", "empirical"]),
-    ("constraints", &["model", "dynamics"]),
-    ("propulsion", &["model", "dynamics"]),
-    (
-        "estimate",
-        &[
-            "formula",
-            "model",
-            "dynamics",
-            "bands",
-            "regression",
-            "empirical",
-            "sources",
-            "constraints",
-            "propulsion",
-        ],
-    ),
-    ("choice", &["model", "dynamics", "branches", "bands", "sources", "estimate"]),
-    ("residual", &["formula", "model", "dynamics", "estimate"]),
-    (
-        "diagnose",
-        &[
-            "formula",
-            "model",
-            "dynamics",
-            "branches",
-            "regression",
-            "sources",
-            "estimate",
-            "residual",
-        ],
-    ),
-    ("plan", &["model", "dynamics", "bands", "estimate", "residual", "diagnose"]),
-    ("fleet", &["model", "dynamics", "regression", "propulsion", "estimate"]),
-    ("store", &[]),
-    ("access", &[]),
-    ("openid", &["access"]),
-    ("webhooks", &["access", "store"]),
-    (
-        "report",
-        &[
-            "model",
-            "dynamics",
-            "branches",
-            "bands",
-            "validation",
-            "sources",
-            "estimate",
-            "choice",
-            "diagnose",
-        ],
-    ),
-    (
-        "pipeline",
-        &[
-            "model",
-            "dynamics",
-            "branches",
-            "trials",
-            "bands",
-            "validation",
-            "export",
-            "sources",
-            "estimate",
-            "choice",
-            "diagnose",
-            "fleet",
-            "store",
-        ],
-    ),
-    ("pages", &["model", "dynamics", "trials", "sources", "store", "report", "pipeline"]),
-    ("listen", &[]),
-    ("fields", &["store"]),
-    ("predict", &["model", "dynamics", "bands", "fields", "pipeline"]),
-    (
-        "http",
-        &[
-            "access", "model", "trials", "sources", "estimate", "store", "pipeline", "pages",
-            "fields", "predict",
-        ],
-    ),
-    ("accounts", &["access", "openid", "http", "pipeline", "store"]),
-    (
-        "server",
-        &[
-            "model", "dynamics", "branches", "trials", "bands", "sources", "estimate", "choice",
-            "diagnose", "fleet", "store", "report", "pipeline", "pages", "listen", "fields",
-            "predict", "http", "access", "openid", "accounts", "webhooks",
-        ],
-    ),
-    (
-        "cli",
-        &[
-            "model",
-            "dynamics",
-            "branches",
-            "stretches",
-            "trials",
-            "bands",
-            "validation",
-            "empirical",
-            "sources",
-            "estimate",
-            "choice",
-            "diagnose",
-            "plan",
-            "store",
-            "report",
-            "pipeline",
-            "predict",
-            "openid",
-            "server",
-            "export",
-            "access",
-        ],
-    ),
-    ("program", &["cli"]),
+/// Each wing, and the wings that its crates may depend on beside their own.
+const WINGS: [(&str, &[&str]); 5] = [
+    ("core", &[]),
+    ("data", &["core"]),
+    ("analysis", &["core"]),
+    ("service", &["core", "data", "analysis"]),
+    ("app", &["core", "data", "analysis", "service"]),
 ];
-const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "http", "listen"])];
 
-/// The folder of a crate.
-fn folder(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../crates").join(name)
+/// Outside crates, each with the only crates that may depend on it.
+const RESTRICTED: [(&str, &[&str]); 2] =
+    [("sqlx", &["store"]), ("axum", &["api", "web-support", "listener"])];
+
+/// Outside crates that wait, which `core`, `data` and `analysis` may not depend on.
+const ASYNC: [&str; 4] = ["tokio", "futures", "reqwest", "hyper"];
+
+/// A crate of the workspace: where it stands and what it depends on.
+struct Crate {
+    wing: &'static str,
+    name: String,
+    folder: PathBuf,
+    dependencies: Vec<String>,
 }
 
-/// The names in `[dependencies]` of each crate.
-fn dependencies() -> BTreeMap<&'static str, Vec<String>> {
-    let of = |name: &str| {
-        let path = folder(name).join("Cargo.toml");
-        let text = std::fs::read_to_string(&path)
-            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let section = text
-            .split("\n[")
-            .find(|part| part.starts_with("dependencies]"))
-            .unwrap_or_default()
-            .to_owned();
-        section
-            .lines()
-            .skip(1)
-            .filter_map(|line| line.split(['.', ' ', '=']).next())
-            .map(str::to_owned)
-            .collect::<Vec<_>>()
+fn crates() -> Vec<Crate> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    let in_wing = |(wing, _): &(&'static str, &[&str])| {
+        let wing = *wing;
+        let mut folders: Vec<PathBuf> = std::fs::read_dir(root.join(wing))
+            .unwrap_or_else(|error| panic!("crates/{wing}: {error}"))
+            .map(|entry| entry.expect("a listed folder").path())
+            .filter(|folder| folder.join("Cargo.toml").is_file())
+            .collect();
+        folders.sort();
+        folders.into_iter().map(move |folder| read_crate(wing, folder))
     };
-    ALLOWED.iter().map(|(name, _)| (*name, of(name))).collect()
+    WINGS.iter().flat_map(in_wing).collect()
 }
 
-#[test]
-fn dependencies_run_one_way() {
-    let found = dependencies();
-    for (name, allowed) in ALLOWED {
-        for other in
-            found[name].iter().filter_map(|dependency| dependency.strip_prefix("sistership-"))
-        {
-            assert!(allowed.contains(&other), "crates/{name} may not use crates/{other}");
-        }
+fn read_crate(wing: &'static str, folder: PathBuf) -> Crate {
+    let path = folder.join("Cargo.toml");
+    let text = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let section =
+        text.split("\n[").find(|part| part.starts_with("dependencies]")).unwrap_or_default();
+    let named = |line: &str| line.split(['.', ' ', '=']).next().map(str::to_owned);
+    Crate {
+        wing,
+        name: folder.file_name().expect("a folder").to_string_lossy().into_owned(),
+        dependencies: section.lines().skip(1).filter_map(named).collect(),
+        folder,
     }
 }
 
 #[test]
-fn the_database_and_the_web_are_named_where_they_are_at_home() {
-    for (name, dependencies) in dependencies() {
-        for (outside, only) in ALONE {
+fn every_crate_stands_in_a_wing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    for entry in std::fs::read_dir(root).expect("the folder of crates") {
+        let name = entry.expect("a listed folder").file_name().to_string_lossy().into_owned();
+        assert!(WINGS.iter().any(|(wing, _)| *wing == name), "crates/{name} is no wing");
+    }
+}
+
+#[test]
+fn wings_depend_in_one_direction() {
+    let crates = crates();
+    let wing_of = |name: &str| crates.iter().find(|one| one.name == name).map(|one| one.wing);
+    for one in &crates {
+        let (_, allowed) = WINGS.iter().find(|(wing, _)| *wing == one.wing).expect("its wing");
+        let own = one.dependencies.iter().filter_map(|name| name.strip_prefix("sistership-"));
+        for (other, wing) in own.filter_map(|other| Some((other, wing_of(other)?))) {
             assert!(
-                only.contains(&name) || !dependencies.iter().any(|d| d == outside),
-                "crates/{name} names {outside}"
+                wing == one.wing || allowed.contains(&wing),
+                "{} ({}) may not depend on {other} ({wing})",
+                one.name,
+                one.wing
             );
         }
     }
 }
 
 #[test]
+fn the_database_and_the_web_are_confined() {
+    for one in crates() {
+        for (outside, only) in RESTRICTED {
+            assert!(
+                only.contains(&one.name.as_str()) || !one.dependencies.iter().any(|d| d == outside),
+                "{} may not depend on {outside}: only {only:?} may",
+                one.name
+            );
+        }
+    }
+}
+
+#[test]
+fn core_data_and_analysis_do_not_wait() {
+    for one in crates().iter().filter(|one| !["service", "app"].contains(&one.wing)) {
+        let waits = one.dependencies.iter().find(|name| ASYNC.contains(&name.as_str()));
+        assert!(waits.is_none(), "{} may not depend on {waits:?}", one.name);
+    }
+}
+
+#[test]
 fn no_modules_of_a_crate_refer_to_each_other_in_a_circle() {
     let mut found = Vec::new();
-    for (name, _) in ALLOWED {
-        let references = modules::references(&folder(name).join("src"));
+    for Crate { name, folder, .. } in crates() {
+        let references = modules::references(&folder.join("src"));
         for circle in circles::circles(&references) {
             let mut edges = Vec::new();
             for module in &circle {
@@ -227,9 +143,9 @@ const FORBIDDEN: [(&str, &str); 7] = [
 
 #[test]
 fn the_fields_own_words_are_used() {
-    let numerics = ["model", "dynamics", "regression", "estimate", "residual", "diagnose"];
     let mut found = Vec::new();
-    for (path, text) in numerics.iter().flat_map(|name| modules::texts(&folder(name).join("src"))) {
+    let numerics = crates().into_iter().filter(|one| ["core", "analysis"].contains(&one.wing));
+    for (path, text) in numerics.flat_map(|one| modules::texts(&one.folder.join("src"))) {
         for (number, line) in
             text.lines().enumerate().filter(|(_, line)| !line.contains("serde(rename"))
         {
@@ -249,23 +165,9 @@ fn the_fields_own_words_are_used() {
 #[test]
 fn doc_comments_have_no_code_that_nobody_runs() {
     let fenced = |line: &str| line.trim_start().starts_with("//") && line.contains("```");
-    for (name, _) in ALLOWED {
-        for (path, text) in modules::texts(&folder(name).join("src")) {
+    for one in crates() {
+        for (path, text) in modules::texts(&one.folder.join("src")) {
             assert!(!text.lines().any(fenced), "{}: move the code into a test", path.display());
         }
-    }
-}
-
-/// The largest crate, without its tests: beyond this a room does several things.
-const LINES_OF_A_CRATE: usize = 9500;
-
-#[test]
-fn no_crate_is_too_large() {
-    for (name, _) in ALLOWED {
-        let lines: usize = modules::texts(&folder(name).join("src"))
-            .iter()
-            .map(|(_, text)| text.lines().count())
-            .sum();
-        assert!(lines <= LINES_OF_A_CRATE, "crates/{name} has {lines} lines without its tests");
     }
 }

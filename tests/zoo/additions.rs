@@ -1,9 +1,9 @@
 //! A new law, a new vessel, a new coefficient set and a new effect at run time: files, and no Rust.
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
 use sistership_model::Zoo;
 use sistership_model::trial::Channel;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
 
 /// Nomoto's first-order law with a quadratic resistance: nothing the program knows.
 const LAW: &str = "
@@ -129,7 +129,7 @@ fn a_new_law_vessel_and_coefficient_set_are_files() {
             .unwrap_or_else(|error| panic!("{error}"));
         let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default())
             .unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
-        sailed.track.last().expect("a state")[sistership_dynamics::state::at::R]
+        sailed.track.last().expect("a state")[sistership_simulation::state::at::R]
     };
     // Nomoto: the steady yaw rate is K delta, here 0.6/20 and 1.2/20 of 20 deg.
     assert!((rate("barge/slow") - 0.03 * 20_f64.to_radians()).abs() < 1e-4);

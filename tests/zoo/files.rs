@@ -1,10 +1,10 @@
 //! Every file of the zoo.
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard};
 use sistership_model::Zoo;
 use sistership_model::effect::Form;
 use sistership_model::vessel::Status;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard};
 
 fn zoo() -> Zoo {
     Zoo::embedded().unwrap_or_else(|error| panic!("{error}"))

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::plant::Work;
-use sistership_dynamics::state::{StateVector, Trajectory, at};
-use sistership_dynamics::{Method, ship};
 use sistership_model::effect::AppliedEffect;
 use sistership_model::hybrid::{Derivation, derive};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::plant::Work;
+use sistership_simulation::state::{StateVector, Trajectory, at};
+use sistership_simulation::{Method, ship};
 
 fn models() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../models")

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::StandardManoeuvres;
-use sistership_empirical::{LAW, Library, estimate};
-use sistership_model::vessel::Status;
-use sistership_model::{Vessel, Zoo};
-use sistership_validation::{
+use sistership_assessment::validation::{
     Appraisal, Comparison, Dataset, Severity, Standing, appraise_vessel, compare, limits, review,
 };
+use sistership_model::vessel::Status;
+use sistership_model::{Vessel, Zoo};
+use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::StandardManoeuvres;
 
 #[test]
 fn the_page_of_the_zoo_is_current() {
@@ -106,7 +106,7 @@ fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
          turning figures within {:.0} %, overshoots\nwithin {:.0} % or {:.0} deg, whichever is \
          more, each beside the uncertainty of the trial; `disputed` where one is\nmissed; \
          `published` or `estimated`, by the origin of its figures, where none is known. The limits \
-         are chosen\n(`crates/validation/src/limits.rs` has the reasons).\n\n",
+         are chosen\n(`crates/analysis/assessment/src/validation/limits.rs` has the reasons).\n\n",
         all().count(),
         citations.len(),
         appraised.len(),
@@ -182,7 +182,7 @@ fn length(lpp_m: f64) -> String {
 
 fn turn_figure(
     model: &Appraisal,
-    of: impl Fn(&sistership_dynamics::metrics::TurningMetrics) -> Option<f64>,
+    of: impl Fn(&sistership_simulation::metrics::TurningMetrics) -> Option<f64>,
 ) -> String {
     let starboard = model.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0);
     starboard

@@ -1,9 +1,9 @@
 //! The estimators on one law without a source.
 
-use sistership_dynamics::error::SquaredError;
-use sistership_estimate::refine::{CmaEs, Method, Request, Settings, refine};
+use sistership_identification::refine::{CmaEs, Method, Request, Settings, refine};
 use sistership_model::{Trial, Zoo};
-use sistership_sources::transfer::{approach_of, blank};
+use sistership_priors::transfer::{approach_of, blank};
+use sistership_simulation::error::SquaredError;
 use sistership_tests::{esso_osaka, shared};
 
 use super::compared;

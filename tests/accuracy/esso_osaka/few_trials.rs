@@ -1,8 +1,8 @@
 //! Few trials, and a source of another law.
 
-use sistership_estimate::refine::{Method, Request, Settings, refine};
+use sistership_identification::refine::{Method, Request, Settings, refine};
 use sistership_model::{Law, Model, Zoo};
-use sistership_sources::transfer::{approach_of, blank};
+use sistership_priors::transfer::{approach_of, blank};
 use sistership_tests::{esso_osaka, shared};
 
 use super::compared;

@@ -1,8 +1,8 @@
 //! The Esso Osaka model refined from the zoo with `auto`, judged on manoeuvres left out.
 
-use sistership_estimate::refine::{Refinement, Request, Settings, refine};
+use sistership_identification::refine::{Refinement, Request, Settings, refine};
 use sistership_model::{Trial, Zoo};
-use sistership_sources::source::{best_source, similar};
+use sistership_priors::source::{best_source, similar};
 use sistership_tests::{esso_osaka, shared};
 
 /// Turning and zigzag trials; the `turn_cut` files overlap their parents and are left out.

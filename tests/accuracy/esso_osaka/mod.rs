@@ -6,7 +6,7 @@ mod from_the_zoo;
 mod score;
 mod time;
 
-use sistership_estimate::refine::{Family, Method, Settings};
+use sistership_identification::refine::{Family, Method, Settings};
 
 use score::RESTART_S;
 

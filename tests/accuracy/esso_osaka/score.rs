@@ -1,10 +1,10 @@
 //! The score of Wakita et al. 2022, Eq. 26, by kind of trial.
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::{Law, Model, Trial, Zoo};
-use sistership_sources::transfer::{approach_of, transfer};
+use sistership_priors::transfer::{approach_of, transfer};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
 
 /// Restart and scatter of the score of Wakita et al. 2022, Eq. 26.
 pub const RESTART_S: f64 = 100.0;

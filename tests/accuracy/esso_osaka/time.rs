@@ -1,8 +1,8 @@
 //! How long a refinement takes.
 
-use sistership_estimate::refine::{Method, Request, refine};
+use sistership_identification::refine::{Method, Request, refine};
 use sistership_model::{Trial, Zoo};
-use sistership_sources::transfer::{approach_of, blank};
+use sistership_priors::transfer::{approach_of, blank};
 use sistership_tests::{esso_osaka, shared};
 
 use super::compared;

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::{RECORDED, Trajectory, at};
 use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::{RECORDED, Trajectory, at};
 
 use super::regressions::{Hull, derivatives};
 

@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;
-use sistership_choice::{Asked, best_start};
-use sistership_dynamics::Trajectory;
-use sistership_estimate::refine::Settings;
+use sistership_identification::refine::Settings;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};
+use sistership_model_selection::{Asked, best_start};
+use sistership_simulation::Trajectory;
 
 use super::refined::TURNS;
 use super::truth::Truth;

@@ -3,14 +3,14 @@
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use sistership_dynamics::Trajectory;
-use sistership_dynamics::state::at;
-use sistership_estimate::refine::{Blocks, Fold, Range, Table, fit, trial_tables, tune};
+use sistership_identification::refine::{Blocks, Fold, Range, Table, fit, trial_tables, tune};
 use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
-use sistership_regression::Moments;
+use sistership_numerics::Moments;
+use sistership_simulation::Trajectory;
+use sistership_simulation::state::at;
 use sistership_trials::smoothing::savitzky_golay;
 
 use super::truth::{FITTED, Truth, recorded};

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use sistership_dynamics::state::{RECORDED, StateVector, at, straight};
-use sistership_dynamics::{Method, Order, Run, Ship, Trajectory};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
+use sistership_simulation::state::{RECORDED, StateVector, at, straight};
+use sistership_simulation::{Method, Order, Run, Ship, Trajectory};
 
 /// Sampling interval and Euler step, s.
 pub const STEP_S: f64 = 0.5;

@@ -1,7 +1,7 @@
 //! What Table 5 tells of a turning circle.
 
-use sistership_dynamics::StateVector;
-use sistership_dynamics::state::{at, speed};
+use sistership_simulation::StateVector;
+use sistership_simulation::state::{at, speed};
 
 /// The four rows of a turn, or the errors in them (%).
 #[derive(Debug, Clone, Copy)]

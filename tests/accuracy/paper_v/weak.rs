@@ -3,12 +3,12 @@
 //! manoeuvres left out, the turns of the table never seen.
 
 use rand_chacha::ChaCha8Rng;
-use sistership_dynamics::state::at;
-use sistership_estimate::refine::{Family, Method, Request, Settings, refine};
+use sistership_identification::refine::{Family, Method, Request, Settings, refine};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo, particulars};
+use sistership_simulation::state::at;
 
 use super::refined::{NOISE, TURNS, ZIGZAGS, noisy};
 use super::truth::{FITTED, Truth, recorded};
@@ -60,7 +60,7 @@ pub fn pooled() -> Vec<Vec<(f64, f64)>> {
 }
 
 /// A track with the paper's noise, and a like noise of roll; nothing of the plane but velocities.
-pub fn measured(track: &sistership_dynamics::Trajectory, rng: &mut ChaCha8Rng) -> Trial {
+pub fn measured(track: &sistership_simulation::Trajectory, rng: &mut ChaCha8Rng) -> Trial {
     let mut trial = recorded(track, FITTED);
     for (channel, index, deviation) in ROLL.into_iter().chain(NOISE) {
         trial.channels.insert(channel, noisy(track, index, deviation, rng));

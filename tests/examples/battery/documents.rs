@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use serde_json::{Value, json};
 use sistership_cli::sea_trials::{TrialManoeuvre, record};
-use sistership_dynamics::Ship;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
 use sistership_trials::samples::to_csv;
 
 use crate::attack::Failure;

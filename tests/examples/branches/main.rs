@@ -1,6 +1,6 @@
 //! Learned branches on data, one command each:
 //!
-//! `cargo run --release -p sistership-branches --example branches -- rm-rf`, or `esso-osaka`,
+//! `cargo run --release -p sistership-learned --example branches -- rm-rf`, or `esso-osaka`,
 //! which takes the window in seconds after it, or `wakita`, which takes the epochs and then names
 //! of types, or `rates`; of Kanazawa 2023 on a virtual ship `paper-i`, `paper-ii`, `paper-iii`,
 //! `paper-vi`, and `paper-iv`, which takes a ship of the zoo after it.

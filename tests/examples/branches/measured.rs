@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use sistership_estimate::refine::{Family, Method, Request, Settings, refine};
+use sistership_identification::refine::{Family, Method, Request, Settings, refine};
 use sistership_model::{Law, Model, Trial, Zoo};
-use sistership_sources::transfer::{approach_of, blank};
+use sistership_priors::transfer::{approach_of, blank};
 
 use crate::esso_osaka;
 use crate::score::{KINDS, RESTART_S};

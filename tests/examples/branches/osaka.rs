@@ -3,13 +3,13 @@
 //! that no figure printed has been looked at for a choice.
 
 use rayon::prelude::*;
-use sistership_branches::{Row, Training, importance, rows, ship, train};
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::SquaredError;
-use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_learned::{Row, Training, importance, rows, ship, train};
 use sistership_model::branch::{BranchMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::{Law, Model, Trial, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::recorded::{ReplaySettings, replay};
 
 use crate::measured::{fold_of, law, nothing, refined, trials};
 use crate::score::{KINDS, RESTART_S, over_all};

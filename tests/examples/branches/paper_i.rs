@@ -2,10 +2,10 @@
 //! and corrected once by an LSTM that is told the foundation's end; against the foundation and an
 //! LSTM without one, which is told the orders instead.
 
-use sistership_branches::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
-use sistership_branches::recurrent::Cell;
-use sistership_dynamics::Ship;
+use sistership_learned::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
+use sistership_learned::recurrent::Cell;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
 
 use crate::vessel::foundation::{Shift, ship};
 use crate::vessel::hull::{Hull, VESSEL};

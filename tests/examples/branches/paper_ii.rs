@@ -2,8 +2,8 @@
 //! which serves as a simulator alone: on its simulations in calm water the perceptron is trained
 //! first, then on few trials.
 
-use sistership_branches::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
-use sistership_branches::recurrent::Cell;
+use sistership_learned::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
+use sistership_learned::recurrent::Cell;
 use sistership_model::trial::Channel;
 use sistership_model::{Trial, Zoo};
 

@@ -1,12 +1,12 @@
 //! Paper III (Kanazawa 2023, sec. 3.2): docking, perceptrons on what the foundation's accelerations
 //! lack, asked at every step.
 
-use sistership_branches::horizon::{Example, OneShot, Told};
-use sistership_branches::{Training, ship as joined, train};
-use sistership_dynamics::Ship;
+use sistership_learned::horizon::{Example, OneShot, Told};
+use sistership_learned::{Training, ship as joined, train};
 use sistership_model::branch::{BranchMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::{Model, Trial, Zoo};
+use sistership_simulation::Ship;
 
 use crate::vessel::foundation::{Shift, model, ship};
 use crate::vessel::hull::{Hull, VESSEL};

@@ -2,10 +2,10 @@
 //! of data and with how far the foundation is off. For the virtual ship, or for any ship of the
 //! zoo, whose own model then sails in its place, in weather of its size.
 
-use sistership_branches::horizon::{Example, HorizonTraining, OneShot, Told, train};
-use sistership_branches::recurrent::Cell;
-use sistership_dynamics::Ship;
+use sistership_learned::horizon::{Example, HorizonTraining, OneShot, Told, train};
+use sistership_learned::recurrent::Cell;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
 
 use crate::vessel::foundation::{Shift, ship};
 use crate::vessel::hull::{Hull, VESSEL};

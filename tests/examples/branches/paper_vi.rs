@@ -2,7 +2,7 @@
 //! closed-form responses, by those with a factor for each motion, and with a factor that is learned
 //! from samples of which the common ones are thinned out.
 
-use sistership_branches::seakeeping::{WaveHull, factor, thinned};
+use sistership_learned::seakeeping::{WaveHull, factor, thinned};
 
 use crate::vessel::seaway::{Sample, assumed, samples};
 

@@ -3,10 +3,10 @@
 use std::hint::black_box;
 use std::time::Instant as Clock;
 
-use sistership_branches::{Learned, train};
-use sistership_dynamics::branch::{Instant, LearnedBranch};
+use sistership_learned::{Learned, train};
 use sistership_model::branch::BranchMode;
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::branch::{Instant, LearnedBranch};
 
 use crate::measured::{law, nothing, trials};
 use crate::osaka::{NAMES, WINDOW_S, learners, training};

@@ -4,14 +4,14 @@
 //! For work: zigzags 15/15 and 25/20, on which window and fade were settled. For judgement: the
 //! paper's own two, the turn with 35 deg of rudder and the zigzag 20/10.
 
-use sistership_branches::{Training, ship, train};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_dynamics::state::{StateVector, at};
-use sistership_dynamics::{Ship, Trajectory};
+use sistership_learned::{Training, ship, train};
 use sistership_model::Model;
 use sistership_model::branch::{BranchMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::state::{StateVector, at};
+use sistership_simulation::{Ship, Trajectory};
 
 use crate::rm_rf_data::{Order, Pair, turning};
 

@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::{RECORDED, Trajectory, at};
-use sistership_dynamics::{Ship, metrics};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
-use sistership_sources::similarity::Definition;
-use sistership_sources::source::similar;
-use sistership_sources::transfer::{Approach, transfer};
+use sistership_priors::similarity::Definition;
+use sistership_priors::source::similar;
+use sistership_priors::transfer::{Approach, transfer};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_simulation::{Ship, metrics};
 
 /// The ship and the four among which the paper chooses its reference model.
 const TARGET: &str = "kvlcc2";

@@ -5,14 +5,14 @@
 //! set that belong to none of its smaller sets; they are left out of the largest. Networks are
 //! narrower than the paper's 200 neurons and see fewer epochs, for a computer without a GPU.
 
-use sistership_branches::recurrent::{
+use sistership_learned::recurrent::{
     Cell, Fit, Loss, Memory, Motion, SequenceTraining, Shape, fit,
 };
-use sistership_dynamics::Ship;
-use sistership_dynamics::plant::Work;
-use sistership_dynamics::recorded::instants_along;
-use sistership_dynamics::state::{StateVector, at};
 use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::plant::Work;
+use sistership_simulation::recorded::instants_along;
+use sistership_simulation::state::{StateVector, at};
 
 use crate::measured::{law, refined, trials};
 use crate::score::RESTART_S;
@@ -124,7 +124,7 @@ fn score(fit: &Fit, ship: Option<&Ship>, test: &[Motion], deviations: &Deviation
 }
 
 fn deviations(test: &[Motion]) -> Deviations {
-    let scales = sistership_branches::recurrent::Scales::of(test);
+    let scales = sistership_learned::recurrent::Scales::of(test);
     [scales.positions, scales.velocities]
 }
 

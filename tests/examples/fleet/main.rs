@@ -10,9 +10,9 @@ mod search;
 
 use std::time::{Duration, Instant};
 
-use sistership_pipeline::Archive;
-use sistership_pipeline::fleet::{Asked, PriorChoice, Rule, Standing, learn, order_refinement};
-use sistership_server::{Config, Workers};
+use sistership_api::{Config, Workers};
+use sistership_jobs::Archive;
+use sistership_jobs::fleet::{Asked, PriorChoice, Rule, Standing, learn, order_refinement};
 use sistership_store::{Bulk, MAX_LIMIT, Page, Store};
 use sistership_tests::fleet::{FOUNDATION, Yard, name};
 

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use reqwest::Client;
 use serde_json::Value;
-use sistership_pipeline::{Archive, search};
-use sistership_server::{Config, Server};
+use sistership_api::{Config, Server};
+use sistership_jobs::{Archive, search};
 use sistership_tests::fleet::name;
 
 /// How often each kind of search is made, each time with other words.

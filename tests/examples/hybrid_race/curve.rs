@@ -7,12 +7,12 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::SquaredError;
-use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Trial};
-use sistership_regression::cma_es::Spent;
+use sistership_numerics::cma_es::Spent;
+use sistership_simulation::Ship;
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::recorded::{ReplaySettings, replay};
 
 /// A method with its points.
 type Kept = (String, Vec<Point>);

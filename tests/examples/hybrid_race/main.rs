@@ -17,12 +17,12 @@ mod truth;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use sistership_dynamics::Method as Integration;
-use sistership_dynamics::error::standard_deviations;
-use sistership_estimate::refine::{
+use sistership_identification::refine::{
     CmaEs, Family, Iterate, Method, Request, Settings, refine_watched,
 };
 use sistership_model::{Law, Model, Trial, Vessel, Zoo};
+use sistership_simulation::Method as Integration;
+use sistership_simulation::error::standard_deviations;
 
 use curve::{Curve, Folder, held_out_error};
 
@@ -188,7 +188,7 @@ impl Race {
     }
 }
 
-fn chosen(options: &[sistership_estimate::refine::StepOption]) -> &str {
+fn chosen(options: &[sistership_identification::refine::StepOption]) -> &str {
     options.iter().find(|option| option.chosen).map_or("nothing", |option| option.step.as_str())
 }
 

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::state::{RECORDED, StateVector, Trajectory, at, straight};
-use sistership_dynamics::{Method, Order, Ship};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
+use sistership_simulation::state::{RECORDED, StateVector, Trajectory, at, straight};
+use sistership_simulation::{Method, Order, Ship};
 use sistership_tests::synthetic::replica;
 
 const STEP_S: f64 = 0.1;
@@ -34,7 +34,7 @@ fn trial(ship: &Ship, name: &str, duration_s: f64, rng: &mut ChaCha12Rng) -> Tri
     let mut order = Order { delta_rad: 0.0, n_rps: 0.8 * approach_n };
     let (mut n_rps, mut until) = (order.n_rps, [0.0; 2]);
     let mut track = Trajectory::default();
-    let mut work = sistership_dynamics::plant::Work::default();
+    let mut work = sistership_simulation::plant::Work::default();
     for k in 0..=(duration_s / STEP_S) as usize {
         let t_s = k as f64 * STEP_S;
         if t_s >= until[0] {

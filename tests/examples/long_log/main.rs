@@ -15,9 +15,9 @@ use std::time::Instant;
 use measured::{Measured, run, thread_s};
 use serde_json::Value;
 use sistership_model::Trial;
-use sistership_stretches::{Finder, Sample};
 use sistership_tests::voyage::{Order, Sailed, Voyage, write_csv};
 use sistership_trials::samples::{to_csv, write_parquet};
+use sistership_trials::segmentation::{Finder, Sample};
 use sistership_trials::{Mapping, Steering, scan};
 
 const ROWS: usize = 10_000_000;

@@ -147,7 +147,7 @@ pub fn by_file(program: &Program) {
     let folds: Option<Vec<DataSet>> = (0..FOLDS).map(|fold| esso_osaka(Some(fold))).collect();
     let (Some(folds), Some(all)) = (folds, esso_osaka(None)) else { return };
     let whole = Call::default().refine(program, &all).0;
-    let mut sum = sistership_dynamics::error::SquaredError::default();
+    let mut sum = sistership_simulation::error::SquaredError::default();
     let mut failed = Vec::new();
     for fold in &folds {
         match model_errors(program, fold) {
@@ -155,7 +155,7 @@ pub fn by_file(program: &Program) {
             Err(reason) => failed.push(reason),
         }
     }
-    let error = sistership_dynamics::error::standardised_mse(&sum, &all.deviations) / 6.0;
+    let error = sistership_simulation::error::standardised_mse(&sum, &all.deviations) / 6.0;
     println!(
         "\nEsso Osaka by the plain call, every file judged by a model made without it: {error:.4} \
          (aim: at most 0.028){}; all {} files: {:.1} s, {:.0} MB (aim: at most 8 s, 300 MB).",
@@ -169,7 +169,7 @@ pub fn by_file(program: &Program) {
 fn model_errors(
     program: &Program,
     data: &DataSet,
-) -> Result<sistership_dynamics::error::SquaredError, String> {
+) -> Result<sistership_simulation::error::SquaredError, String> {
     let (made, folder) = Call::default().refine(program, data);
     made.judged?;
     let model = crate::call::read_model(&data.zoo, &folder.path().join(crate::call::MODEL))?;

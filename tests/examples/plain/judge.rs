@@ -1,10 +1,10 @@
 //! How a model does on trials that no call saw.
 
-use sistership_dynamics::error::{SquaredError, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_dynamics::{Ship, StateVector};
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::error::{SquaredError, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::{Ship, StateVector};
 
 use crate::data::DataSet;
 

@@ -1,7 +1,7 @@
 //! Sources as they are, not refined.
 
 use sistership_model::Model;
-use sistership_sources::transfer::{approach_of, transfer};
+use sistership_priors::transfer::{approach_of, transfer};
 
 use crate::data::DataSet;
 use crate::judge::judge;

@@ -11,11 +11,11 @@ mod speeds;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use sistership_choice::{Asked, best_start};
-use sistership_dynamics::Ship;
-use sistership_estimate::refine::Settings;
+use sistership_identification::refine::Settings;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Zoo};
+use sistership_model_selection::{Asked, best_start};
+use sistership_simulation::Ship;
 
 use ships::{Stranger, of_truth, of_zoo};
 use speeds::{Speeds, of_model};

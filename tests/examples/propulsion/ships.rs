@@ -1,10 +1,10 @@
 //! Ships of the zoo by their own laws, and ships whose laws it does not have, with trials at
 //! constant revolutions.
 
-use sistership_dynamics::Ship;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_simulation::Ship;
 use sistership_tests::synthetic::{Orders, Trouble, replica, trial};
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::ferry::ferry;

@@ -1,7 +1,7 @@
 //! Where a ship is after her propeller was stopped or reversed.
 
-use sistership_dynamics::state::{StateVector, Trajectory, at, straight};
-use sistership_dynamics::{Method, Order, Run, Ship};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::{Method, Order, Run, Ship};
 use sistership_tests::truth::motion::{Truth, sail_from};
 
 /// Speeds by that of the approach, so many times after the order as the ship sails its length in;

@@ -1,8 +1,8 @@
 //! The figures by which predictions are judged.
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard};
 use sistership_model::{Model, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard};
 
 /// Tactical diameter in ship lengths and first overshoots at 10/10 and 20/20 in deg, to starboard.
 #[derive(Debug, Clone, Copy)]

@@ -16,10 +16,10 @@ mod with_trials;
 
 use std::sync::Arc;
 
-use sistership_empirical::{LAW, Library, estimate};
 use sistership_model::categories::comparable;
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_sources::transfer::transfer;
+use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_priors::transfer::transfer;
 
 use figures::{Figures, error, sailed};
 use sailing::Strangers;

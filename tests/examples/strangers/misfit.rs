@@ -1,13 +1,13 @@
 //! How far a source carried over, and an estimate, are from a ship's own accelerations: what the
 //! mixture's weights are learned from.
 
-use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
-use sistership_dynamics::plant::Work;
-use sistership_dynamics::state::{StateVector, at};
-use sistership_empirical::{LAW, Library, estimate};
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_sources::transfer::transfer;
+use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_priors::transfer::transfer;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
+use sistership_simulation::plant::Work;
+use sistership_simulation::state::{StateVector, at};
 
 use crate::ships::{bare, is_for_work, kin, likeness};
 use crate::statistics::{mean, median};

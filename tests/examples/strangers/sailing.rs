@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use sistership_dynamics::Ship;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_simulation::Ship;
 use sistership_tests::synthetic::{Orders, Trouble, replica, trial};
 use sistership_tests::truth::instruments::Instruments;
 use sistership_tests::truth::manoeuvre::{Manoeuvre, figures};

@@ -2,7 +2,7 @@
 
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Vessel};
-use sistership_sources::similarity::{CharacteristicVector, Definition};
+use sistership_priors::similarity::{CharacteristicVector, Definition};
 
 /// Ships that are one hull at several scales or in several hands, or sisters that were identified
 /// together: none may be the source of its own kin.

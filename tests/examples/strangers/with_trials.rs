@@ -2,14 +2,14 @@
 //! nothing but the prior differs.
 
 use rayon::prelude::*;
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_empirical::{LAW, Library, estimate};
-use sistership_estimate::refine::{Method, Prior, Request, Settings, refine};
+use sistership_identification::refine::{Method, Prior, Request, Settings, refine};
 use sistership_model::categories::comparable;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Zoo};
+use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
 
 use crate::figures::{error, sailed};
 use crate::sailing::{Sailed, Strangers, strangers};

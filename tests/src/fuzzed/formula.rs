@@ -1,7 +1,7 @@
 //! Formulas.
 
-use sistership_dynamics::tape::{Binding, TapeBuilder};
 use sistership_formula::{Expr, Function, parse};
+use sistership_simulation::tape::{Binding, TapeBuilder};
 
 const INPUTS: [&str; 3] = ["u", "v", "r"];
 const VALUES: [f64; 3] = [1.25, -0.5, 0.01];

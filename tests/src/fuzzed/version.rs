@@ -1,6 +1,6 @@
 //! Version documents.
 
-use sistership_pipeline::version::VersionDocument;
+use sistership_jobs::version::VersionDocument;
 
 /// What a document is written to, is read to the same document and written to the same bytes.
 pub fn run(data: &[u8]) {

@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sistership_diagnose::{self as diagnose, CalibrationSettings, Diagnosis, calibrate};
-use sistership_estimate::refine::{Request, Settings, refine};
+use sistership_diagnosis::{self as diagnose, CalibrationSettings, Diagnosis, calibrate};
+use sistership_identification::refine::{Request, Settings, refine};
 use sistership_model::{Effect, Law, Model, Trial};
 
 use super::truth::{Hidden, Manoeuvre, Sailing, ZOO, trials};

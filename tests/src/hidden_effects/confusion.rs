@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use outcome::Outcome;
-use sistership_diagnose::{Request, Settings, diagnose};
+use sistership_diagnosis::{Request, Settings, diagnose};
 use sistership_model::Trial;
 
 use super::baseline::{BASELINE, library};

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::state::{RECORDED, Trajectory, at};
 use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::state::{RECORDED, Trajectory, at};
 
 use super::motion::{STEP_S, Truth};
 

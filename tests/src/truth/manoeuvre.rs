@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use rand::RngExt;
-use sistership_dynamics::metrics::{TurningMetrics, ZigzagMetrics};
-use sistership_dynamics::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::metrics::{TurningMetrics, ZigzagMetrics};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight};
 
 use super::motion::{STEP_S, Truth, sail, sail_from};
 use crate::synthetic::replica;

@@ -1,7 +1,7 @@
 //! Equations of motion that every ship of the truth shares, and how it is sailed.
 
-use sistership_dynamics::Method;
-use sistership_dynamics::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::Method;
+use sistership_simulation::state::{StateVector, Trajectory, at, straight};
 
 use super::dimensions::Dimensions;
 

@@ -1,7 +1,7 @@
 //! A ship with one propeller and one rudder: regression for the linear forces, strips for the
 //! cross-flow.
 
-use sistership_dynamics::state::{StateVector, at};
+use sistership_simulation::state::{StateVector, at};
 
 use super::clarke::{Derivatives, derivatives};
 use super::cross_flow::CrossFlow;

@@ -1,6 +1,6 @@
 //! Whether a ship keeps a straight line with the rudder amidships.
 
-use sistership_dynamics::state::{at, straight};
+use sistership_simulation::state::{at, straight};
 
 use super::motion::{STEP_S, Truth, step};
 

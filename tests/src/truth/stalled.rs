@@ -1,6 +1,6 @@
 //! A ship whose rudder stalls: what no smooth law of the angle says.
 
-use sistership_dynamics::state::{StateVector, at};
+use sistership_simulation::state::{StateVector, at};
 
 use super::dimensions::Dimensions;
 use super::motion::{Inertia, Truth};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use sistership_dynamics::state::{StateVector, at};
+use sistership_simulation::state::{StateVector, at};
 
 use super::cross_flow::CrossFlow;
 use super::dimensions::Dimensions;

@@ -3,10 +3,10 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
-use sistership_dynamics::Ship;
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
+use sistership_simulation::Ship;
 
 /// How far its figures are from those of the zoo.
 #[derive(Debug, Clone, Copy, PartialEq)]

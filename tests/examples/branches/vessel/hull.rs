@@ -3,12 +3,12 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
-use sistership_dynamics::Ship;
-use sistership_dynamics::plant::{Inputs, MAX_INPUTS, Work};
-use sistership_dynamics::state::{StateVector, at};
 use sistership_model::hybrid::derive;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::plant::{Inputs, MAX_INPUTS, Work};
+use sistership_simulation::state::{StateVector, at};
 
 /// Two thrusters under one order, as one.
 const DECLARATION: &str = "

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use sistership_dynamics::Method;
-use sistership_dynamics::state::{StateVector, at};
 use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::Method;
+use sistership_simulation::state::{StateVector, at};
 
 use super::hull::Hull;
 use super::seas::Seas;

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
-use sistership_branches::seakeeping::{DirectionalSpectrum, Motion, WaveHull};
+use sistership_learned::seakeeping::{DirectionalSpectrum, Motion, WaveHull};
 
 use super::scenarios::normal;
 use super::seas::jonswap;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use sistership_dynamics::error::standard_deviations;
 use sistership_model::Trial;
+use sistership_simulation::error::standard_deviations;
 use sistership_tests::{esso_osaka, shared};
 
 use super::DataSet;

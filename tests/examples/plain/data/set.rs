@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use sistership_dynamics::error::standard_deviations;
 use sistership_model::Zoo;
 use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::error::standard_deviations;
 
 /// A ship with trials in files for the calls, and others that no call sees.
 pub struct DataSet {

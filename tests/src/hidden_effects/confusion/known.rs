@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use sistership_diagnose::Diagnosis;
-use sistership_dynamics::Ship;
-use sistership_dynamics::error::SquaredError;
-use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_diagnosis::Diagnosis;
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
+use sistership_simulation::Ship;
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::recorded::{ReplaySettings, replay};
 
 use super::super::baseline::BASELINE;
 

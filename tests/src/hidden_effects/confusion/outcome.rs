@@ -1,6 +1,6 @@
 //! What a diagnosis made of a case.
 
-use sistership_diagnose::{
+use sistership_diagnosis::{
     Diagnosis, Found, RemainderDependence, Unexplained, Value, VariableDependence, Verdict,
 };
 use sistership_model::Trial;

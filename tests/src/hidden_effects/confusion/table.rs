@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_diagnose::Verdict;
+use sistership_diagnosis::Verdict;
 
 use super::super::cases::Kind;
 use super::outcome::Outcome;

@@ -1,10 +1,10 @@
 //! The true ship checked against the library's manoeuvres and against independent examples.
 
 use crate::shared;
-use sistership_dynamics::Trajectory;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::at;
-use sistership_dynamics::{Ship, StateVector};
+use sistership_simulation::Trajectory;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::at;
+use sistership_simulation::{Ship, StateVector};
 
 use super::instruments::{NOISE, said};
 use super::sailing::{DURATION_S, N_RPS};

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, Normal};
-use sistership_dynamics::Trajectory;
-use sistership_dynamics::plant::Work;
-use sistership_dynamics::state::{StateVector, at};
 use sistership_model::Trial;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
+use sistership_simulation::Trajectory;
+use sistership_simulation::plant::Work;
+use sistership_simulation::state::{StateVector, at};
 
 use super::sailing::{N_RPS, STEP_S, Sailing, TrueShip};
 

@@ -1,12 +1,12 @@
 //! How the true ship sails: its bridge, its rudder, and what is hidden in either.
 
-use sistership_dynamics::gear::Gear;
-use sistership_dynamics::plant::{Inputs, Work};
-use sistership_dynamics::state::{StateVector, at, straight};
-use sistership_dynamics::{Ship, Trajectory};
 use sistership_model::effect::{AppliedEffect, TIME};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model};
+use sistership_simulation::gear::Gear;
+use sistership_simulation::plant::{Inputs, Work};
+use sistership_simulation::state::{StateVector, at, straight};
+use sistership_simulation::{Ship, Trajectory};
 
 use super::{Hidden, Unlisted, Weather, ZOO, published};
 

@@ -1,6 +1,6 @@
 //! Forces that a ship's law does not have.
 
-use sistership_dynamics::state::{StateVector, at, straight};
+use sistership_simulation::state::{StateVector, at, straight};
 
 use super::super::motion::Truth;
 use super::depth::Depth;

@@ -3,10 +3,10 @@
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::Method;
-use sistership_dynamics::state::{StateVector, Trajectory, at, straight};
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
+use sistership_simulation::Method;
+use sistership_simulation::state::{StateVector, Trajectory, at, straight};
 
 use super::super::instruments::Instruments;
 use super::super::manoeuvre::{APPROACH, Helm, Manoeuvre};

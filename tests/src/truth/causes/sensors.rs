@@ -1,6 +1,6 @@
 //! Errors of instruments: what they indicate of a true track.
 
-use sistership_dynamics::state::{StateVector, Trajectory, at};
+use sistership_simulation::state::{StateVector, Trajectory, at};
 
 use super::super::motion::STEP_S;
 

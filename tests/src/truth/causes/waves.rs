@@ -2,7 +2,7 @@
 //! sin^2` of the angle between wave and wall on each metre, the momentum of the wave that is turned
 //! back. Here for a waterline of straight sides and blunt ends.
 
-use sistership_dynamics::state::{StateVector, at};
+use sistership_simulation::state::{StateVector, at};
 
 use super::super::dimensions::{Dimensions, GRAVITY};
 

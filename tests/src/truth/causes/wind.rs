@@ -1,6 +1,6 @@
 //! A wind of steady strength and direction with gusts, by either of two authors.
 
-use sistership_dynamics::state::{StateVector, at};
+use sistership_simulation::state::{StateVector, at};
 
 use super::super::dimensions::Dimensions;
 use super::{blendermann, isherwood};

@@ -1,8 +1,8 @@
 //! A craft: hulls, devices, engine, steering gear, roll and windage under one set of equations of
 //! motion.
 
-use sistership_dynamics::StateVector;
-use sistership_dynamics::state::at;
+use sistership_simulation::StateVector;
+use sistership_simulation::state::at;
 
 use super::devices::{Load, Unit};
 use super::engine::{Engine, Rating};

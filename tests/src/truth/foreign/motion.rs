@@ -1,7 +1,7 @@
 //! State and orders of a craft.
 
-use sistership_dynamics::StateVector;
-use sistership_dynamics::state::{at, straight};
+use sistership_simulation::StateVector;
+use sistership_simulation::state::{at, straight};
 
 /// Shafts of a craft at most.
 pub const SHAFTS: usize = 2;

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
-use sistership_dynamics::state::{RECORDED, at};
 use sistership_model::trial::Channel;
+use sistership_simulation::state::{RECORDED, at};
 
 use super::craft::Craft;
 use super::motion::Motion;

@@ -1,7 +1,7 @@
 //! Simulation of a craft: manoeuvres by the helm, and runs with the propeller stopped or reversed.
 
-use sistership_dynamics::metrics::TurningMetrics;
-use sistership_dynamics::state::{StateVector, Trajectory, at};
+use sistership_simulation::metrics::TurningMetrics;
+use sistership_simulation::state::{StateVector, Trajectory, at};
 
 use super::craft::Craft;
 use super::motion::{Motion, Orders, SHAFTS};

@@ -1,0 +1,101 @@
+//! All that is known for and against one model.
+
+use serde::Serialize;
+use sistership_model::law::Law;
+use sistership_model::vessel::Status;
+use sistership_model::{FileError, Model, Vessel, Zoo};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::metrics::TurningMetrics;
+use sistership_simulation::{PlantError, Ship};
+
+use crate::validation::comparison::{Comparison, compare};
+use crate::validation::standing::Standing;
+
+/// A model's standard manoeuvres, the published trials of its ship, and what follows.
+#[derive(Debug, Clone, Serialize)]
+pub struct Appraisal {
+    /// `ship/model`.
+    pub model: String,
+    /// The law of motion.
+    pub law: String,
+    /// Where its figures come from.
+    pub origin: Status,
+    /// What it is worth.
+    pub standing: Standing,
+    /// Length between perpendiculars, m.
+    pub lpp_m: f64,
+    /// Approach speed, m/s.
+    pub speed_m_s: f64,
+    /// Keys of the sources of its coefficients and parameters.
+    pub sources: Vec<String>,
+    /// Every published figure beside the model's.
+    pub comparisons: Vec<Comparison>,
+    /// The standard manoeuvres.
+    pub manoeuvres: StandardManoeuvres,
+}
+
+impl Appraisal {
+    /// A length of the turn to starboard, in ship lengths.
+    pub fn turn_lengths(&self, of: impl Fn(&TurningMetrics) -> Option<f64>) -> Option<f64> {
+        let starboard = self.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0)?;
+        Some(of(starboard)? / self.lpp_m)
+    }
+
+    /// The first overshoot of the zigzag that begins to starboard with this rudder, deg.
+    pub fn first_overshoot_deg(&self, rudder_deg: f64) -> Option<f64> {
+        let mut zigzags = self.manoeuvres.zigzags.iter();
+        zigzags.find(|zigzag| zigzag.rudder_deg == rudder_deg)?.first_overshoot_deg
+    }
+}
+
+/// Sails a model's standard manoeuvres and those of its ship's published trials.
+///
+/// # Errors
+/// Names what the model does not give.
+pub fn appraise(vessel: &Vessel, model: &Model, law: &Law) -> Result<Appraisal, PlantError> {
+    let ship = Ship::new(model, law)?;
+    let comparisons = compare(&ship, &vessel.file.free_running);
+    Ok(Appraisal {
+        model: model.name.clone(),
+        law: model.law.clone(),
+        origin: model.status,
+        standing: Standing::of(model.status, &comparisons),
+        lpp_m: ship.lpp_m(),
+        speed_m_s: ship.approach_speed_m_s(),
+        sources: sources(model),
+        comparisons,
+        manoeuvres: standard(&ship, &ManoeuvreSettings::default()),
+    })
+}
+
+/// Appraises every model of a vessel.
+///
+/// # Errors
+/// Names the model and what it does not give.
+pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<Appraisal>, FileError> {
+    let one = |name: &str| {
+        let model = zoo.published(vessel, Some(name))?;
+        let refused = |message: String| FileError {
+            file: vessel.name().to_owned(),
+            line: None,
+            field: format!("models.{name}"),
+            message,
+            further: Vec::new(),
+        };
+        let law = zoo.law(&model.law).ok_or_else(|| refused("its law is missing".into()))?;
+        appraise(vessel, &model, law).map_err(|error| refused(error.to_string()))
+    };
+    vessel.file.models.iter().map(|model| one(&model.name)).collect()
+}
+
+/// The sources of coefficients and parameters that are in the vessel's list.
+fn sources(model: &Model) -> Vec<String> {
+    let values = model.coefficients.values().chain(model.parameters.values());
+    let mut keys: Vec<String> = values
+        .map(|quantity| quantity.source.clone())
+        .filter(|key| model.sources.contains_key(key))
+        .collect();
+    keys.sort();
+    keys.dedup();
+    keys
+}

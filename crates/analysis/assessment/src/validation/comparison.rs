@@ -1,0 +1,147 @@
+//! A model's manoeuvres beside published ones.
+
+use serde::Serialize;
+use sistership_model::free_running::{FreeRunning, PublishedTurn, PublishedZigzag};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+
+use crate::validation::limits::{OVERSHOOT_DEG, OVERSHOOT_SHARE, TURN_SHARE};
+
+/// One published figure, and what a model makes of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The figure: `turn 35 deg: advance`.
+    pub figure: String,
+    /// `L` for ship lengths, or `deg`.
+    pub unit: &'static str,
+    /// Key of the source.
+    pub source: String,
+    /// As published.
+    pub published: f64,
+    /// Half the width of its 95 % interval.
+    pub uncertainty: f64,
+    /// As the model sails it; absent where it does not get so far.
+    pub sailed: Option<f64>,
+    /// The difference that is allowed.
+    pub limit: f64,
+}
+
+impl Comparison {
+    /// The model's figure less the published one.
+    pub fn error(&self) -> Option<f64> {
+        self.sailed.map(|sailed| sailed - self.published)
+    }
+
+    /// Whether the model is within the limit; one that does not get so far is not.
+    pub fn is_within(&self) -> bool {
+        self.error().is_some_and(|error| error.abs() <= self.limit)
+    }
+}
+
+/// Sails what was published, at the published speed, and sets the figures side by side.
+pub fn compare(ship: &Ship, trials: &[FreeRunning]) -> Vec<Comparison> {
+    compare_at(ship, trials, 1.0)
+}
+
+/// The same with steps of so many times the usual ones.
+pub(crate) fn compare_at(ship: &Ship, trials: &[FreeRunning], steps: f64) -> Vec<Comparison> {
+    trials.iter().flat_map(|trial| of_trial(ship, trial, steps)).collect()
+}
+
+fn of_trial(ship: &Ship, trial: &FreeRunning, steps: f64) -> Vec<Comparison> {
+    let usual = ManoeuvreSettings {
+        speed_m_s: trial.speed_m_s,
+        reversals_within_steps: true,
+        ..ManoeuvreSettings::default()
+    };
+    // The usual step stays what it is where nothing else is asked for.
+    let step_s = (steps != 1.0).then(|| steps * usual.step(ship));
+    let settings = ManoeuvreSettings { step_s, ..usual };
+    let turns = trial.turns.iter().flat_map(|published| {
+        let sailed = sides(published.rudder_deg, published.both_sides, |rudder| {
+            turn_figures(ship, rudder, &settings)
+        });
+        turn_comparisons(&trial.source, published, sailed)
+    });
+    let zigzags = trial.zigzags.iter().flat_map(|published| {
+        let sailed = sides(published.rudder_deg, published.both_sides, |rudder| {
+            zigzag_figures(ship, rudder, published.switch_deg, &settings)
+        });
+        zigzag_comparisons(&trial.source, published, sailed)
+    });
+    turns.chain(zigzags).collect()
+}
+
+/// Figures of a manoeuvre, or their means over both sides.
+fn sides<const N: usize>(
+    rudder_deg: f64,
+    both: bool,
+    sail: impl Fn(f64) -> [Option<f64>; N],
+) -> [Option<f64>; N] {
+    let one = sail(rudder_deg);
+    if !both {
+        return one;
+    }
+    let other = sail(-rudder_deg);
+    std::array::from_fn(|k| Some(0.5 * (one[k]? + other[k]?)))
+}
+
+fn turn_figures(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> [Option<f64>; 4] {
+    let Ok(sailed) = turn(ship, rudder_deg, settings) else { return [None; 4] };
+    let of = sailed.metrics;
+    [of.advance_m, of.transfer_m, of.tactical_diameter_m, of.steady_radius_m]
+        .map(|figure| figure.map(|metres| metres / ship.lpp_m()))
+}
+
+fn zigzag_figures(
+    ship: &Ship,
+    rudder_deg: f64,
+    switch_deg: f64,
+    settings: &ManoeuvreSettings,
+) -> [Option<f64>; 2] {
+    match zigzag(ship, rudder_deg, switch_deg, settings) {
+        Ok(sailed) => [sailed.metrics.first_overshoot_deg, sailed.metrics.second_overshoot_deg],
+        Err(_) => [None; 2],
+    }
+}
+
+fn turn_comparisons(
+    source: &str,
+    turn: &PublishedTurn,
+    sailed: [Option<f64>; 4],
+) -> Vec<Comparison> {
+    let one = |((name, published), sailed): ((&str, Option<f64>), Option<f64>)| {
+        let published = published?;
+        Some(Comparison {
+            figure: format!("turn {} deg: {name}", turn.rudder_deg),
+            unit: "L",
+            source: source.to_owned(),
+            published,
+            uncertainty: turn.uncertainty,
+            sailed,
+            limit: TURN_SHARE * published.abs() + turn.uncertainty,
+        })
+    };
+    turn.figures().into_iter().zip(sailed).filter_map(one).collect()
+}
+
+fn zigzag_comparisons(
+    source: &str,
+    zigzag: &PublishedZigzag,
+    sailed: [Option<f64>; 2],
+) -> Vec<Comparison> {
+    let one = |((name, published), sailed): ((&str, Option<f64>), Option<f64>)| {
+        let published = published?;
+        let allowed = OVERSHOOT_DEG.max(OVERSHOOT_SHARE * published.abs());
+        Some(Comparison {
+            figure: format!("zigzag {}/{}: {name}", zigzag.rudder_deg, zigzag.switch_deg),
+            unit: "deg",
+            source: source.to_owned(),
+            published,
+            uncertainty: zigzag.uncertainty_deg,
+            sailed,
+            limit: allowed + zigzag.uncertainty_deg,
+        })
+    };
+    zigzag.figures().into_iter().zip(sailed).filter_map(one).collect()
+}

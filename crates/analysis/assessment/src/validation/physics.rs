@@ -1,0 +1,150 @@
+//! What every ship does, whatever its law: it keeps its course, slows down when driven too fast,
+//! turns to the side of its rudder, loses speed in the turn, and does so nearly alike on both
+//! sides.
+
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, Sailed, sail_together};
+use sistership_simulation::metrics::TurningMetrics;
+use sistership_simulation::state::{at, speed};
+
+use crate::validation::appraisal::Appraisal;
+use crate::validation::finding::Finding;
+use crate::validation::limits::{
+    FIRST_OVERSHOOTS_DEG, HEADING_KEPT_DEG, SIDES_SHARE, SPEED_KEPT_SHARE, TACTICAL_DIAMETERS,
+};
+
+/// How far the straight runs go, ship lengths.
+const STRAIGHT_LENGTHS: f64 = 10.0;
+
+/// Checks a model by physics; `appraisal` has its standard manoeuvres.
+pub fn check(ship: &Ship, appraisal: &Appraisal) -> Vec<Finding> {
+    let about = format!("models.{}", short(&appraisal.model));
+    let failures = appraisal.manoeuvres.failures.iter();
+    let mut found: Vec<Finding> = failures
+        .map(|failure| Finding::refused(&about, format!("does not sail: {failure}")))
+        .collect();
+    found.extend(straight(ship, &about));
+    found.extend(drag(ship, &about));
+    found.extend(appraisal.manoeuvres.turns.iter().flat_map(|turn| turning(ship, turn, &about)));
+    found.extend(sides(&appraisal.manoeuvres.turns, &about));
+    found.extend(overshoots(appraisal, &about));
+    found
+}
+
+fn short(model: &str) -> &str {
+    model.split_once('/').map_or(model, |(_, name)| name)
+}
+
+/// A run with the rudder amidships at the model's own revolutions, from a share of its speed.
+fn run(ship: &Ship, share_of_speed: f64) -> Result<Sailed, String> {
+    let own = ship.approach_speed_m_s();
+    let settings = ManoeuvreSettings {
+        speed_m_s: Some(share_of_speed * own),
+        n_rps: Some(ship.revolutions_at(own)),
+        duration_s: Some(STRAIGHT_LENGTHS * ship.lpp_m() / own),
+        ..ManoeuvreSettings::default()
+    };
+    let ahead = (Manoeuvre::Turn { rudder: 0.0 }, &[][..]);
+    sail_together(ship, &[ahead], &settings).remove(0).map_err(|stopped| stopped.to_string())
+}
+
+fn straight(ship: &Ship, about: &str) -> Vec<Finding> {
+    let sailed = match run(ship, 1.0) {
+        Ok(sailed) => sailed,
+        Err(stopped) => return vec![Finding::refused(about, format!("straight on: {stopped}"))],
+    };
+    let Some(last) = sailed.after.last() else { return Vec::new() };
+    let own = ship.approach_speed_m_s();
+    let mut found = Vec::new();
+    let changed = speed(last) / own - 1.0;
+    if changed.abs() > SPEED_KEPT_SHARE {
+        let message = format!(
+            "with the rudder amidships the speed changes by {:.0} % in {STRAIGHT_LENGTHS} lengths: \
+             do revolutions, thrust and resistance balance at {own} m/s?",
+            100.0 * changed
+        );
+        found.push(Finding::look(about, message));
+    }
+    let turned = last[at::PSI].to_degrees();
+    if turned.abs() > HEADING_KEPT_DEG {
+        let message = format!(
+            "with the rudder amidships the heading changes by {turned:.1} deg in \
+             {STRAIGHT_LENGTHS} lengths: is that meant?"
+        );
+        found.push(Finding::look(about, message));
+    }
+    found
+}
+
+/// Above its own speed, at its own revolutions, a ship slows down.
+fn drag(ship: &Ship, about: &str) -> Option<Finding> {
+    let fast = run(ship, 1.1).ok()?;
+    let slow = run(ship, 0.9).ok()?;
+    let ended = |sailed: &Sailed| sailed.after.last().map(speed);
+    let (from_fast, from_slow) = (ended(&fast)?, ended(&slow)?);
+    let own = ship.approach_speed_m_s();
+    let apart = from_fast - from_slow;
+    if from_fast.is_finite() && apart < 0.2 * own * 0.999 {
+        return None;
+    }
+    let message = format!(
+        "runs begun at 1.1 and 0.9 of {own} m/s are {apart:.3} m/s apart after {STRAIGHT_LENGTHS} \
+         lengths: resistance does not grow with speed (is X_u of the right sign?)"
+    );
+    Some(Finding::refused(about, message))
+}
+
+fn turning(ship: &Ship, turn: &TurningMetrics, about: &str) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let name = format!("turn {} deg", turn.rudder_deg);
+    match turn.tactical_diameter_m {
+        None => found.push(Finding::refused(
+            about,
+            format!(
+                "{name}: the heading does not change by 180 deg to the side of the rudder; \
+                     is `rudder_positive` right?"
+            ),
+        )),
+        Some(diameter) => {
+            let lengths = diameter / ship.lpp_m();
+            if !TACTICAL_DIAMETERS.contains(&lengths) {
+                let message = format!("{name}: tactical diameter {lengths:.2} L");
+                found.push(Finding::look(about, message));
+            }
+        }
+    }
+    if turn.speed_loss_m_s < 0.0 {
+        let message = format!("{name}: the ship gains {:.3} m/s in the turn", -turn.speed_loss_m_s);
+        found.push(Finding::refused(about, message));
+    }
+    found
+}
+
+fn sides(turns: &[TurningMetrics], about: &str) -> Option<Finding> {
+    let diameter = |starboard: bool| {
+        let side = |turn: &&TurningMetrics| (turn.rudder_deg > 0.0) == starboard;
+        turns.iter().find(side)?.tactical_diameter_m
+    };
+    let (starboard, port) = (diameter(true)?, diameter(false)?);
+    let apart = (starboard - port).abs() / (0.5 * (starboard + port));
+    (apart > SIDES_SHARE).then(|| {
+        let message = format!(
+            "tactical diameter {starboard:.1} m to starboard, {port:.1} m to port: {:.0} % apart",
+            100.0 * apart
+        );
+        Finding::look(about, message)
+    })
+}
+
+fn overshoots(appraisal: &Appraisal, about: &str) -> Vec<Finding> {
+    let odd = |zigzag: &&sistership_simulation::metrics::ZigzagMetrics| {
+        zigzag.first_overshoot_deg.is_none_or(|angle| !FIRST_OVERSHOOTS_DEG.contains(&angle))
+    };
+    let said = |zigzag: &sistership_simulation::metrics::ZigzagMetrics| {
+        let angle =
+            zigzag.first_overshoot_deg.map_or("none".into(), |angle| format!("{angle:.1} deg"));
+        let name = format!("zigzag {}/{}", zigzag.rudder_deg, zigzag.switch_deg);
+        Finding::look(about, format!("{name}: first overshoot {angle}"))
+    };
+    appraisal.manoeuvres.zigzags.iter().filter(odd).map(said).collect()
+}

@@ -1,0 +1,45 @@
+//! Quantities of published free-running trials.
+
+use sistership_model::free_running::FreeRunning;
+use sistership_simulation::Ship;
+
+use crate::validation::comparison::{Comparison, compare_at};
+use crate::validation::convergence::step_uncertainty;
+use crate::validation::quantity::{Evidence, NORMAL_95, mean_and_spread};
+
+/// Steps of draws by the usual ones: their scatter needs no finer ones.
+const STEPS_OF_DRAWS: f64 = 2.5;
+
+/// What is known of every published figure; `draws` are sisters from the model's posterior.
+pub fn evidence(ship: &Ship, draws: &[Ship], trials: &[FreeRunning]) -> Vec<Evidence> {
+    let by_step = [1.0, 2.0, 4.0].map(|steps| compare_at(ship, trials, steps));
+    let by_draw: Vec<Vec<Comparison>> =
+        draws.iter().map(|draw| compare_at(draw, trials, STEPS_OF_DRAWS)).collect();
+    let one = |(k, figure): (usize, &Comparison)| {
+        let steps = by_step.each_ref().map(|all| all[k].sailed);
+        let step_uncertainty = match steps {
+            [Some(fine), Some(medium), Some(coarse)] => step_uncertainty([fine, medium, coarse]),
+            _ => None,
+        };
+        let drawn: Vec<Option<f64>> = by_draw.iter().map(|all| all[k].sailed).collect();
+        Evidence {
+            quantity: figure.figure.clone(),
+            unit: figure.unit,
+            data_from: figure.source.clone(),
+            records: None,
+            data: figure.published,
+            simulated: figure.sailed,
+            data_uncertainty: Some(figure.uncertainty),
+            step_uncertainty,
+            input_uncertainty: scatter(&drawn),
+        }
+    };
+    by_step[0].iter().enumerate().map(one).collect()
+}
+
+/// Half the width of 95 % of what draws give; none where there are none, or one does not get so
+/// far.
+pub fn scatter(drawn: &[Option<f64>]) -> Option<f64> {
+    let all: Option<Vec<f64>> = drawn.iter().copied().collect();
+    mean_and_spread(&all?).map(|(_, spread)| NORMAL_95 * spread)
+}

@@ -1,0 +1,100 @@
+//! What a reviewer of a contributed ship should know.
+
+use serde::Serialize;
+use sistership_model::{FileError, Vessel, Zoo};
+use sistership_simulation::Ship;
+
+use crate::validation::appraisal::{Appraisal, appraise_vessel};
+use crate::validation::finding::{Finding, Severity};
+use crate::validation::{particulars, physics};
+
+/// A contributed ship: what was found, and how its models sail.
+#[derive(Debug, Clone, Serialize)]
+pub struct Review {
+    /// The ship.
+    pub ship: String,
+    /// One line for people.
+    pub title: String,
+    /// Worst first.
+    pub findings: Vec<Finding>,
+    /// Its models.
+    pub models: Vec<Appraisal>,
+}
+
+impl Review {
+    /// Whether the file can be taken.
+    pub fn is_taken(&self) -> bool {
+        self.findings.iter().all(|finding| finding.severity != Severity::Refused)
+    }
+}
+
+/// Checks a vessel that reads: its particulars, its sources, and each model by physics.
+///
+/// # Errors
+/// Names the model that does not fit its law.
+pub fn review(zoo: &Zoo, vessel: &Vessel) -> Result<Review, FileError> {
+    let models = appraise_vessel(zoo, vessel)?;
+    let mut findings = particulars::check(vessel);
+    findings.extend(sources(vessel));
+    findings.extend(already_there(zoo, vessel));
+    for appraisal in &models {
+        findings.extend(by_physics(zoo, appraisal, vessel)?);
+        findings.extend(missed(appraisal));
+    }
+    findings.sort();
+    Ok(Review {
+        ship: vessel.name().to_owned(),
+        title: vessel.file.title.clone(),
+        findings,
+        models,
+    })
+}
+
+fn by_physics(
+    zoo: &Zoo,
+    appraisal: &Appraisal,
+    vessel: &Vessel,
+) -> Result<Vec<Finding>, FileError> {
+    let name = appraisal.model.split_once('/').map(|(_, name)| name);
+    let model = zoo.published(vessel, name)?;
+    let ship = zoo.law(&model.law).and_then(|law| Ship::new(&model, law).ok());
+    Ok(ship.map_or_else(Vec::new, |ship| physics::check(&ship, appraisal)))
+}
+
+/// Each source says where it can be found, and on what terms.
+fn sources(vessel: &Vessel) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for (key, source) in &vessel.file.sources {
+        let about = format!("sources.{key}");
+        let traced = source.doi.is_some() || source.citation.contains("github.com");
+        if !traced {
+            let message = "has neither a DOI nor a repository: can it be found?";
+            found.push(Finding::look(&about, message));
+        }
+        if source.citation.contains("github.com") && !vessel.file.licences.contains_key(key) {
+            found.push(Finding::look(&about, "`licences` does not say on what terms it stands"));
+        }
+    }
+    found
+}
+
+fn already_there(zoo: &Zoo, vessel: &Vessel) -> Option<Finding> {
+    zoo.vessel(vessel.name()).map(|known| {
+        let message = format!("the zoo has a ship of this name: {}", known.file.title);
+        Finding::look("name", message)
+    })
+}
+
+/// Published trials that a model does not meet.
+fn missed(appraisal: &Appraisal) -> Vec<Finding> {
+    let said = |missed: &crate::validation::Comparison| {
+        let sailed = missed.sailed.map_or("nothing".to_owned(), |value| format!("{value:.2}"));
+        let message = format!(
+            "{}: sails {sailed} {}, published {:.2} (allowed {:.2})",
+            missed.figure, missed.unit, missed.published, missed.limit
+        );
+        let name = appraisal.model.split_once('/').map_or("", |(_, name)| name);
+        Finding::look(format!("models.{name}"), message)
+    };
+    appraisal.comparisons.iter().filter(|one| !one.is_within()).map(said).collect()
+}

@@ -1,0 +1,44 @@
+//! A simulated track as a trial that nobody has sailed yet.
+
+use sistership_model::Trial;
+use sistership_model::trial::Channel;
+use sistership_simulation::Trajectory;
+use sistership_simulation::instruments::THROUGH_WATER;
+use sistership_simulation::state::{RECORDED, at};
+
+/// A track begun at a heading (rad), with the channels and the interval of a trial that it is to be
+/// like, without noise; the wind and the like are as they were in that one's middle.
+pub fn as_recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
+    let step_s = track.t_s.get(1).copied().unwrap_or(1.0);
+    let stride = (like.interval_s() / step_s).round().max(1.0) as usize;
+    let every = |values: Vec<f64>| values.into_iter().step_by(stride).collect::<Vec<f64>>();
+    let (sin, cos) = heading_rad.sin_cos();
+    let (x, y) = (track.column(at::X), track.column(at::Y));
+    let turned = |channel: Channel, index: usize| match channel {
+        Channel::X => x.iter().zip(&y).map(|(x, y)| x * cos - y * sin).collect(),
+        Channel::Y => x.iter().zip(&y).map(|(x, y)| x * sin + y * cos).collect(),
+        Channel::Psi => track.column(index).into_iter().map(|psi| psi + heading_rad).collect(),
+        _ => track.column(index),
+    };
+    let mut trial = Trial {
+        name: "planned".into(),
+        velocity: like.velocity,
+        depth_m: like.depth_m,
+        ..Trial::default()
+    };
+    trial.t_s = every(track.t_s.clone());
+    let count = trial.t_s.len();
+    for (&channel, values) in &like.channels {
+        let constant = values.get(values.len() / 2).copied().unwrap_or_default();
+        trial.channels.insert(channel, vec![constant; count]);
+    }
+    let moving = RECORDED.iter().chain(&THROUGH_WATER);
+    for &(channel, index) in moving.filter(|(channel, _)| like.channel(*channel).is_some()) {
+        trial.channels.insert(channel, every(turned(channel, index)));
+    }
+    trial.channels.insert(Channel::Delta, every(track.column(at::DELTA)));
+    if like.channel(Channel::N).is_some() {
+        trial.channels.insert(Channel::N, every(track.n_rps.clone()));
+    }
+    trial
+}

@@ -1,0 +1,66 @@
+//! What effects would explain of trials that do not have them.
+//!
+//! The discrepancy is a random motion; what a law cannot follow is not, and an effect that
+//! resembles it would be believed. How often that is so is measured: on each clean trial, under
+//! coefficients fitted on the others, and on all together.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use sistership_model::uncertainty::FalseAlarmLevel;
+
+use super::super::coefficient_prior::CoefficientPrior;
+use super::super::evidence::{MarginalInformation, NormalPrior};
+use super::super::hypothesis::priors;
+use super::super::linearised_trials::LinearisedTrials;
+use super::super::thresholds::THRESHOLDS;
+use super::trial_information::TrialInformation;
+use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
+
+/// By `effect/form`.
+///
+/// # Errors
+/// Says that the information is not positive.
+pub(super) fn levels(
+    workspace: &LinearisedTrials<'_>,
+    (known, but_one): (&TrialInformation<'_>, &[CoefficientPrior]),
+    candidates: &[EffectCandidate],
+) -> Result<BTreeMap<String, FalseAlarmLevel>, RefineError> {
+    let size = known.fixed.weighted_mean.len();
+    let columns: Vec<usize> =
+        candidates.iter().flat_map(|candidate| workspace.columns().showing(candidate)).collect();
+    let places: Vec<usize> = (0..size).chain(columns).collect();
+    let alone = |trial: usize| {
+        MarginalInformation::new(&known.grams[trial].select(&places), &but_one[trial])
+    };
+    let single: Vec<MarginalInformation> =
+        (0..known.grams.len()).into_par_iter().map(alone).collect::<Result<_, _>>()?;
+    let Some(total) = single.iter().cloned().reduce(MarginalInformation::plus) else {
+        return Ok(BTreeMap::new());
+    };
+    let mut first = 0;
+    let mut of = |candidate: &EffectCandidate| {
+        let columns: Vec<usize> = (first..first + candidate.at.len()).collect();
+        first += candidate.at.len();
+        let fixing: Vec<NormalPrior> = priors(candidate);
+        let each = ratio(single.iter(), &columns, &fixing);
+        let together = ratio(std::iter::once(&total), &columns, &fixing);
+        let rounded = |x: f64| {
+            (THRESHOLDS.calibration.rounding * x).round() / THRESHOLDS.calibration.rounding
+        };
+        (candidate.key(), FalseAlarmLevel { each: rounded(each), together: rounded(together) })
+    };
+    Ok(candidates.iter().map(&mut of).collect())
+}
+
+/// Explained by what chance explains; one where no trial says anything of the effect.
+fn ratio<'a>(
+    reduced: impl Iterator<Item = &'a MarginalInformation>,
+    columns: &[usize],
+    fixing: &[NormalPrior],
+) -> f64 {
+    let parts = reduced.filter_map(|reduced| reduced.explained(columns, fixing));
+    let (explained, chance) = parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    if chance > THRESHOLDS.calibration.least_chance { explained / chance } else { 1.0 }
+}

@@ -1,0 +1,66 @@
+//! What instruments do wrong on the trials that a model was fitted on. Later trials are read by the
+//! same ones: an error that was there before is not new, and left alone it would hide what is.
+
+use std::sync::Arc;
+
+use sistership_model::effect::{ActsOn, AppliedEffect};
+use sistership_model::law::Law;
+use sistership_model::uncertainty::Uncertainty;
+use sistership_model::{Effect, Model, Trial};
+
+use super::super::choose::choose;
+use super::super::screening::screen;
+use super::super::search::HypothesisSearch;
+use super::super::setup::search;
+use super::super::thresholds::THRESHOLDS;
+use super::super::values::{acts_on, model_with};
+use super::super::{Request, Settings};
+use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
+
+/// Errors of instruments that have one size on all trials; none where the instruments agree.
+pub(super) fn of(
+    model: &Model,
+    known: &Uncertainty,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    (trials, economical): (&[&Trial], bool),
+) -> Result<Vec<AppliedEffect>, RefineError> {
+    // False-alarm levels are not yet to be asked: an effect may be there.
+    let known = Uncertainty { false_alarm_levels: Default::default(), ..known.clone() };
+    let model = Model { uncertainty: Some(known), ..model.clone() };
+    let settings = Settings {
+        least_evidence: THRESHOLDS.calibration.systematic_error_evidence,
+        ..Settings::default()
+    };
+    let request = Request { model: &model, law, effects, trials, settings: &settings };
+    let mut search = search(&request)?;
+    search.freed.clear();
+    // What could not be shown here is nobody's question.
+    search.states_odds = false;
+    search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
+    let seeming = seeming(&search)?;
+    if seeming.is_empty() {
+        return Ok(Vec::new());
+    }
+    if economical {
+        search.listed = seeming;
+    }
+    let base = search.base(&[], &search.levels)?;
+    let choice = choose(&search, &base, &settings)?;
+    Ok(model_with(search.model, &choice.best().candidates, None)
+        .effects
+        .split_off(model.effects.len()))
+}
+
+/// Errors that seem to be there by one linearisation, at the discrepancy that the trials have: most
+/// instruments agree, and a search over sets and levels would find so at ten times the cost.
+fn seeming(search: &HypothesisSearch<'_>) -> Result<Vec<EffectCandidate>, RefineError> {
+    // At the least level, that of the trials themselves, an error has the most evidence.
+    let least_level = search.levels.iter().min_by(|a, b| a.factor.total_cmp(&b.factor)).copied();
+    let base = search.base(&[], least_level.as_slice())?;
+    let least =
+        THRESHOLDS.calibration.seeming_share * THRESHOLDS.calibration.systematic_error_evidence;
+    let seeming = screen(search, &base)?.into_iter().filter(|likely| likely.discounted >= least);
+    Ok(seeming.map(|likely| likely.candidate).collect())
+}

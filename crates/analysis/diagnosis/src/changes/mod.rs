@@ -1,0 +1,121 @@
+//! Changes in time: where a trial leaves something unexplained, the effect that begins, ends or
+//! drifts within it, or that this trial alone has.
+//!
+//! A trial is cut into stretches, and the columns of each effect with it: sums of stretches are the
+//! columns of the effect in any window of time, so that one filtering of the trial weighs all of
+//! them. Coefficients and the effects that are there already may give way as far as all that is
+//! known of them allows.
+
+mod of_trial;
+mod source;
+mod windows;
+
+use std::collections::BTreeMap;
+
+use super::hypothesis::JudgedHypothesis;
+use super::outcome::{Change, ChangeCourse, Unexplained};
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
+
+use of_trial::ChangeSearch;
+
+/// The changes of one effect that explain what remains, the most evident first: of the effect that
+/// explains most trials by the most evidence. Where it explains fewer than half of those that leave
+/// something, nothing is told: what explains one trial here and another there only resembles what
+/// is missing; nor where it is there throughout most trials, in another size in each. Of many such
+/// trials those are asked that leave most. `listed` are the effects that were tried, also those
+/// that were refused because they are not the same at all times.
+///
+/// # Errors
+/// Names what a trial lacks.
+pub(super) fn changes(
+    (search, best, listed): (&HypothesisSearch<'_>, &JudgedHypothesis, &[EffectCandidate]),
+    remaining: &[Unexplained],
+    least_evidence: f64,
+) -> Result<Vec<Change>, RefineError> {
+    if remaining.is_empty() {
+        return Ok(Vec::new());
+    }
+    let workspace = search.workspace(columns(search, best, listed))?;
+    let changing = ChangeSearch::new(search, best, &workspace);
+    let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
+    let asked: Vec<usize> = open(remaining).iter().filter_map(place).collect();
+    let asked = &asked[..asked.len().min(THRESHOLDS.changes.asked)];
+    let found = common(in_turn(&changing, asked, least_evidence)?, least_evidence);
+    let whole = found.iter().filter(|change| change.course == ChangeCourse::Throughout).count();
+    let is_change = whole as f64 <= THRESHOLDS.changes.throughout * workspace.trials.len() as f64;
+    Ok(if is_change { found } else { Vec::new() })
+}
+
+/// Trials that leave something, those first that leave most.
+pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for stretch in remaining {
+        if !names.contains(&stretch.trial) {
+            names.push(stretch.trial.clone());
+        }
+    }
+    names
+}
+
+/// The changes that explain each trial, of effects that may still explain enough of them.
+fn in_turn(
+    changing: &ChangeSearch<'_, '_>,
+    asked: &[usize],
+    least: f64,
+) -> Result<Vec<Vec<Change>>, RefineError> {
+    let mut each: Vec<Vec<Change>> = Vec::new();
+    for &place in asked {
+        let to_come = asked.len() - each.len();
+        let explained = |effect: &str| {
+            let of_effect = |changes: &&Vec<Change>| changes.iter().any(|one| one.effect == effect);
+            each.iter().filter(of_effect).count()
+        };
+        let may_be = |effect: &str| is_enough(explained(effect) + to_come, asked.len());
+        each.push(changing.of_trial(place, least, &may_be)?);
+    }
+    Ok(each)
+}
+
+/// Whether the changes of an effect explain enough of the trials.
+fn is_enough(trials: usize, of: usize) -> bool {
+    trials as f64 >= THRESHOLDS.changes.trials * of as f64
+}
+
+/// Of the changes that explain each trial, those of the effect that is taken.
+fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
+    let mut effects: BTreeMap<String, (usize, f64)> = BTreeMap::new();
+    for change in each.iter().flatten() {
+        let (trials, evidence) = effects.entry(change.effect.clone()).or_default();
+        (*trials, *evidence) = (*trials + 1, *evidence + change.evidence);
+    }
+    let taken = effects.iter().max_by(|a, b| a.1.0.cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
+    let Some((effect, &(trials, evidence))) = taken else { return Vec::new() };
+    if !is_enough(trials, each.len()) {
+        return Vec::new();
+    }
+    let is_near = |(name, (of, own)): &(&String, &(usize, f64))| {
+        *name != effect && *of == trials && evidence - own < least_evidence * trials as f64
+    };
+    let or: Vec<String> = effects.iter().filter(is_near).map(|(name, _)| name.clone()).collect();
+    let of_taken = each.into_iter().flatten().filter(|change| change.effect == *effect);
+    let mut found: Vec<Change> =
+        of_taken.map(|change| Change { or: or.clone(), ..change }).collect();
+    found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    found
+}
+
+/// The effects that are there, where they stand, and all others at their absence.
+fn columns(
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+    listed: &[EffectCandidate],
+) -> Vec<EffectCandidate> {
+    let is_other = |candidate: &&EffectCandidate| {
+        !best.candidates.iter().any(|taken| taken.effect == candidate.effect)
+    };
+    let others = listed.iter().filter(is_other).chain(&search.changing);
+    best.candidates.iter().chain(others).cloned().collect()
+}

@@ -1,0 +1,352 @@
+//! The changes that explain a trial.
+
+use std::collections::BTreeSet;
+use std::ops::AddAssign;
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::super::coefficient_prior::CoefficientPrior;
+use super::super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive};
+use super::super::hypothesis::JudgedHypothesis;
+use super::super::linearised_trials::LinearisedTrials;
+use super::super::misfit::{of_shape, shadow_share};
+use super::super::outcome::{Change, ChangeCourse, Unexplained};
+use super::super::remainder::in_trial;
+use super::super::search::HypothesisSearch;
+use super::super::values::values;
+use sistership_filtering::{Discrepancies, EffectCandidate, Gram, Linearised, whitened};
+use sistership_identification::refine::RefineError;
+
+use super::source::{ChangeSource, sources};
+use super::windows::{Stretches, Window, interval};
+
+/// What is the same for all trials.
+pub(super) struct ChangeSearch<'s, 'a> {
+    search: &'s HypothesisSearch<'a>,
+    workspace: &'s LinearisedTrials<'a>,
+    discrepancies: Discrepancies,
+    sources: Vec<ChangeSource>,
+    /// Columns that are there beside a change: of coefficients, and of the effects taken.
+    kept: Vec<usize>,
+    /// What the other trials say of the effects taken.
+    taken: Vec<NormalPrior>,
+    /// What the laws of the effects taken leave open, by their columns.
+    open: Vec<f64>,
+}
+
+/// Columns of a trial that are there beside any change, through the filter.
+struct KeptColumns {
+    place: usize,
+    /// Residual and columns by readings, by part.
+    rows: Vec<DMatrix<f64>>,
+    gram: Gram,
+}
+
+/// A window of a source, with what it makes of the trial.
+struct WeighedChange<'s> {
+    source: &'s ChangeSource,
+    window: Window,
+    evidence: f64,
+    estimate: HypothesisEstimate,
+}
+
+impl<'s, 'a> ChangeSearch<'s, 'a> {
+    pub fn new(
+        search: &'s HypothesisSearch<'a>,
+        best: &JudgedHypothesis,
+        workspace: &'s LinearisedTrials<'a>,
+    ) -> Self {
+        let size = search.nuisance.len();
+        let moved: usize = best.candidates.iter().map(|candidate| candidate.at.len()).sum();
+        let deviation = |i: usize| best.covariance[(i, i)].max(f64::MIN_POSITIVE).sqrt();
+        let share = |candidate: &EffectCandidate| {
+            let share = of_shape(candidate);
+            candidate.change().into_iter().map(move |change| share * change)
+        };
+        Self {
+            search,
+            workspace,
+            discrepancies: search.expected.clone(),
+            sources: sources(search, workspace.columns()),
+            kept: (0..size + moved).collect(),
+            taken: (0..moved).map(|i| NormalPrior { mean: 0.0, deviation: deviation(i) }).collect(),
+            open: vec![0.0; size]
+                .into_iter()
+                .chain(best.candidates.iter().flat_map(share))
+                .collect(),
+        }
+    }
+
+    /// The most evident change of each effect that explains all that remains of a trial, of those
+    /// that are asked for.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known, or says that the information is not positive.
+    pub fn of_trial(
+        &self,
+        place: usize,
+        least_evidence: f64,
+        is_asked: &(dyn Fn(&str) -> bool + Sync),
+    ) -> Result<Vec<Change>, RefineError> {
+        let trial = &self.kept_columns(place)?;
+        let asked = self.sources.par_iter().filter(|source| is_asked(&source.candidate.effect));
+        let each: Vec<Option<Change>> = asked
+            .map(|source| self.of_source(trial, source, least_evidence))
+            .collect::<Result<_, _>>()?;
+        let mut found: Vec<Change> = each.into_iter().flatten().collect();
+        found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let mut effects = BTreeSet::new();
+        found.retain(|change| effects.insert(change.effect.clone()));
+        Ok(found)
+    }
+
+    /// The most evident change of a source, where it explains all that remains of a trial.
+    fn of_source(
+        &self,
+        trial: &KeptColumns,
+        source: &ChangeSource,
+        least_evidence: f64,
+    ) -> Result<Option<Change>, RefineError> {
+        let Some(stretches) = self.stretches(trial.place, source) else { return Ok(None) };
+        let coarse = self.by_stretches(trial, source, stretches)?;
+        let taken = simplest(&coarse, least_evidence);
+        let Some(taken) = taken.filter(|taken| taken.evidence > least_evidence) else {
+            return Ok(None);
+        };
+        let fine = match taken.window.is_timed() {
+            true => self.at_times(trial, source, stretches, taken.window)?,
+            false => Vec::new(),
+        };
+        let taken = most_evident(&fine).unwrap_or(taken);
+        let is_right = self.left(trial, stretches, taken)?.is_empty();
+        Ok(is_right.then(|| self.told((trial.place, stretches), taken, (&coarse, &fine))))
+    }
+
+    fn stretches(&self, place: usize, source: &ChangeSource) -> Option<Stretches> {
+        let parts = &self.workspace.linear()[place];
+        let first = parts.first()?.t_s.first()?;
+        let last = parts.last()?.t_s.last()?;
+        let length_s = self.workspace.lpp_m / self.workspace.speed_m_s;
+        let parameters = source.columns.len();
+        (last > first).then(|| Stretches::new([*first, *last], length_s, parameters))
+    }
+
+    /// Every window of a source that begins and ends where stretches do.
+    fn by_stretches<'w>(
+        &self,
+        trial: &KeptColumns,
+        source: &'w ChangeSource,
+        stretches: Stretches,
+    ) -> Result<Vec<WeighedChange<'w>>, RefineError> {
+        let cut = self.information(trial, source, &|t_s| stretches.hold(t_s))?;
+        let of = |window: Window| {
+            let spread = stretches.spread(window, source.columns.len());
+            weighed(source, window, cut.through(&spread), stretches)
+        };
+        Ok(stretches.windows().into_iter().filter_map(of).collect())
+    }
+
+    /// Windows of a source at times between the neighbours of one.
+    fn at_times<'w>(
+        &self,
+        trial: &KeptColumns,
+        source: &'w ChangeSource,
+        stretches: Stretches,
+        about: Window,
+    ) -> Result<Vec<WeighedChange<'w>>, RefineError> {
+        let windows = stretches.near(about);
+        let shares =
+            |t_s: f64| windows.iter().map(|window| window.share(t_s, stretches.span_s)).collect();
+        let cut = self.information(trial, source, &shares)?;
+        let parameters = source.columns.len();
+        let of = |(at, window): (usize, &Window)| {
+            let own = (0..parameters).map(|parameter| parameter * windows.len() + at);
+            weighed(source, *window, cut.of_columns(&own.collect::<Vec<_>>()), stretches)
+        };
+        Ok(windows.iter().enumerate().filter_map(of).collect())
+    }
+
+    /// What a trial says of the columns of a source, each once for every weight that a time has,
+    /// with coefficients and the effects taken integrated out.
+    fn information(
+        &self,
+        trial: &KeptColumns,
+        source: &ChangeSource,
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Result<MarginalInformation, RefineError> {
+        let gram = self.gram(trial, source, weights)?;
+        let all = MarginalInformation::new(&gram, &self.search.fixed)?;
+        let taken: Vec<usize> = (0..self.taken.len()).collect();
+        let own: Vec<usize> = (taken.len()..all.right.len()).collect();
+        if taken.is_empty() {
+            return Ok(all);
+        }
+        all.given(&taken, &self.taken, &own).ok_or_else(not_positive)
+    }
+
+    /// A trial with some columns as they are, and the columns of a source cut.
+    fn cut(
+        &self,
+        (place, kept): (usize, &[usize]),
+        source: &ChangeSource,
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Vec<Linearised> {
+        let parts = self.workspace.linear()[place].iter();
+        parts.map(|part| part.cut(kept, &source.columns, weights)).collect()
+    }
+
+    /// Those of coefficients and of the effects taken, which stay the same whatever changes.
+    fn kept_columns(&self, place: usize) -> Result<KeptColumns, RefineError> {
+        let width = 1 + self.kept.len();
+        let mut gram = Gram::empty(width);
+        let mut whitened = |part: &Linearised| {
+            let part = part.cut(&self.kept, &[], &|_| Vec::new());
+            let (rows, log_variance) = self.whitened(&part)?;
+            gram.add(&Gram::of_columns(&rows, log_variance));
+            Ok(rows)
+        };
+        let parts = self.workspace.linear()[place].iter();
+        let rows = parts.map(&mut whitened).collect::<Result<_, RefineError>>()?;
+        Ok(KeptColumns { place, rows, gram })
+    }
+
+    /// Residual and columns by readings.
+    fn whitened(&self, part: &Linearised) -> Result<(DMatrix<f64>, f64), RefineError> {
+        let (rows, log_variance) = whitened(part, &self.workspace.noise, &self.discrepancies)?;
+        let width = 1 + part.sizes.columns;
+        Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
+    }
+
+    /// Products of the kept columns and those of a source.
+    fn gram(
+        &self,
+        trial: &KeptColumns,
+        source: &ChangeSource,
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Result<Gram, RefineError> {
+        let parts = self.cut((trial.place, &[]), source, weights);
+        let (known, own) =
+            (trial.gram.products.nrows(), parts.first().map_or(0, |part| part.sizes.columns));
+        let mut gram = Gram { products: DMatrix::zeros(known + own, known + own), ..trial.gram };
+        gram.products.view_mut((0, 0), (known, known)).copy_from(&trial.gram.products);
+        for (part, rows) in parts.iter().zip(&trial.rows) {
+            let of_source = self.whitened(part)?.0.rows(1, own).transpose();
+            let (cross, square) = (rows * &of_source, of_source.tr_mul(&of_source));
+            gram.products.view_mut((0, known), (known, own)).add_assign(&cross);
+            gram.products.view_mut((known, 0), (own, known)).add_assign(&cross.transpose());
+            gram.products.view_mut((known, known), (own, own)).add_assign(&square);
+        }
+        Ok(gram)
+    }
+
+    /// What remains unexplained of a trial with a change.
+    fn left(
+        &self,
+        trial: &KeptColumns,
+        stretches: Stretches,
+        change: &WeighedChange<'_>,
+    ) -> Result<Vec<Unexplained>, RefineError> {
+        let WeighedChange { source, window, .. } = change;
+        let weight = |t_s: f64| vec![window.share(t_s, stretches.span_s)];
+        let gram = self.gram(trial, source, &weight)?;
+        let parameters = self.fitted(&gram, &self.search.fixed, source)?;
+        let changed = parameters.iter().skip(self.kept.len()).map(|size| source.misfit * size);
+        let open: Vec<f64> = self.open.iter().copied().chain(changed).collect();
+        let place = trial.place;
+        let parts = self.cut((place, &self.kept), source, &weight);
+        let clean = self.search.model.uncertainty.as_ref().map(|known| &known.remainder);
+        let named = (self.workspace, self.workspace.trials[place].name.as_str());
+        in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean)
+    }
+
+    /// Coefficients, effects taken and the change, fitted together on the trial.
+    fn fitted(
+        &self,
+        gram: &Gram,
+        fixed: &CoefficientPrior,
+        source: &ChangeSource,
+    ) -> Result<Vec<f64>, RefineError> {
+        let reduced = MarginalInformation::new(gram, fixed)?;
+        let priors: Vec<NormalPrior> = self.taken.iter().chain(&source.priors).copied().collect();
+        let places: Vec<usize> = (0..priors.len()).collect();
+        let estimate = reduced.estimate(&places, &priors).ok_or_else(not_positive)?;
+        let shift = &reduced.shift - &reduced.answers * &estimate.mean;
+        Ok(shift.iter().chain(estimate.mean.iter()).copied().collect())
+    }
+
+    /// The change as it is told; the others are all windows of its source.
+    fn told(
+        &self,
+        (place, stretches): (usize, Stretches),
+        taken: &WeighedChange<'_>,
+        (coarse, fine): (&[WeighedChange<'_>], &[WeighedChange<'_>]),
+    ) -> Change {
+        let WeighedChange { source, window, evidence, estimate } = taken;
+        let mut candidate = source.candidate.clone();
+        candidate.at.iter_mut().zip(estimate.mean.iter()).for_each(|(at, mean)| *at += mean);
+        let is_timed = window.is_timed();
+        Change {
+            effect: candidate.effect.clone(),
+            form: candidate.form.file.name.clone(),
+            meaning: candidate.form.file.meaning.clone(),
+            trial: self.workspace.trials[place].name.clone(),
+            course: window.course,
+            at_s: is_timed.then_some(window.at_s),
+            between_s: is_timed.then(|| between(stretches, coarse, fine)),
+            parameters: values(&candidate, &estimate.covariance, self.search.model),
+            evidence: *evidence,
+            or: Vec::new(),
+        }
+    }
+}
+
+/// A window of a source by what a trial says of it.
+fn weighed(
+    source: &ChangeSource,
+    window: Window,
+    says: MarginalInformation,
+    stretches: Stretches,
+) -> Option<WeighedChange<'_>> {
+    let places: Vec<usize> = (0..source.columns.len()).collect();
+    let estimate = says.discounted(source.discount).estimate(&places, &source.priors)?;
+    let evidence = estimate.gain + source.log_prior + stretches.log_prior(window);
+    Some(WeighedChange { source, window, evidence, estimate })
+}
+
+fn most_evident<'w, 's>(windows: &'w [WeighedChange<'s>]) -> Option<&'w WeighedChange<'s>> {
+    windows.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+}
+
+/// The window of a source that is taken: what is there throughout or drifts needs no time, and
+/// another author's form of it may seem to begin or end.
+fn simplest<'w, 's>(
+    windows: &'w [WeighedChange<'s>],
+    least_evidence: f64,
+) -> Option<&'w WeighedChange<'s>> {
+    let best = most_evident(windows)?;
+    let may_be = shadow_share(&best.source.candidate) * best.evidence.max(0.0);
+    let enough = best.evidence - least_evidence - may_be;
+    let of = |course: ChangeCourse| {
+        windows.iter().find(|one| one.window.course == course && one.evidence >= enough)
+    };
+    Some(of(ChangeCourse::Throughout).or_else(|| of(ChangeCourse::Drifts)).unwrap_or(best))
+}
+
+/// The interval of a change's time, by the finer times where there are some.
+fn between(
+    stretches: Stretches,
+    coarse: &[WeighedChange<'_>],
+    fine: &[WeighedChange<'_>],
+) -> [f64; 2] {
+    let Some((first, last)) = fine.first().zip(fine.last()) else { return stretches.span_s };
+    let step_s = stretches.finer_s();
+    let is_outside = |one: &&WeighedChange<'_>| {
+        one.window.course == first.window.course
+            && !(first.window.at_s..=last.window.at_s).contains(&one.window.at_s)
+    };
+    let outside = coarse.iter().filter(is_outside);
+    let outside = outside.map(|one| (one.window.at_s, one.evidence, stretches.width_s()));
+    let inside = fine.iter().map(|one| (one.window.at_s, one.evidence, step_s));
+    interval(outside.chain(inside).collect())
+}

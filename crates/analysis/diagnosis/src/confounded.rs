@@ -1,0 +1,97 @@
+//! Effects that these trials can hardly tell from those that were found.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::evidence::MarginalInformation;
+use super::hypothesis::JudgedHypothesis;
+use super::outcome::Confounded;
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{Columns, EffectCandidate, Gram};
+use sistership_identification::refine::RefineError;
+
+/// Responses of the effects found and of all others, with the coefficients integrated out.
+pub(super) struct Responses<'a> {
+    found: Vec<&'a EffectCandidate>,
+    others: Vec<&'a EffectCandidate>,
+    /// Places of each in the information, the found first.
+    places: Vec<Vec<usize>>,
+    information: DMatrix<f64>,
+}
+
+impl<'a> Responses<'a> {
+    /// From products of columns: those of coefficients, of what was found, and of the others that
+    /// are asked for.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn new(
+        search: &'a HypothesisSearch<'_>,
+        columns: &Columns,
+        judged: &'a JudgedHypothesis,
+        (others, total): (Vec<&'a EffectCandidate>, &Gram),
+    ) -> Result<Self, RefineError> {
+        let found: Vec<&EffectCandidate> = judged.candidates.iter().collect();
+        let all: Vec<&EffectCandidate> = found.iter().chain(&others).copied().collect();
+        let columns: Vec<Vec<usize>> =
+            all.iter().map(|candidate| columns.showing(candidate)).collect();
+        let select: Vec<usize> =
+            (0..search.nuisance.len()).chain(columns.iter().flatten().copied()).collect();
+        let mut first = 0;
+        let place = |columns: &Vec<usize>| {
+            first += columns.len();
+            (first - columns.len()..first).collect()
+        };
+        let places = columns.iter().map(place).collect();
+        let information =
+            MarginalInformation::new(&total.select(&select), &search.fixed)?.information;
+        Ok(Self { found, others, places, information })
+    }
+
+    /// The effects that are nearly the same as one found, the nearest first.
+    pub fn beside(&self, found: usize) -> Vec<Confounded> {
+        let mut nearest: BTreeMap<&str, Confounded> = BTreeMap::new();
+        for other in 0..self.others.len() {
+            let Some((angle_deg, behind)) = self.angle(found, other) else { continue };
+            let name = self.others[other].effect.as_str();
+            let is_nearer = nearest.get(name).is_none_or(|known| angle_deg < known.angle_deg);
+            if angle_deg < THRESHOLDS.confounding.apart_deg && is_nearer {
+                nearest.insert(name, Confounded { name: name.to_owned(), angle_deg, behind });
+            }
+        }
+        let mut all: Vec<Confounded> = nearest.into_values().collect();
+        all.sort_by(|a, b| a.angle_deg.total_cmp(&b.angle_deg));
+        all
+    }
+
+    /// The least evidence by which any of some others would be behind.
+    pub fn behind(&self, found: usize, names: &[&str]) -> Option<f64> {
+        let named = (0..self.others.len())
+            .filter(|&other| names.contains(&self.others[other].effect.as_str()));
+        named.filter_map(|other| Some(self.angle(found, other)?.1)).min_by(f64::total_cmp)
+    }
+
+    /// The angle between the response of an effect found and the nearest that another could give,
+    /// deg; and the evidence that this other would be behind.
+    fn angle(&self, found: usize, other: usize) -> Option<(f64, f64)> {
+        let change = DVector::from_vec(self.found[found].change());
+        let (own, other) = (&self.places[found], &self.places[self.found.len() + other]);
+        let part = |rows: &[usize], columns: &[usize]| {
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+                self.information[(rows[i], columns[j])]
+            })
+        };
+        let response = change.dot(&(part(own, own) * &change));
+        let seen = part(other, own) * &change;
+        let mut information = part(other, other);
+        // A ridge far below what matters: some parameters of an effect may say the same on these
+        // trials.
+        let ridge = THRESHOLDS.confounding.ridge * information.diagonal().max();
+        (0..other.len()).for_each(|i| information[(i, i)] += ridge);
+        let followed = seen.dot(&Cholesky::new(information)?.solve(&seen));
+        let share = (followed / response).clamp(0.0, 1.0);
+        Some((share.sqrt().acos().to_degrees(), 0.5 * response * (1.0 - share)))
+    }
+}

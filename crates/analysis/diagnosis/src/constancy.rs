@@ -1,0 +1,91 @@
+//! Whether an effect is the same at all times. What only resembles something else is needed in one
+//! size here and in another there: the pieces of the trials, each by itself, ask for more than what
+//! all together gave.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::coefficient_prior::CoefficientPrior;
+use super::discount::is_from_outside;
+use super::evidence::{MarginalInformation, NormalPrior};
+use super::filtered_base::FilteredBase;
+use super::hypothesis::{JudgedHypothesis, priors};
+use super::misfit::shadow_share;
+use super::placebo::follow_records;
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::Gram;
+use sistership_identification::refine::RefineError;
+
+/// The effects that are not. One that follows a record from outside may vary where records of other
+/// times explain the trials less ([`follow_records`]): what is unknown does not follow that record.
+///
+/// # Errors
+/// Names what a trial lacks.
+pub(super) fn inconstant(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
+    margin: f64,
+) -> Result<Vec<usize>, RefineError> {
+    let pieces = base
+        .linearised(&search.calibrated_model, &judged.linearised_at)?
+        .pieces(judged.level, THRESHOLDS.constancy.pieces)?;
+    let known = known_after(&search.fixed, judged);
+    let reduced: Vec<MarginalInformation> = pieces
+        .iter()
+        .map(|piece| MarginalInformation::new(piece, &known))
+        .collect::<Result<_, _>>()?;
+    let one =
+        |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
+    let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
+    // A form that is not nature's asks for another size where the ship moves otherwise, too.
+    let limit =
+        |place: usize| THRESHOLDS.constancy.limit.max(shadow_share(&judged.candidates[place]));
+    let mut places: Vec<usize> =
+        (0..varies.len()).filter(|&place| varies[place] > limit(place)).collect();
+    let is_outside = |place: &usize| is_from_outside(&judged.candidates[*place]);
+    if places.iter().any(is_outside) && follow_records(search, judged, margin)? {
+        places.retain(|place| !is_outside(place));
+    }
+    Ok(places)
+}
+
+/// What is known of the coefficients after all trials, whose change has been fitted.
+fn known_after(fixed: &CoefficientPrior, judged: &JudgedHypothesis) -> CoefficientPrior {
+    let size = fixed.weighted_mean.len();
+    let total =
+        Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+    let information = total.products.view((1, 1), (size, size)) + &fixed.information;
+    CoefficientPrior { weighted_mean: &information * &judged.shift, information }
+}
+
+/// What pieces ask for beyond the common size and beyond chance, by the response to that size.
+fn varies(
+    judged: &JudgedHypothesis,
+    place: usize,
+    pieces: &[MarginalInformation],
+    discount: f64,
+) -> f64 {
+    let first: usize =
+        judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
+    let own = first..first + judged.linearised_at[place].at.len();
+    let moved = DVector::from_vec(judged.moved());
+    let fixing: Vec<NormalPrior> = priors(&judged.linearised_at[place]);
+    let change = DVector::from_vec(judged.candidates[place].change());
+    let (mut asked, mut chance, mut response) = (0.0, 0.0, 0.0);
+    for piece in pieces {
+        let left =
+            (&piece.right - &piece.information * &moved).rows(own.start, own.len()).into_owned();
+        let information =
+            piece.information.view((own.start, own.start), (own.len(), own.len())).into_owned();
+        let prior = DMatrix::from_diagonal(&DVector::from_iterator(
+            own.len(),
+            fixing.iter().map(|f| f.deviation.powi(-2)),
+        ));
+        let Some(factor) = Cholesky::new(&information + prior) else { continue };
+        asked += left.dot(&factor.solve(&left));
+        chance += factor.solve(&information).trace();
+        response += change.dot(&(&information * &change));
+    }
+    (asked - discount * chance) / response.max(THRESHOLDS.constancy.least_response)
+}

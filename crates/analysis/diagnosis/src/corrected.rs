@@ -1,0 +1,56 @@
+//! Trials as instruments would have shown them that do not err: what a regression takes for the
+//! ship's motion.
+
+use std::borrow::Cow;
+
+use sistership_model::effect::{ActsOn, AppliedEffect, TIME};
+use sistership_model::{Model, Trial};
+use sistership_simulation::recorded::as_true_instruments_say;
+
+use super::Request;
+use sistership_priors::transfer::ready;
+
+pub(super) struct CorrectedRecords<'a>(Vec<Cow<'a, Trial>>);
+
+impl<'a> CorrectedRecords<'a> {
+    /// The trials of a request without the errors of a model's instruments; none where the model
+    /// has no effect on the ship, or one that changes with time, which a regression does not know.
+    pub fn new(request: &Request<'a>, model: &Model) -> Option<Self> {
+        let (ship, instruments) = split(model);
+        let law = request.law.with_effects(&ship).ok()?;
+        if ship.effects.is_empty() || law.inputs.contains_key(TIME) {
+            return None;
+        }
+        if instruments.is_empty() {
+            return Some(Self(request.trials.iter().map(|trial| Cow::Borrowed(*trial)).collect()));
+        }
+        let erring =
+            ready(&Model { effects: instruments, ..model.clone() }, request.law, request.trials)
+                .ok()?;
+        let right = |trial: &&Trial| {
+            as_true_instruments_say(&erring, trial).ok().filter(is_finite).map(Cow::Owned)
+        };
+        request.trials.iter().map(right).collect::<Option<_>>().map(Self)
+    }
+
+    pub fn trials(&self) -> Vec<&Trial> {
+        self.0.iter().map(Cow::as_ref).collect()
+    }
+}
+
+fn is_finite(trial: &Trial) -> bool {
+    trial.channels.values().flatten().all(|value| value.is_finite())
+}
+
+/// A model with its effects on the ship, and those on instruments.
+pub(super) fn split(model: &Model) -> (Model, Vec<AppliedEffect>) {
+    let (instruments, effects) =
+        model.effects.iter().cloned().partition(|effect| effect.acts_on == ActsOn::Measurement);
+    (Model { effects, ..model.clone() }, instruments)
+}
+
+/// The opposite of [`split`].
+pub(super) fn joined(mut ship: Model, instruments: Vec<AppliedEffect>) -> Model {
+    ship.effects.extend(instruments);
+    ship
+}

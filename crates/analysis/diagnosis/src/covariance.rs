@@ -1,0 +1,70 @@
+//! What is not known of an effect's parameters: by noise and slack, and by what no trial tells.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::coefficient_prior::CoefficientPrior;
+use super::hypothesis::{JudgedHypothesis, priors};
+use super::misfit::of_size;
+use super::thresholds::THRESHOLDS;
+use super::values::own_covariance;
+use sistership_filtering::{Gram, Nuisance, NuisanceKind};
+
+/// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its
+/// own law is uncertain by, and what the virtual masses leave open. `discount` is what the
+/// information on the effect is divided by.
+pub(super) fn covariance(
+    judged: &JudgedHypothesis,
+    place: usize,
+    (nuisance, fixed): (&[Nuisance], &CoefficientPrior),
+    discount: f64,
+) -> DMatrix<f64> {
+    let candidate = &judged.candidates[place];
+    let own = own_covariance(&judged.candidates, place, &judged.covariance);
+    let change = DVector::from_vec(candidate.change());
+    let response =
+        Cholesky::new(own.clone()).map_or(0.0, |factor| change.dot(&factor.solve(&change)));
+    let size = of_size(candidate);
+    let mut covariance = own * (discount + THRESHOLDS.effect.shape.powi(2) * response);
+    covariance += &change * change.transpose() * size.powi(2);
+    if let Some(answers) = answers_to_masses(judged, place, nuisance, fixed) {
+        covariance += &answers * answers.transpose() * THRESHOLDS.effect.mass_deviation.powi(2);
+    }
+    covariance
+}
+
+/// How an effect's parameters answer to each virtual mass, the coefficients giving way by all that
+/// is known of them: a consider analysis (Schmidt 1966, Adv Control Syst 3, 293-340).
+fn answers_to_masses(
+    judged: &JudgedHypothesis,
+    place: usize,
+    nuisance: &[Nuisance],
+    fixed: &CoefficientPrior,
+) -> Option<DMatrix<f64>> {
+    let is_mass = |column: &usize| {
+        matches!(nuisance.get(*column).map(|n| n.kind), Some(NuisanceKind::Mass(..)))
+    };
+    let size = judged.grams.first()?.products.nrows();
+    let total = Gram::sum(&judged.grams, size);
+    let (masses, others): (Vec<usize>, Vec<usize>) = (0..size - 1).partition(is_mass);
+    let fixing: Vec<f64> = judged
+        .linearised_at
+        .iter()
+        .flat_map(priors)
+        .map(|prior| prior.deviation.powi(-2))
+        .collect();
+    let known = nuisance.len();
+    let information = |i: usize, j: usize| {
+        let before = if i < known && j < known { fixed.information[(i, j)] } else { 0.0 };
+        let prior = if i == j && i >= known { fixing[i - known] } else { 0.0 };
+        total.products[(1 + i, 1 + j)] + before + prior
+    };
+    let own =
+        DMatrix::from_fn(others.len(), others.len(), |i, j| information(others[i], others[j]));
+    let cross =
+        DMatrix::from_fn(others.len(), masses.len(), |i, j| information(others[i], masses[j]));
+    let answers = Cholesky::new(own)?.solve(&cross);
+    let first: usize =
+        judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
+    let start = others.len() - fixing.len() + first;
+    Some(answers.rows(start, judged.linearised_at[place].at.len()).into_owned())
+}

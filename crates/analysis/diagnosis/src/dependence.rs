@@ -1,0 +1,246 @@
+//! On which recorded variables depends what no effect explains: a random forest is learned from
+//! what is left of an acceleration, and asked on parts of the trials that it has not seen.
+//!
+//! A term of the law that would say the same is tried before, as the effect `missing-term`.
+
+use sistership_learned::{LearnedDependence, Sample, dependence};
+use sistership_model::Trial;
+use sistership_model::branch::Learner;
+use sistership_model::trial::Channel;
+
+use super::outcome::{
+    OriginKind, RemainderDependence, RemainderOrigin, ResidualSeries, Unexplained,
+    VariableDependence,
+};
+use super::series::recorded;
+use super::thresholds::THRESHOLDS;
+
+/// The name of time among the variables: what begins or ends is told by it.
+const TIME: &str = "t";
+
+/// What is left of each acceleration in which something is unexplained or from which it comes, by
+/// what it depends on.
+pub(super) fn of_remainder(
+    trials: &[&Trial],
+    residuals: &[ResidualSeries],
+    (unexplained, origins): (&[Unexplained], &[RemainderOrigin]),
+) -> Vec<RemainderDependence> {
+    let is_origin = |channel: &str| {
+        let first = origins.first().filter(|origin| origin.of == OriginKind::Acceleration);
+        first.is_some_and(|origin| origin.channel == channel)
+    };
+    // A heading that does not follow is asked of the yaw acceleration.
+    let is_of = |stretch: &Unexplained, channel: &str| {
+        stretch.channel == channel || (stretch.channel == "psi" && channel == "r")
+    };
+    let is_left = |channel: &str| unexplained.iter().any(|stretch| is_of(stretch, channel));
+    let mut channels: Vec<&str> = residuals.iter().map(|series| &*series.channel).collect();
+    channels.sort_unstable();
+    channels.dedup();
+    // What it comes from is read first.
+    channels.sort_by_key(|channel| !is_origin(channel));
+    channels
+        .into_iter()
+        .filter(|channel| is_left(channel) || is_origin(channel))
+        .filter_map(|channel| {
+            let of = |series: &&ResidualSeries| series.channel == channel;
+            of_channel(trials, channel, &residuals.iter().filter(of).collect::<Vec<_>>())
+        })
+        .collect()
+}
+
+fn of_channel(
+    trials: &[&Trial],
+    channel: &str,
+    series: &[&ResidualSeries],
+) -> Option<RemainderDependence> {
+    let samples: usize = series.iter().map(|one| one.t_s.len()).sum();
+    if samples < THRESHOLDS.dependence.samples {
+        return None;
+    }
+    let variables = variables(trials, series);
+    let halves = [0, 1].map(|half| sample(&variables, series, half));
+    let learner = learner(variables.len());
+    let told: Vec<LearnedDependence> = [(0, 1), (1, 0)]
+        .into_iter()
+        .filter_map(|(seen, unseen)| {
+            let points = THRESHOLDS.dependence.points;
+            dependence(&learner, &halves[seen], &halves[unseen], points, 1)
+        })
+        .collect();
+    let first = told.first()?;
+    let mean = |of: &dyn Fn(&LearnedDependence) -> f64| {
+        told.iter().map(of).sum::<f64>() / told.len() as f64
+    };
+    let mut all: Vec<VariableDependence> = variables
+        .iter()
+        .enumerate()
+        .map(|(place, (name, _))| VariableDependence {
+            variable: (*name).to_owned(),
+            share: mean(&|told| told.inputs[place].rise),
+            at: first.inputs[place].at.clone(),
+            remainder: first.inputs[place].answer.clone(),
+        })
+        .filter(|variable| variable.share > THRESHOLDS.dependence.share)
+        .collect();
+    all.sort_by(|a, b| b.share.total_cmp(&a.share));
+    all.truncate(THRESHOLDS.dependence.shown);
+    let explained = mean(&|told| told.explained).max(0.0);
+    // What says hardly more than the mean depends on nothing that it was told.
+    let variables = if explained > THRESHOLDS.dependence.share { all } else { Vec::new() };
+    Some(RemainderDependence { channel: channel.to_owned(), explained, variables })
+}
+
+fn learner(variables: usize) -> Learner {
+    let threshold = &THRESHOLDS.dependence;
+    Learner::RandomForest {
+        trees: threshold.trees,
+        tried: variables.div_ceil(3),
+        leaf: threshold.leaf,
+        depth: threshold.depth,
+    }
+}
+
+/// A variable by name, with its values along each series.
+type Variable = (&'static str, Vec<Vec<f64>>);
+
+/// The variables that every series has and that vary, and time.
+fn variables(trials: &[&Trial], series: &[&ResidualSeries]) -> Vec<Variable> {
+    let along = |channel: &Channel| -> Option<Variable> {
+        let values: Option<Vec<Vec<f64>>> =
+            series.iter().map(|one| recorded(trials, one, *channel)).collect();
+        Some((channel.name(), values?))
+    };
+    let varies = |(_, values): &Variable| {
+        let all = values.iter().flatten();
+        let (low, high) = all
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        high - low > 1e-9
+    };
+    let since = |one: &&ResidualSeries| one.t_s.iter().map(|t| t - one.t_s[0]).collect();
+    let time = (TIME, series.iter().map(since).collect());
+    let channels = THRESHOLDS.series.variables.iter().filter_map(along);
+    channels.filter(varies).chain([time]).collect()
+}
+
+/// Every second block of each series, or all of every second series where they are short:
+/// neighbours in time are alike, so that single samples would tell of one another.
+fn sample(variables: &[Variable], series: &[&ResidualSeries], half: usize) -> Sample {
+    let taken = |(place, values): (usize, &Vec<f64>)| -> Vec<f64> {
+        let blocks = THRESHOLDS.dependence.blocks;
+        let is_short = values.len() < THRESHOLDS.dependence.block * blocks;
+        let block = |k: usize| if is_short { place } else { k * blocks / values.len() };
+        let kept = values.iter().enumerate().filter(|(k, _)| block(*k) % 2 == half);
+        kept.map(|(_, value)| *value).collect()
+    };
+    let column = |(_, values): &Variable| values.iter().enumerate().flat_map(taken).collect();
+    Sample {
+        columns: variables.iter().map(column).collect(),
+        targets: series.iter().map(|one| &one.after).enumerate().flat_map(taken).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use std::collections::BTreeMap;
+
+    /// A trial in which the rudder and the heading swing at their own pace, and what is left of its
+    /// yaw acceleration by a formula of both.
+    fn case(left: fn(f64, f64, f64) -> f64) -> (Trial, ResidualSeries) {
+        let t_s: Vec<f64> = (0..240).map(|k| 2.0 * f64::from(k)).collect();
+        let of = |period: f64| t_s.iter().map(|t| (t / period).sin() * 0.3).collect::<Vec<f64>>();
+        let channels: BTreeMap<Channel, Vec<f64>> =
+            [(Channel::Delta, of(11.0)), (Channel::V, of(7.0)), (Channel::Psi, of(23.0))]
+                .into_iter()
+                .collect();
+        let after =
+            (0..240).map(|k| left(channels[&Channel::Delta][k], channels[&Channel::V][k], t_s[k]));
+        let series = ResidualSeries {
+            trial: "a".into(),
+            channel: "r".into(),
+            after: after.collect(),
+            before: vec![0.0; 240],
+            band: vec![0.0; 240],
+            against: String::new(),
+            variable: Vec::new(),
+            t_s: t_s.clone(),
+        };
+        (Trial { name: "a".into(), t_s, channels, ..Trial::default() }, series)
+    }
+
+    fn stretch() -> Unexplained {
+        Unexplained {
+            channel: "r".into(),
+            rms_over_noise: 5.0,
+            trial: "a".into(),
+            from_s: 0.0,
+            to_s: 480.0,
+        }
+    }
+
+    fn told(left: fn(f64, f64, f64) -> f64) -> RemainderDependence {
+        let (trial, series) = case(left);
+        of_remainder(&[&trial], &[series], (&[stretch()], &[])).remove(0)
+    }
+
+    #[test]
+    fn a_force_of_the_rudder_is_told_with_its_shape() {
+        let told = told(|delta, _, _| 1e-3 * delta * delta.abs());
+        assert!(told.explained > 0.8, "{told:?}");
+        let first = &told.variables[0];
+        assert_eq!(first.variable, "delta");
+        assert!(first.remainder.first() < first.remainder.last(), "{first:?}");
+    }
+
+    #[test]
+    fn what_begins_is_told_by_time() {
+        let told = told(|_, _, t| if t > 240.0 { 1e-3 } else { 0.0 });
+        assert_eq!(told.variables[0].variable, "t");
+    }
+
+    #[test]
+    fn time_is_that_of_the_trial() {
+        let (first, one) = case(|_, _, t| if t > 240.0 { 1e-3 } else { 0.0 });
+        let late = |t: &mut f64| *t += 9e4;
+        let mut second = Trial { name: "b".into(), ..first.clone() };
+        let mut other = ResidualSeries { trial: "b".into(), ..one.clone() };
+        second.t_s.iter_mut().for_each(late);
+        other.t_s.iter_mut().for_each(late);
+        let psi = Unexplained { channel: "psi".into(), ..stretch() };
+        let told = of_remainder(&[&first, &second], &[one, other], (&[psi], &[])).remove(0);
+        let time = &told.variables[0];
+        assert!(time.variable == "t" && time.at.iter().all(|t| *t < 480.0), "{time:?}");
+    }
+
+    #[test]
+    fn the_origin_is_asked_first() {
+        let (trial, yaw) = case(|delta, _, _| delta);
+        let sway = ResidualSeries { channel: "v".into(), ..yaw.clone() };
+        let origin = RemainderOrigin {
+            of: OriginKind::Acceleration,
+            channel: "v".into(),
+            evidence: 9.0,
+            first_in: 1,
+            trials: 1,
+        };
+        let told = of_remainder(&[&trial], &[yaw, sway], (&[stretch()], &[origin]));
+        let channels: Vec<&str> = told.iter().map(|one| &*one.channel).collect();
+        assert_eq!(channels, ["v", "r"]);
+    }
+
+    #[test]
+    fn too_few_samples_are_not_asked() {
+        let (trial, mut series) = case(|delta, _, _| delta);
+        series.t_s.truncate(20);
+        series.after.truncate(20);
+        assert!(of_remainder(&[&trial], &[series], (&[stretch()], &[])).is_empty());
+    }
+
+    #[test]
+    fn nothing_is_asked_where_nothing_is_left() {
+        let (trial, series) = case(|delta, _, _| delta);
+        assert!(of_remainder(&[&trial], &[series], (&[], &[])).is_empty());
+    }
+}

@@ -1,0 +1,290 @@
+//! A linearisation with everything that may show, filtered at each level of the discrepancy. A
+//! hypothesis near it is then judged by what it moves alone: its own columns pass the same filter,
+//! the coefficients' are there already.
+
+use std::collections::BTreeMap;
+use std::ops::AddAssign;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use sistership_model::manifest::VelocityFrame;
+
+use super::calibrated_model::CalibratedModel;
+use super::evidence::DiscrepancyFactor;
+use super::hypothesis::JudgedHypothesis;
+use super::linearised_trials::LinearisedTrials;
+use sistership_filtering::{
+    Columns, Detail, Discrepancies, EffectCandidate, Gram, Linearised, ResidualSystem, linearise,
+    whitened,
+};
+use sistership_identification::refine::RefineError;
+
+/// Effects that are taken, and all that is there when others are judged beside them.
+pub(super) struct FilteredBase<'a> {
+    pub taken: Vec<EffectCandidate>,
+    pub workspace: LinearisedTrials<'a>,
+    pub levels: Vec<FilteredLevel>,
+    coefficients: usize,
+    /// What has been judged beside it, by the effect and the level that it was first seen at.
+    judged: Mutex<BTreeMap<(String, usize), JudgedHypothesis>>,
+}
+
+/// The filter at one level.
+pub(super) struct FilteredLevel {
+    pub level: DiscrepancyFactor,
+    discrepancies: Discrepancies,
+    /// Products of all columns, by trial.
+    grams: Vec<Gram>,
+    /// Made when a hypothesis is first judged at this level: they are many times as large as the
+    /// trials.
+    coefficients: Mutex<Option<WhitenedCoefficients>>,
+}
+
+/// Whitened columns of the coefficients, by trial and part: columns by readings.
+type WhitenedCoefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
+
+impl FilteredLevel {
+    pub fn discrepancies(&self) -> &Discrepancies {
+        &self.discrepancies
+    }
+}
+
+impl<'a> FilteredBase<'a> {
+    /// Filters at each of some levels.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
+    pub fn new(
+        taken: &[EffectCandidate],
+        workspace: LinearisedTrials<'a>,
+        levels: Vec<(DiscrepancyFactor, Discrepancies)>,
+    ) -> Result<Self, RefineError> {
+        let coefficients = workspace.columns().nuisance.len();
+        let at = |(level, discrepancies): (DiscrepancyFactor, Discrepancies)| {
+            let one = |parts: &Vec<Linearised>| gram(&workspace, parts, &discrepancies);
+            let grams = workspace.linear().par_iter().map(one).collect::<Result<_, _>>()?;
+            Ok(FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() })
+        };
+        Ok(Self {
+            taken: taken.to_vec(),
+            levels: levels.into_iter().map(at).collect::<Result<_, RefineError>>()?,
+            coefficients,
+            workspace,
+            judged: Mutex::default(),
+        })
+    }
+
+    /// A hypothesis beside it that is judged once, however often it is asked for.
+    ///
+    /// # Errors
+    /// What judging it says.
+    pub fn once(
+        &self,
+        key: (String, usize),
+        judge: impl FnOnce() -> Result<JudgedHypothesis, RefineError>,
+    ) -> Result<JudgedHypothesis, RefineError> {
+        let all = || self.judged.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = all().get(&key) {
+            return Ok(known.clone());
+        }
+        let judged = judge()?;
+        all().insert(key, judged.clone());
+        Ok(judged)
+    }
+
+    /// Products of all columns over all trials, at one of the levels.
+    pub fn total(&self, level: usize) -> Gram {
+        Gram::sum(self.levels[level].grams.iter(), 1 + self.workspace.columns().len())
+    }
+
+    /// Products of coefficients alone, trial by trial.
+    pub fn alone(&self, level: usize) -> Vec<Gram> {
+        let columns: Vec<usize> = (0..self.coefficients).collect();
+        self.levels[level].grams.iter().map(|gram| gram.select(&columns)).collect()
+    }
+
+    /// The whitened columns of the coefficients at a level. Those of levels that are not its
+    /// neighbours are let go: hypotheses are judged at a level and the one below.
+    fn coefficients(&self, level: usize) -> Result<WhitenedCoefficients, RefineError> {
+        for (_, far) in
+            self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)
+        {
+            *far.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
+        let at = &self.levels[level];
+        let mut kept = at.coefficients.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(coefficients) = &*kept {
+            return Ok(Arc::clone(coefficients));
+        }
+        let of_part = |part: &Linearised| {
+            let rows = rows(&self.workspace, part, &at.discrepancies)?.0;
+            Ok(rows.rows(1, self.coefficients).into_owned())
+        };
+        let one = |parts: &Vec<Linearised>| {
+            parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
+        };
+        let each = self.workspace.linear().par_iter().map(one).collect::<Result<_, _>>()?;
+        let fresh: WhitenedCoefficients = Arc::new(each);
+        *kept = Some(Arc::clone(&fresh));
+        Ok(fresh)
+    }
+
+    /// Readings and columns of a hypothesis where it stands, to be filtered at any level.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn linearised(
+        &self,
+        learned: &CalibratedModel,
+        candidates: &[EffectCandidate],
+    ) -> Result<LinearisedHypothesis<'_, 'a>, RefineError> {
+        let frame: VelocityFrame = self.workspace.frame();
+        let columns = Columns { nuisance: Vec::new(), candidates: candidates.to_vec() };
+        let system = ResidualSystem::new(&learned.model, &learned.law, columns, frame)?;
+        let system = system.with_expected_rates(learned.expected_rates);
+        let records = self.workspace.records();
+        let linear: Vec<Vec<Linearised>> = records
+            .par_iter()
+            .map(|record| linearise(&system, record, Detail::Columns))
+            .collect::<Result<_, _>>()?;
+        let of = |(own, base): (Vec<Linearised>, &Vec<Linearised>)| {
+            own.into_iter().zip(base).map(|(own, base)| own.by_filter_of(base)).collect()
+        };
+        Ok(LinearisedHypothesis {
+            base: self,
+            linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect(),
+        })
+    }
+}
+
+/// Products of all columns over a trial.
+fn gram(
+    workspace: &LinearisedTrials<'_>,
+    parts: &[Linearised],
+    discrepancies: &Discrepancies,
+) -> Result<Gram, RefineError> {
+    let mut gram = Gram::empty(1 + workspace.columns().len());
+    for part in parts {
+        let (rows, log_variance) = rows(workspace, part, discrepancies)?;
+        gram.add(&Gram::of_columns(&rows, log_variance));
+    }
+    Ok(gram)
+}
+
+/// A part through the filter: residual and columns by readings.
+fn rows(
+    workspace: &LinearisedTrials<'_>,
+    part: &Linearised,
+    discrepancies: &Discrepancies,
+) -> Result<(DMatrix<f64>, f64), RefineError> {
+    let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies)?;
+    let width = 1 + part.sizes.columns;
+    Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
+}
+
+/// A hypothesis where it stands.
+pub(super) struct LinearisedHypothesis<'b, 'a> {
+    base: &'b FilteredBase<'a>,
+    linear: Vec<Vec<Linearised>>,
+}
+
+impl LinearisedHypothesis<'_, '_> {
+    /// The products of each trial: residual, coefficients, parameters of the hypothesis.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
+    pub fn grams(&self, level: usize) -> Result<Vec<Gram>, RefineError> {
+        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
+        let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
+        trials
+            .into_par_iter()
+            .map(|(parts, known)| self.gram(parts, known, &at.discrepancies))
+            .collect()
+    }
+
+    /// The products of each trial in pieces of equal duration.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
+    pub fn pieces(&self, level: usize, count: usize) -> Result<Vec<Gram>, RefineError> {
+        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
+        let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
+        let of = |(parts, known): (&Vec<Linearised>, &Vec<DMatrix<f64>>)| {
+            self.in_pieces(parts, known, &at.discrepancies, count)
+        };
+        let each: Vec<Vec<Gram>> = trials.into_par_iter().map(of).collect::<Result<_, _>>()?;
+        Ok(each.into_iter().flatten().collect())
+    }
+
+    fn in_pieces(
+        &self,
+        parts: &[Linearised],
+        known: &[DMatrix<f64>],
+        discrepancies: &Discrepancies,
+        count: usize,
+    ) -> Result<Vec<Gram>, RefineError> {
+        let width = self.base.coefficients + self.width();
+        let mut pieces = vec![Gram::empty(width); count];
+        for (part, coefficients) in parts.iter().zip(known) {
+            let own = self.rows(part, discrepancies)?.0;
+            let readings = own.nrows();
+            for (piece, gram) in pieces.iter_mut().enumerate() {
+                let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
+                let (known, own) =
+                    (coefficients.columns(from, to - from), own.rows(from, to - from));
+                let square = Gram::of_columns(&known.into_owned(), 0.0).products;
+                gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
+                add(gram, &(known * own), &own.tr_mul(&own));
+            }
+        }
+        Ok(pieces)
+    }
+
+    fn gram(
+        &self,
+        parts: &[Linearised],
+        (known, all): (&Vec<DMatrix<f64>>, &Gram),
+        discrepancies: &Discrepancies,
+    ) -> Result<Gram, RefineError> {
+        let c = self.base.coefficients;
+        let mut gram = Gram::empty(c + self.width());
+        gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
+        for (part, coefficients) in parts.iter().zip(known) {
+            let (rows, log_variance) = self.rows(part, discrepancies)?;
+            add(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
+            gram.log_variance += log_variance;
+            gram.count += rows.nrows();
+        }
+        Ok(gram)
+    }
+
+    /// The residual and the parameters of the hypothesis.
+    fn width(&self) -> usize {
+        1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
+    }
+
+    /// Whitened, readings by columns.
+    fn rows(
+        &self,
+        part: &Linearised,
+        discrepancies: &Discrepancies,
+    ) -> Result<(DMatrix<f64>, f64), RefineError> {
+        let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies)?;
+        let width = self.width();
+        Ok((DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance))
+    }
+}
+
+/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves.
+fn add(gram: &mut Gram, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
+    let (c, own) = cross.shape();
+    let place = |i: usize| if i == 0 { 0 } else { c + i };
+    for i in 0..own {
+        for k in 0..c {
+            gram.products[(1 + k, place(i))] += cross[(k, i)];
+            gram.products[(place(i), 1 + k)] += cross[(k, i)];
+        }
+        (0..own).for_each(|j| gram.products[(place(i), place(j))] += square[(i, j)]);
+    }
+}

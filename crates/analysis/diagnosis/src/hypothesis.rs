@@ -1,0 +1,97 @@
+//! A hypothesis: effects that may be missing together, where they make the readings most probable.
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::effect::EffectParameter;
+
+use super::coefficient_prior::CoefficientPrior;
+use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive};
+use sistership_filtering::{EffectCandidate, Gram};
+use sistership_identification::refine::RefineError;
+
+/// A hypothesis where it is most probable.
+#[derive(Debug, Clone)]
+pub(super) struct JudgedHypothesis {
+    pub candidates: Vec<EffectCandidate>,
+    /// Logarithm of the probability of the readings and of the hypothesis itself.
+    pub log_evidence: f64,
+    pub covariance: DMatrix<f64>,
+    /// The level of the discrepancy, among those of the base that it was judged beside.
+    pub level: usize,
+    /// Change of the coefficients.
+    pub shift: DVector<f64>,
+    /// Products of each trial under the most probable discrepancies, at `linearised_at`.
+    pub grams: Vec<Gram>,
+    /// Where the candidates were when the columns were made.
+    pub linearised_at: Vec<EffectCandidate>,
+}
+
+impl JudgedHypothesis {
+    /// How far each parameter is from where the columns were made.
+    pub fn moved(&self) -> Vec<f64> {
+        let pairs = self.candidates.iter().zip(&self.linearised_at);
+        pairs.flat_map(|(here, there)| here.at.iter().zip(&there.at).map(|(a, b)| a - b)).collect()
+    }
+
+    /// Logarithm of the probability of some of the trials under this hypothesis, and its estimate
+    /// there.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn of_trials(
+        &self,
+        fixed: &CoefficientPrior,
+        keep: &dyn Fn(usize) -> bool,
+    ) -> Result<(f64, Vec<EffectCandidate>), RefineError> {
+        let width = self.grams.first().ok_or_else(not_positive)?.products.nrows();
+        let kept =
+            self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, gram)| gram);
+        let reduced = MarginalInformation::new(&Gram::sum(kept, width), fixed)?;
+        let columns: Vec<usize> = (0..width - 1 - fixed.weighted_mean.len()).collect();
+        let priors: Vec<NormalPrior> = self.linearised_at.iter().flat_map(priors).collect();
+        let estimate = reduced.estimate(&columns, &priors).ok_or_else(not_positive)?;
+        Ok((estimate.gain - 0.5 * reduced.deviance, placed(self.linearised_at.clone(), &estimate)))
+    }
+
+    /// How probable each trial is by a fit on the others: the sum of the logarithms.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn held_out(&self, fixed: &CoefficientPrior) -> Result<f64, RefineError> {
+        let (all, ..) = self.of_trials(fixed, &|_| true)?;
+        let without = |trial: usize| Ok(all - self.of_trials(fixed, &|other| other != trial)?.0);
+        (0..self.grams.len()).map(without).sum()
+    }
+}
+
+/// Between two places of the same candidates.
+pub(super) fn halfway(from: &[EffectCandidate], to: &[EffectCandidate]) -> Vec<EffectCandidate> {
+    let between = |(from, to): (&EffectCandidate, &EffectCandidate)| {
+        let at = from.at.iter().zip(&to.at).map(|(from, to)| 0.5 * (from + to)).collect();
+        EffectCandidate { at, ..to.clone() }
+    };
+    from.iter().zip(to).map(between).collect()
+}
+
+/// The priors of a candidate's parameters, as distances from where it stands.
+pub(super) fn priors(candidate: &EffectCandidate) -> Vec<NormalPrior> {
+    let one = |(at, parameter): (&f64, &EffectParameter)| NormalPrior {
+        mean: parameter.prior_mean - at,
+        deviation: parameter.prior_deviation,
+    };
+    candidate.at.iter().zip(candidate.form.parameters.values()).map(one).collect()
+}
+
+/// Candidates at an estimate, within the bounds of their parameters.
+pub(super) fn placed(
+    mut candidates: Vec<EffectCandidate>,
+    estimate: &HypothesisEstimate,
+) -> Vec<EffectCandidate> {
+    let mut means = estimate.mean.iter();
+    for candidate in &mut candidates {
+        let parameters = candidate.form.parameters.values();
+        for ((at, parameter), mean) in candidate.at.iter_mut().zip(parameters).zip(&mut means) {
+            *at = (*at + mean).clamp(parameter.bounds[0], parameter.bounds[1]);
+        }
+    }
+    candidates
+}

@@ -1,0 +1,248 @@
+//! How small an effect these trials and this model would still have shown.
+//!
+//! An effect of a size moves the evidence for it, and for every other that resembles it, by what
+//! its columns say; chance adds a spread that is known. The limit is the smallest size at which the
+//! evidence is enough, and ahead of every other's, with a probability of 90 %: the minimum
+//! detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593).
+//! The model alone is a rival, too, with any other level of the random accelerations.
+
+mod weighed;
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use sistership_model::effect::{ActsOn, EffectParameter};
+
+use super::evidence::MarginalInformation;
+use super::filtered_base::FilteredBase;
+use super::outcome::{DetectionLimit, LimitedBy};
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use super::values::acts_on;
+use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
+use weighed::{View, WeighedCandidate};
+
+/// Of every listed effect and of each of its parameters whose absence is zero, from a base without
+/// effects at one of its levels.
+///
+/// # Errors
+/// Says that the information is not positive.
+pub(super) fn limits(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    level: usize,
+    least_evidence: f64,
+) -> Result<Vec<DetectionLimit>, RefineError> {
+    let all = Detection::new(search, base, level, least_evidence)?;
+    let listed = (0..all.candidates.len()).into_par_iter().filter(|&at| all.is_listed(at));
+    Ok(listed.flat_map_iter(|place| all.of_candidate(place)).collect())
+}
+
+/// Everything that may be found on these trials, with the coefficients integrated out.
+struct Detection<'a> {
+    search: &'a HypothesisSearch<'a>,
+    candidates: Vec<&'a EffectCandidate>,
+    /// Places of each in the information.
+    places: Vec<Vec<usize>>,
+    /// Divided by false-alarm levels.
+    discounted: View,
+    /// As the trials say it.
+    plain: View,
+    /// As they would say it of coefficients that are known.
+    of_known: View,
+    /// The model alone at each level of the discrepancy.
+    alone: Vec<AloneLevel>,
+    level: usize,
+    least_evidence: f64,
+}
+
+/// The model alone at a level of the discrepancy.
+struct AloneLevel {
+    /// Logarithm of its probability on these trials.
+    log_evidence: f64,
+    /// What an effect that is there takes of it: half the square of its size by this.
+    information: DMatrix<f64>,
+}
+
+impl<'a> Detection<'a> {
+    fn new(
+        search: &'a HypothesisSearch<'a>,
+        base: &FilteredBase<'_>,
+        level: usize,
+        least_evidence: f64,
+    ) -> Result<Self, RefineError> {
+        let candidates = search.others(&[]);
+        let columns: Vec<Vec<usize>> = candidates
+            .iter()
+            .map(|candidate| base.workspace.columns().showing(candidate))
+            .collect();
+        let size = search.nuisance.len();
+        let select: Vec<usize> = (0..size).chain(columns.iter().flatten().copied()).collect();
+        let mut first = 0;
+        let place = |columns: &Vec<usize>| {
+            first += columns.len();
+            (first - columns.len()..first).collect()
+        };
+        let places: Vec<Vec<usize>> = columns.iter().map(place).collect();
+        let total = base.total(level).select(&select);
+        let of_known = total.products.view_range(1 + size.., 1 + size..).into_owned();
+        let at = |level: usize| {
+            let total = base.total(level).select(&select);
+            let reduced = MarginalInformation::new(&total, &search.fixed)?;
+            let log_evidence = base.levels[level].level.log_prior - 0.5 * reduced.deviance;
+            Ok(AloneLevel { log_evidence, information: reduced.information })
+        };
+        let alone: Vec<AloneLevel> =
+            (0..base.levels.len()).map(at).collect::<Result<_, RefineError>>()?;
+        let information = alone[level].information.clone();
+        let view = |information: DMatrix<f64>, discount: &dyn Fn(&EffectCandidate) -> f64| {
+            View::new(search, information, (&candidates, &places), discount)
+        };
+        Ok(Self {
+            discounted: view(information.clone(), &|candidate| search.discount(candidate)),
+            plain: view(information, &|_| 1.0),
+            of_known: view(of_known, &|_| 1.0),
+            search,
+            candidates,
+            places,
+            alone,
+            level,
+            least_evidence,
+        })
+    }
+
+    fn is_listed(&self, place: usize) -> bool {
+        place < self.search.listed.len()
+    }
+
+    /// The limits of a candidate's parameters.
+    fn of_candidate(&self, place: usize) -> Vec<DetectionLimit> {
+        let candidate = self.candidates[place];
+        let parameters = candidate.form.parameters.iter().enumerate();
+        let one = |(own, (name, parameter)): (usize, (&String, &EffectParameter))| {
+            if parameter.absent != 0.0 {
+                return None;
+            }
+            let usual = parameter.prior_mean.abs() + parameter.prior_deviation;
+            let is_discounted = self.search.discount(candidate) > 1.0;
+            let view = if is_discounted { &self.discounted } else { &self.plain };
+            let size = self.limit(view, (place, own));
+            Some(DetectionLimit {
+                effect: candidate.effect.clone(),
+                form: candidate.form.file.name.clone(),
+                parameter: name.clone(),
+                size,
+                usual,
+                limited_by: self.cause(place, own, usual, size),
+            })
+        };
+        parameters.filter_map(one).collect()
+    }
+
+    /// What would have to be better for an effect of a usual size to be shown; none where it is.
+    fn cause(&self, place: usize, own: usize, usual: f64, size: Option<f64>) -> Option<LimitedBy> {
+        let shows = |size: Option<f64>| size.is_some_and(|size| size <= usual);
+        if shows(size) {
+            return None;
+        }
+        if shows(self.limit(&self.plain, (place, own))) {
+            return Some(LimitedBy::Model);
+        }
+        let known = shows(self.limit(&self.of_known, (place, own)));
+        let reads = acts_on(self.candidates[place]) == ActsOn::Measurement;
+        Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
+    }
+
+    /// The smallest size of one parameter that is shown, from a grid of equal ratios below the
+    /// largest that is believed at all; none where no size is.
+    fn limit(&self, view: &View, (place, own): (usize, usize)) -> Option<f64> {
+        let given = THRESHOLDS.limits;
+        let [least, most] = self.candidates[place].form.parameters[own].bounds;
+        let largest = least.abs().max(most.abs());
+        let sizes = (0..given.steps).map(|k| largest * given.ratio.powi(-(k as i32)));
+        let rivals = self.rivals(view, (place, own));
+        let seen = self.seen(view, place, (place, own));
+        let is_shown = |size: &f64| {
+            self.is_shown((view, place), *size, &seen, &rivals)
+                && self.beats_alone((place, own), *size)
+        };
+        // The largest may be beyond belief: the prior speaks against them.
+        sizes.skip_while(|size| !is_shown(size)).take_while(is_shown).last()
+    }
+
+    fn is_shown(
+        &self,
+        (view, place): (&View, usize),
+        size: f64,
+        seen: &DVector<f64>,
+        rivals: &[(&WeighedCandidate, DVector<f64>)],
+    ) -> bool {
+        let Some(own) = &view.weighed[place] else { return false };
+        let expected = own.expected(&(seen * size));
+        let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
+        let is_behind = |(rival, seen): &(&WeighedCandidate, DVector<f64>)| {
+            rival.expected(&(seen * size)).mean < sure
+        };
+        sure > self.least_evidence && rivals.iter().all(is_behind)
+    }
+
+    /// Whether the model alone is less probable at every level of the discrepancy.
+    fn beats_alone(&self, (place, own): (usize, usize), size: f64) -> bool {
+        let column = self.places[place][own];
+        let alone = |level: &AloneLevel| {
+            level.log_evidence - 0.5 * size.powi(2) * level.information[(column, column)]
+        };
+        let here = &self.alone[self.level];
+        let seen = self.seen(&self.plain, place, (place, own)) * size;
+        self.plain.weighed[place].as_ref().is_some_and(|weighed| {
+            let expected = weighed.expected(&seen);
+            let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
+            let with = alone(here) + sure;
+            self.alone.iter().all(|level| with > alone(level) + self.least_evidence)
+        })
+    }
+
+    /// How a candidate sees a unit of a parameter.
+    fn seen(&self, view: &View, by: usize, (place, own): (usize, usize)) -> DVector<f64> {
+        let column = self.places[place][own];
+        let rows = self.places[by].iter().map(|&row| view.information[(row, column)]);
+        DVector::from_iterator(self.places[by].len(), rows)
+    }
+
+    /// The others that answer to a parameter, with how they see a unit of it.
+    fn rivals<'v>(
+        &self,
+        view: &'v View,
+        (place, own): (usize, usize),
+    ) -> Vec<(&'v WeighedCandidate, DVector<f64>)> {
+        let effect = &self.candidates[place].effect;
+        let others =
+            (0..self.candidates.len()).filter(|&other| self.candidates[other].effect != *effect);
+        let one = |other: usize| {
+            Some((view.weighed[other].as_ref()?, self.seen(view, other, (place, own))))
+        };
+        others.filter_map(one).collect()
+    }
+}
+
+/// The parameters of an effect that was found are not asked for again: those of all others are.
+pub(super) fn but(limits: Vec<DetectionLimit>, found: &[String]) -> Vec<DetectionLimit> {
+    limits.into_iter().filter(|limit| !found.contains(&limit.effect)).collect()
+}
+
+/// Names of the effects of which a usual size would not have been shown in any of their forms, with
+/// what stands in the way.
+pub(super) fn cannot_tell(limits: &[DetectionLimit]) -> BTreeMap<String, LimitedBy> {
+    let mut open = BTreeMap::new();
+    for limit in limits {
+        let of_effect = || limits.iter().filter(|other| other.effect == limit.effect);
+        if let Some(cause) =
+            limit.limited_by.filter(|_| of_effect().all(|l| l.limited_by.is_some()))
+        {
+            open.entry(limit.effect.clone()).or_insert(cause);
+        }
+    }
+    open
+}

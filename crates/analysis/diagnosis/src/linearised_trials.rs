@@ -1,0 +1,313 @@
+//! A model, columns and trials made ready: linearised once, filtered at any level of discrepancy.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+use sistership_model::coefficient::Axis;
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
+use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
+use sistership_model::{Trial, particulars};
+
+use super::calibrated_model::CalibratedModel;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{
+    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
+    TrialReadings, filter_first, floor, linearise, reading_interval, scatter, sparseness,
+    unknown_noise,
+};
+use sistership_identification::refine::RefineError;
+use sistership_priors::transfer::approach_of;
+
+/// Everything that does not change with the discrepancy.
+pub struct LinearisedTrials<'a> {
+    pub trials: &'a [&'a Trial],
+    pub noise: Noise,
+    pub lpp_m: f64,
+    pub speed_m_s: f64,
+    system: ResidualSystem,
+    records: Vec<TrialReadings<'a>>,
+    /// By trial; empty where each is linearised anew when it is asked for.
+    linear: Vec<Vec<Linearised>>,
+}
+
+/// What is typical of a ship.
+#[derive(Debug, Clone)]
+pub struct MotionScales {
+    /// Accelerations by axis: U^2/L, or (U/L)^2.
+    pub accelerations: Vec<f64>,
+    /// Time over which the discrepancy is correlated, s: the ship sails its length.
+    pub time_s: f64,
+}
+
+impl MotionScales {
+    /// Discrepancies of a level: a share of the typical acceleration of each axis.
+    pub fn discrepancies(&self, level: f64) -> Discrepancies {
+        let time_s = self.time_s;
+        let of = |typical: &f64| {
+            let deviation = level * typical;
+            Discrepancy {
+                deviation,
+                time_s,
+                white: THRESHOLDS.discrepancy.white_share * deviation * time_s.sqrt(),
+            }
+        };
+        self.accelerations.iter().map(of).collect()
+    }
+}
+
+impl<'a> LinearisedTrials<'a> {
+    /// Each trial linearised once and kept.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn new(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
+        Self::one_at_a_time(learned, columns, trials, least_step_s)?.kept()
+    }
+
+    /// The same by instruments that are stated.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn new_under(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+        instruments: &Noise,
+    ) -> Result<Self, RefineError> {
+        let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
+        read_apart(&mut all.records, learned.reading_interval_s);
+        all.read_by(instruments.clone())?.kept()
+    }
+
+    /// With each trial linearised.
+    fn kept(mut self) -> Result<Self, RefineError> {
+        let whole = |record| linearise(&self.system, record, Detail::Whole);
+        self.linear = self.records.par_iter().map(whole).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// By instruments, of which each channel that is read must have one.
+    ///
+    /// # Errors
+    /// Names the trial and the channel that has none.
+    fn read_by(mut self, noise: Noise) -> Result<Self, RefineError> {
+        for record in self.records.iter().filter(|record| !record.is_empty()) {
+            let lacks = |(channel, _): &&(Channel, usize)| {
+                record.trial.channel(*channel).is_some() && !noise.contains_key(channel)
+            };
+            if let Some((channel, _)) = self.system.channels.iter().find(lacks) {
+                let message = unknown_noise(*channel).to_string();
+                return Err(RefineError::Data(format!("trial `{}`: {message}", record.trial.name)));
+            }
+        }
+        self.noise = noise;
+        Ok(self)
+    }
+
+    /// Each trial linearised whenever it is asked for: what is kept is as many times as large as
+    /// the trials as there are columns.
+    ///
+    /// # Errors
+    /// Names what the model lacks; what a trial lacks is said when it is asked for.
+    pub fn one_at_a_time(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
+        let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
+        read_apart(&mut all.records, learned.reading_interval_s);
+        let known = learned.model.uncertainty.as_ref();
+        let noise = noise(&all.records, all.lpp_m, all.speed_m_s, known);
+        all.read_by(noise)
+    }
+
+    /// How far apart readings are whose noise is new, s; 0 where every sample is one.
+    ///
+    /// # Errors
+    /// Names what the model lacks.
+    pub fn own_reading_interval_s(
+        learned: &CalibratedModel,
+        trials: &'a [&'a Trial],
+    ) -> Result<f64, RefineError> {
+        let all = Self::every_sample(learned, Columns::default(), trials, None)?;
+        Ok(reading_interval(&all.records).unwrap_or_default())
+    }
+
+    /// Trials of which every sample is a reading, by instruments that are stated: what nobody has
+    /// sailed yet has no scatter by which either could be told.
+    ///
+    /// # Errors
+    /// Names what the model lacks.
+    pub fn planned(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        instruments: &Noise,
+    ) -> Result<Self, RefineError> {
+        Self::every_sample(learned, columns, trials, None)?.read_by(instruments.clone())
+    }
+
+    fn every_sample(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
+        let CalibratedModel { model, law, expected_rates, .. } = learned;
+        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let lpp_m = lpp_m.ok_or_else(|| {
+            RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
+        })?;
+        let approach = approach_of(trials).map(|approach| approach.speed_m_s);
+        let speed_m_s = approach
+            .or(model.speed_m_s)
+            .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
+        let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
+        let records: Vec<TrialReadings<'a>> =
+            trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
+        let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
+        let system = ResidualSystem::new(model, law, columns, frame)?;
+        let system = system.with_expected_rates(*expected_rates);
+        let noise = Noise::default();
+        Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
+    }
+
+    /// The same by other instruments; a channel of which these know nothing keeps its own scatter.
+    pub fn under(mut self, noise: &Noise) -> Self {
+        self.noise.extend(noise);
+        self
+    }
+
+    pub fn columns(&self) -> &Columns {
+        &self.system.columns
+    }
+
+    pub fn axes(&self) -> &[Axis] {
+        &self.system.axes
+    }
+
+    pub fn frame(&self) -> VelocityFrame {
+        self.system.frame
+    }
+
+    pub fn records(&self) -> &[TrialReadings<'a>] {
+        &self.records
+    }
+
+    /// What is kept ([`Self::new`]).
+    pub fn linear(&self) -> &[Vec<Linearised>] {
+        &self.linear
+    }
+
+    /// A trial linearised, kept or not.
+    ///
+    /// # Errors
+    /// Names what the trial lacks.
+    pub fn parts(&self, trial: usize) -> Result<Cow<'_, [Linearised]>, RefineError> {
+        match self.linear.get(trial) {
+            Some(kept) => Ok(Cow::Borrowed(kept)),
+            None => linearise(&self.system, &self.records[trial], Detail::Whole).map(Cow::Owned),
+        }
+    }
+
+    pub fn scales(&self) -> MotionScales {
+        let rate = self.speed_m_s / self.lpp_m;
+        let of = |axis: &Axis| {
+            if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate }
+        };
+        MotionScales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
+    }
+
+    /// The products of each trial.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn each(&self, discrepancies: &Discrepancies) -> Result<Vec<Gram>, RefineError> {
+        self.each_of(self.columns().len(), &self.noise, discrepancies)
+    }
+
+    /// The products of each trial with the coefficients' columns alone, by other instruments.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn coefficients_under(
+        &self,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Vec<Gram>, RefineError> {
+        self.each_of(self.columns().nuisance.len(), noise, discrepancies)
+    }
+
+    fn each_of(
+        &self,
+        columns: usize,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Vec<Gram>, RefineError> {
+        let of_trial = |trial: usize| {
+            let parts = self.parts(trial)?;
+            let of = |part: &Linearised| filter_first(part, columns, noise, discrepancies);
+            let grams: Vec<Gram> = parts.iter().map(of).collect::<Result<_, _>>()?;
+            Ok(Gram::sum(&grams, 1 + columns))
+        };
+        (0..self.trials.len()).into_par_iter().map(of_trial).collect()
+    }
+}
+
+/// Readings as far apart as their noise asks for, and at least as those of the model's own trials
+/// were.
+fn read_apart(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
+    let Some(as_before_s) = as_before_s else {
+        let every = sparseness(records);
+        return records.iter_mut().for_each(|record| record.every = every);
+    };
+    let interval_s = as_before_s.max(reading_interval(records).unwrap_or_default());
+    records.iter_mut().for_each(|record| record.read_every(interval_s));
+}
+
+/// Each instrument over all trials: its scatter, and what is known of it beside.
+fn noise(
+    records: &[TrialReadings<'_>],
+    lpp_m: f64,
+    speed_m_s: f64,
+    known: Option<&Uncertainty>,
+) -> Noise {
+    let read = [
+        Channel::U,
+        Channel::V,
+        Channel::R,
+        Channel::P,
+        Channel::Phi,
+        Channel::Psi,
+        Channel::X,
+        Channel::Y,
+        Channel::UWater,
+        Channel::VWater,
+    ];
+    let one = |channel: Channel| {
+        let scatter = Instrument::of_scatter(
+            scatter(records, channel, &|record| record.every)?
+                .max(floor(channel, lpp_m, speed_m_s)),
+        );
+        let known = known.and_then(|known| known.instruments.get(channel.name()));
+        let of = |known: &InstrumentFit| Instrument {
+            deviation: scatter.deviation * known.deviation_by_scatter,
+            drift: scatter.drift.max(known.drift),
+        };
+        Some((channel, known.map_or(scatter, of)))
+    };
+    read.into_iter().filter_map(one).collect()
+}
+
+#[cfg(test)]
+#[path = "linearised_trials_tests.rs"]
+mod tests;

@@ -1,0 +1,48 @@
+//! How probable an effect is before any trial is looked at.
+
+use std::collections::BTreeMap;
+
+use sistership_model::Effect;
+
+use super::Request;
+use super::discount::is_from_outside;
+use sistership_filtering::EffectCandidate;
+
+/// Logarithm of the odds of each form against the model alone, by its key: those of the settings,
+/// or of the library, shared by the forms of the effect that can be tried. Without any, every
+/// effect is as probable as another, and the model alone as all of them.
+pub(super) fn log_priors(
+    request: &Request<'_>,
+    listed: &[EffectCandidate],
+    freed: &[EffectCandidate],
+    changing: &[EffectCandidate],
+) -> BTreeMap<String, f64> {
+    let mut forms: BTreeMap<&str, f64> = BTreeMap::new();
+    let all = || listed.iter().chain(freed);
+    all().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
+    let equal = (forms.len() as f64).recip();
+    changing.iter().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
+    let log = |candidate: &EffectCandidate| {
+        let odds = odds(request, candidate).unwrap_or(equal);
+        (candidate.key(), (odds / forms[candidate.effect.as_str()]).ln())
+    };
+    all().chain(changing).map(log).collect()
+}
+
+/// Whether the settings or the library state the odds of any effect.
+pub(super) fn states_odds(request: &Request<'_>) -> bool {
+    let stated = |effect: &std::sync::Arc<Effect>| effect.beforehand.is_some();
+    !request.settings.prior_odds.is_empty() || request.effects.iter().any(stated)
+}
+
+/// The odds of an effect in all its forms; absent where nobody states them.
+fn odds(request: &Request<'_>, candidate: &EffectCandidate) -> Option<f64> {
+    let set = request.settings.prior_odds.get(&candidate.effect).copied();
+    let is_own = |effect: &&std::sync::Arc<Effect>| effect.name == candidate.effect;
+    let of_library = || {
+        let known = request.effects.iter().find(is_own)?.beforehand.as_ref()?;
+        let recorded = known.odds_where_recorded.filter(|_| is_from_outside(candidate));
+        Some(recorded.unwrap_or(known.odds))
+    };
+    set.or_else(of_library)
+}

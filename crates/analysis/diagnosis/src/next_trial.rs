@@ -1,0 +1,173 @@
+//! The trial that would tell apart what these cannot: each of a set of manoeuvres is sailed with
+//! the model and what was found, and what it would add to the evidence is computed before anybody
+//! sails it.
+
+use rayon::prelude::*;
+use sistership_model::Trial;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+
+use super::as_recorded::as_recorded;
+use super::confounded::Responses;
+use super::filtered_base::FilteredBase;
+use super::hypothesis::JudgedHypothesis;
+use super::linearised_trials::LinearisedTrials;
+use super::outcome::{Found, NextTrial};
+use super::search::HypothesisSearch;
+use super::thresholds::{PlannedHelm, THRESHOLDS};
+use super::values::model_with;
+use sistership_filtering::{Columns, EffectCandidate, Gram, filter};
+use sistership_identification::refine::RefineError;
+
+/// One that could be sailed.
+#[derive(Clone, Copy)]
+struct PlannedManoeuvre {
+    helm: PlannedHelm,
+    speed_m_s: f64,
+    heading_deg: f64,
+}
+
+/// The trial that separates an effect found from those beside it best; none where nothing is to be
+/// separated, or the ship sails none of the manoeuvres that are planned.
+///
+/// # Errors
+/// Names what the model lacks, or says that the information is not positive.
+pub(super) fn next_trial(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
+    found: &[Found],
+) -> Result<Option<NextTrial>, RefineError> {
+    let doubtful = found.iter().filter(|found| !found.confounded_with.is_empty());
+    let doubtful = doubtful
+        .min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg));
+    let Some(doubtful) = doubtful else { return Ok(None) };
+    let is_doubtful = |candidate: &EffectCandidate| candidate.effect == doubtful.name;
+    let Some(place) = judged.candidates.iter().position(is_doubtful) else { return Ok(None) };
+    let doubt = Doubt::new(search, base, judged, (place, doubtful));
+    let ship = Ship::new(&model_with(search.model, &judged.candidates, None), search.law)?;
+    let gain = |planned: &PlannedManoeuvre| {
+        Ok(doubt.separated(&ship, planned)?.map(|gain| (gain, *planned)))
+    };
+    let gains: Vec<Option<(f64, PlannedManoeuvre)>> =
+        plans(base).par_iter().map(gain).collect::<Result<_, RefineError>>()?;
+    let best = gains.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
+    let separates = std::iter::once(doubtful.name.clone())
+        .chain(doubtful.confounded_with.iter().map(|other| other.name.clone()));
+    Ok(best.map(|(expected, best)| NextTrial {
+        manoeuvre: best.helm.name.to_owned(),
+        speed_m_s: (10.0 * best.speed_m_s).round() / 10.0,
+        heading_deg: best.heading_deg,
+        separates: separates.collect(),
+        expected,
+    }))
+}
+
+fn plans(base: &FilteredBase<'_>) -> Vec<PlannedManoeuvre> {
+    let approach = base.workspace.speed_m_s;
+    let given = THRESHOLDS.next_trial;
+    let of = |helm: PlannedHelm, share: f64| {
+        given.headings_deg.map(|heading_deg| PlannedManoeuvre {
+            helm,
+            speed_m_s: share * approach,
+            heading_deg,
+        })
+    };
+    given
+        .manoeuvres
+        .into_iter()
+        .flat_map(|helm| given.speeds.into_iter().flat_map(move |share| of(helm, share)))
+        .collect()
+}
+
+/// An effect that was found and those beside it, with what the trials say of these and of the
+/// coefficients: no other column has a say in what tells them apart.
+struct Doubt<'d, 'a> {
+    search: &'d HypothesisSearch<'a>,
+    base: &'d FilteredBase<'a>,
+    judged: &'d JudgedHypothesis,
+    place: usize,
+    names: Vec<&'d str>,
+    columns: Columns,
+    total: Gram,
+}
+
+impl<'d, 'a> Doubt<'d, 'a> {
+    fn new(
+        search: &'d HypothesisSearch<'a>,
+        base: &'d FilteredBase<'a>,
+        judged: &'d JudgedHypothesis,
+        (place, doubtful): (usize, &'d Found),
+    ) -> Self {
+        let names: Vec<&str> =
+            doubtful.confounded_with.iter().map(|other| other.name.as_str()).collect();
+        let all = base.workspace.columns();
+        let is_asked = |candidate: &EffectCandidate| {
+            names.contains(&candidate.effect.as_str())
+                || judged.candidates.iter().any(|found| found.key() == candidate.key())
+        };
+        let kept: Vec<usize> =
+            (0..all.candidates.len()).filter(|&at| is_asked(&all.candidates[at])).collect();
+        let places: Vec<usize> =
+            (0..all.nuisance.len()).chain(kept.iter().flat_map(|&at| all.places(at))).collect();
+        let candidates = kept.iter().map(|&at| all.candidates[at].clone()).collect();
+        let total = base.total(judged.level.min(base.levels.len() - 1)).select(&places);
+        let columns = Columns { nuisance: all.nuisance.clone(), candidates };
+        Self { search, base, judged, place, names, columns, total }
+    }
+
+    /// The evidence by which the nearest of the others would be behind after a planned trial; none
+    /// where the ship does not sail it, or no other is beside it then.
+    fn separated(
+        &self,
+        ship: &Ship,
+        planned: &PlannedManoeuvre,
+    ) -> Result<Option<f64>, RefineError> {
+        let Some(trial) = sailed(self.base, ship, planned) else { return Ok(None) };
+        let mut total = self.total.clone();
+        total.add(&self.filtered(&trial)?);
+        let mut others = self.search.others(&self.judged.candidates);
+        others.retain(|other| self.names.contains(&other.effect.as_str()));
+        let responses = Responses::new(self.search, &self.columns, self.judged, (others, &total))?;
+        Ok(responses.behind(self.place, &self.names))
+    }
+
+    /// The products of the columns over a planned trial.
+    fn filtered(&self, trial: &Trial) -> Result<Gram, RefineError> {
+        let Self { search, base, judged, columns, .. } = self;
+        let trials = [trial];
+        let workspace = LinearisedTrials::new_under(
+            &search.calibrated_model,
+            columns.clone(),
+            &trials,
+            search.least_step_s,
+            &base.workspace.noise,
+        )?;
+        let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
+        let width = 1 + workspace.columns().len();
+        let parts = workspace.linear().iter().flatten();
+        let grams: Vec<Gram> = parts
+            .map(|part| filter(part, &base.workspace.noise, discrepancies))
+            .collect::<Result<_, _>>()?;
+        Ok(Gram::sum(&grams, width))
+    }
+}
+
+/// A trial as it would be recorded, without noise; none where the ship leaves the range in which it
+/// can be simulated.
+fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> Option<Trial> {
+    let workspace = &base.workspace;
+    let settings = ManoeuvreSettings {
+        speed_m_s: Some(planned.speed_m_s),
+        duration_s: Some(THRESHOLDS.next_trial.duration * workspace.lpp_m / workspace.speed_m_s),
+        run_in_s: THRESHOLDS.next_trial.run_in * workspace.lpp_m / workspace.speed_m_s,
+        ..ManoeuvreSettings::default()
+    };
+    let PlannedHelm { rudder_deg: rudder, switch_deg, .. } = planned.helm;
+    let track = match switch_deg {
+        Some(switch) => zigzag(ship, rudder, switch, &settings).ok()?.track,
+        None => turn(ship, rudder, &settings).ok()?.track,
+    };
+    let model = workspace.trials.first()?;
+    Some(as_recorded(&track, model, planned.heading_deg.to_radians()))
+}

@@ -1,0 +1,135 @@
+//! The coefficients that may move while effects are judged, and what is known of them beforehand.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use sistership_formula::Expr;
+use sistership_model::coefficient::{Axis, CoefficientName};
+use sistership_model::effect::Form;
+use sistership_model::law::Law;
+use sistership_model::trial::Channel;
+use sistership_model::uncertainty::Uncertainty;
+use sistership_model::{Effect, Model, Trial};
+
+use super::coefficient_prior::CoefficientPrior;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{Columns, Nuisance, NuisanceKind};
+use sistership_identification::refine::RefineError;
+
+/// Terms that a grammar spells and a model lacks, by name.
+pub type Terms = BTreeMap<String, Arc<Form>>;
+
+/// The terms of the library's grammars on trials: all that the model lacks.
+pub fn lacked(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Vec<(String, Arc<Form>)> {
+    let has = |channel: Channel| trials.iter().all(|trial| trial.channel(channel).is_some());
+    let axes: Vec<Axis> = law.axes.keys().copied().collect();
+    let known = |name: &str| model.coefficients.contains_key(name);
+    let of = |effect: &Arc<Effect>| -> Vec<(String, Arc<Form>)> {
+        let forms = effect
+            .grammar
+            .as_ref()
+            .map(|grammar| grammar.forms(&axes, &known, &has))
+            .unwrap_or_default();
+        forms.into_iter().map(|form| (effect.name.clone(), form)).collect()
+    };
+    effects.iter().flat_map(of).collect()
+}
+
+/// Terms that are learned together with the coefficients: all that the grammars spell, and a
+/// constant on each axis. They take up what the law's own form cannot follow on clean trials, so
+/// that it is not taken for an effect later.
+pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Terms {
+    let axes: Vec<Axis> = law.axes.keys().copied().collect();
+    let known = |name: &str| model.coefficients.contains_key(name);
+    let constants = effects
+        .iter()
+        .filter_map(|effect| effect.grammar.as_ref())
+        .flat_map(|g| g.constants(&axes, &known));
+    let terms = lacked(model, law, effects, trials).into_iter().map(|(_, form)| form);
+    terms.chain(constants).map(|form| (form.file.name.clone(), form)).collect()
+}
+
+/// The regressor of a term, in N (N m) per unit of its coefficient, in the names of a law.
+pub fn regressor(model: &Model, form: &Form) -> Option<(Axis, Expr)> {
+    let (axis, force) = form.forces.iter().next()?;
+    let speed = model
+        .speed_m_s
+        .or_else(|| sistership_model::particulars::value(&model.particulars, "service_speed_m_s"));
+    let parameter = form.parameters.keys().next()?;
+    let plain = |name: &str| match name {
+        "approach_speed_m_s" => Some(Expr::Number(speed.unwrap_or(1.0))),
+        name if name == parameter => Some(Expr::Number(1.0)),
+        _ => None,
+    };
+    Some((*axis, force.renamed(&plain)))
+}
+
+/// What is known of the coefficients before any trial: the model's own within a share of each, or
+/// of the deviation that the grammar gives a term of its axis; terms that it lacks within the
+/// grammar's deviation. Virtual masses are held: trials would seem to tell them, but what they tell
+/// is how far the law is from the truth. What is not known of them goes into standard errors
+/// (`covariance`).
+pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> CoefficientPrior {
+    let of_axis = |axis: Axis| {
+        let of = terms.values().find(|form| form.forces.contains_key(&axis));
+        of.and_then(|form| form.parameters.values().next())
+            .map_or(THRESHOLDS.calibration.fallback_deviation, |parameter| {
+                parameter.prior_deviation
+            })
+    };
+    let deviation = |nuisance: &Nuisance| match nuisance.kind {
+        NuisanceKind::Own(axis) => {
+            slack
+                * model
+                    .coefficient(&nuisance.name)
+                    .abs()
+                    .max(THRESHOLDS.calibration.least_prior_share * of_axis(axis))
+        }
+        NuisanceKind::Lacked(axis) => slack * of_axis(axis),
+        NuisanceKind::Mass(..) => THRESHOLDS.calibration.mass_prior,
+    };
+    let precisions = DVector::from_iterator(
+        columns.len(),
+        columns.iter().map(|nuisance| deviation(nuisance).powi(-2)),
+    );
+    CoefficientPrior {
+        information: DMatrix::from_diagonal(&precisions),
+        weighted_mean: DVector::zeros(columns.len()),
+    }
+}
+
+/// What the model's own trials say of the coefficients, for the columns that it names.
+///
+/// # Errors
+/// As [`Uncertainty::root`].
+pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, RefineError> {
+    let rows = uncertainty.root().map_err(|error| RefineError::Law(error.to_string()))?;
+    let size = rows.len();
+    let entry =
+        |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };
+    let root = DMatrix::from_fn(size, size, entry);
+    let offset = DVector::from_column_slice(&uncertainty.offset);
+    Ok(CoefficientPrior {
+        information: root.transpose() * &root,
+        weighted_mean: root.transpose() * offset,
+    })
+}
+
+/// The columns of a model that knows its uncertainty: those it names; otherwise its own
+/// coefficients.
+pub fn columns(model: &Model, law: &Law) -> Vec<Nuisance> {
+    let own = Columns::nuisance(model, law, &[]);
+    let Some(uncertainty) = &model.uncertainty else { return own };
+    let of_model = |name: &str| own.iter().find(|nuisance| nuisance.name == name).cloned();
+    let lacked = |name: &str| {
+        let axis = CoefficientName::parse(name, &law.extra_factors()).ok()?.axis;
+        Some(Nuisance { name: name.to_owned(), kind: NuisanceKind::Lacked(axis) })
+    };
+    uncertainty.names.iter().filter_map(|name| of_model(name).or_else(|| lacked(name))).collect()
+}

@@ -1,0 +1,185 @@
+//! Where that comes from which no effect explains: a force that the equations of motion lack, or an
+//! instrument.
+//!
+//! A force in one direction shows in every reading that follows from it, in the heading before the
+//! sway velocity where the ship turns easily. So each acceleration alone, and each instrument
+//! alone, is taken to be more random than it is known to be, and the one that makes the trials most
+//! probable comes first: the likelihood of a Gauss-Markov model by prediction errors (Maybeck 1979,
+//! Stochastic models, estimation and control, vol. 1, section 5.6; Schweppe 1965, IEEE Trans.
+//! Inform. Theory 11, 61-70), maximised over one standard deviation.
+
+use rayon::prelude::*;
+use sistership_model::trial::Channel;
+
+use super::changes::open;
+use super::choose::ConvergedChoice;
+use super::outcome::{OriginKind, RemainderOrigin, Unexplained};
+use super::select::{expected, parameters};
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{Discrepancies, Linearised, Noise, deviances};
+use sistership_identification::refine::RefineError;
+
+/// What each trial that leaves something is by some randomness.
+type Deviances = Vec<f64>;
+
+/// The trials that leave something, as the filter sees them with what was found.
+struct OpenTrials {
+    /// By trial, its parts one after the other.
+    parts: Vec<Linearised>,
+    /// Of each part, its trial.
+    trials: Vec<usize>,
+    count: usize,
+}
+
+/// One thing that may be more random than it is known to be.
+struct Alternative {
+    of: OriginKind,
+    channel: String,
+    /// By how much the trials become more probable, by each trial, natural logarithm.
+    gains: Vec<f64>,
+}
+
+/// Origins by their evidence, the most evident first: those above `least`. Of many trials that
+/// leave something, those are asked that leave most.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
+pub(super) fn origins(
+    settled: &ConvergedChoice<'_>,
+    remaining: &[Unexplained],
+    least: f64,
+) -> Result<Vec<RemainderOrigin>, RefineError> {
+    let trials = OpenTrials::new(settled, remaining);
+    if trials.count == 0 {
+        return Ok(Vec::new());
+    }
+    let workspace = &settled.base.workspace;
+    let (noise, discrepancies) = (&workspace.noise, expected(&settled.search, workspace));
+    let known = trials.deviances(noise, &discrepancies)?;
+    let gained = |of: OriginKind, channel: &str, each: Result<Vec<Deviances>, RefineError>| {
+        Ok(Alternative { of, channel: channel.to_owned(), gains: gains(&known, &each?) })
+    };
+    let acceleration = |axis: usize| {
+        let factors = THRESHOLDS.origin.factors.par_iter();
+        let of = |factor: &f64| trials.deviances(noise, &amplified(&discrepancies, axis, *factor));
+        let velocity = workspace.axes()[axis].velocity();
+        gained(OriginKind::Acceleration, velocity, factors.map(of).collect())
+    };
+    let readings = |channel: &Channel| {
+        let factors = THRESHOLDS.origin.factors.par_iter();
+        let of =
+            |factor: &f64| trials.deviances(&noisier(noise, *channel, *factor), &discrepancies);
+        gained(OriginKind::Readings, channel.name(), factors.map(of).collect())
+    };
+    let alternatives: Vec<Alternative> = (0..discrepancies.len())
+        .map(acceleration)
+        .chain(noise.keys().map(readings))
+        .collect::<Result<_, RefineError>>()?;
+    Ok(ranked(&alternatives, least))
+}
+
+impl OpenTrials {
+    fn new(settled: &ConvergedChoice<'_>, remaining: &[Unexplained]) -> Self {
+        let workspace = &settled.base.workspace;
+        let parameters = parameters(&settled.best);
+        let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
+        let places = open(remaining).iter().filter_map(place).collect::<Vec<usize>>();
+        let asked = &places[..places.len().min(THRESHOLDS.origin.asked)];
+        let (mut parts, mut trials) = (Vec::new(), Vec::new());
+        for (trial, &place) in asked.iter().enumerate() {
+            for part in &workspace.linear()[place] {
+                parts.push(part.along(&parameters));
+                trials.push(trial);
+            }
+        }
+        Self { parts, trials, count: asked.len() }
+    }
+
+    fn deviances(
+        &self,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Deviances, RefineError> {
+        let parts: Vec<&Linearised> = self.parts.iter().collect();
+        let mut all = vec![0.0; self.count];
+        let each = deviances(&parts, noise, discrepancies)?;
+        self.trials.iter().zip(each).for_each(|(&trial, deviance)| all[trial] += deviance);
+        Ok(all)
+    }
+}
+
+/// Discrepancies of which one is larger.
+fn amplified(discrepancies: &Discrepancies, axis: usize, factor: f64) -> Discrepancies {
+    let mut amplified = discrepancies.clone();
+    amplified[axis].deviation *= factor;
+    amplified[axis].white *= factor;
+    amplified
+}
+
+/// Instruments of which one scatters more.
+fn noisier(noise: &Noise, channel: Channel, factor: f64) -> Noise {
+    let mut noisier = noise.clone();
+    noisier.entry(channel).and_modify(|instrument| {
+        instrument.deviation *= factor;
+        // What drifts of a velocity is an acceleration, which is asked by itself.
+        if !VELOCITIES.contains(&channel) {
+            instrument.drift *= factor;
+        }
+    });
+    noisier
+}
+
+const VELOCITIES: [Channel; 4] = [Channel::U, Channel::V, Channel::R, Channel::P];
+
+/// What each trial gains by the factor by which all together gain most.
+fn gains(known: &Deviances, each: &[Deviances]) -> Vec<f64> {
+    let gains = |by: &Deviances| -> Vec<f64> {
+        known.iter().zip(by).map(|(known, by)| 0.5 * (known - by)).collect()
+    };
+    let all = each.iter().map(gains);
+    all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
+}
+
+fn ranked(alternatives: &[Alternative], least: f64) -> Vec<RemainderOrigin> {
+    let is_first = |one: &Alternative, trial: usize| {
+        one.gains[trial] > 0.0
+            && alternatives.iter().all(|other| other.gains[trial] <= one.gains[trial])
+    };
+    let of = |one: &Alternative| RemainderOrigin {
+        of: one.of,
+        channel: one.channel.clone(),
+        evidence: one.gains.iter().sum(),
+        first_in: (0..one.gains.len()).filter(|trial| is_first(one, *trial)).count(),
+        trials: one.gains.len(),
+    };
+    let mut all: Vec<RemainderOrigin> =
+        alternatives.iter().map(of).filter(|one| one.evidence > least).collect();
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    all.truncate(THRESHOLDS.origin.shown);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn alternative(channel: &str, gains: &[f64]) -> Alternative {
+        let (of, channel) = (OriginKind::Acceleration, channel.to_owned());
+        Alternative { of, channel, gains: gains.to_vec() }
+    }
+
+    #[test]
+    fn the_most_evident_over_all_trials_comes_first() {
+        let all = [alternative("r", &[5.0, 9.0]), alternative("v", &[50.0, 8.0])];
+        let ranked = ranked(&all, 5.0);
+        let told = |one: &RemainderOrigin| (one.channel.clone(), one.evidence, one.first_in);
+        let told: Vec<(String, f64, usize)> = ranked.iter().map(told).collect();
+        assert_eq!(told, [("v".to_owned(), 58.0, 1), ("r".to_owned(), 14.0, 1)]);
+    }
+
+    #[test]
+    fn what_makes_nothing_more_probable_is_not_told() {
+        assert!(ranked(&[alternative("u", &[4.0, -1.0])], 5.0).is_empty());
+        assert_eq!(gains(&vec![10.0, 20.0], &[vec![4.0, 30.0], vec![8.0, 18.0]]), [1.0, 1.0]);
+    }
+}

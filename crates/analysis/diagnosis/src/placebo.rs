@@ -1,0 +1,166 @@
+//! Whether an effect that follows a record follows it: the record of another time, or of another
+//! direction, must not do as well.
+//!
+//! A record that hardly varies is itself at any other time, and can be told from no other by that.
+//! What comes from a direction is told by the headings of the trials: from abeam of where it came,
+//! it must explain less.
+
+use std::f64::consts::FRAC_PI_2;
+
+use sistership_model::Trial;
+use sistership_model::trial::Channel;
+
+use super::discount::{OUTSIDE, is_from_outside};
+use super::filtered_base::FilteredBase;
+use super::hypothesis::JudgedHypothesis;
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use sistership_identification::refine::RefineError;
+
+/// Whether the effect that came last follows a record from outside, and placebos explain the trials
+/// better.
+///
+/// # Errors
+/// Names what a trial lacks.
+pub(super) fn is_placebo(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+    base: &FilteredBase<'_>,
+) -> Result<bool, RefineError> {
+    let Some(last) = judged.candidates.last().filter(|candidate| is_from_outside(candidate)) else {
+        return Ok(false);
+    };
+    let again = |search: &HypothesisSearch<'_>| {
+        // A hypothesis is judged at the level where it was seen or below.
+        let there = search.bare(&base.taken, &search.levels[..=judged.level])?;
+        Ok(search.judge(&there, last, judged.level)?.log_evidence)
+    };
+    exceeds(search, judged.log_evidence, &again)
+}
+
+/// Whether effects explain the trials better, by a margin, than with any placebo of the records
+/// from outside.
+///
+/// # Errors
+/// Names what a trial lacks.
+pub(super) fn follow_records(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+    margin: f64,
+) -> Result<bool, RefineError> {
+    let again = |search: &HypothesisSearch<'_>| {
+        let there = search.bare(&judged.candidates, &search.levels)?;
+        Ok(search.alone(&there)?.1.log_evidence)
+    };
+    Ok(!exceeds(search, judged.log_evidence - margin, &again)?)
+}
+
+/// Whether with any of the placebos the evidence is more than so much.
+fn exceeds(
+    search: &HypothesisSearch<'_>,
+    limit: f64,
+    evidence: &dyn Fn(&HypothesisSearch<'_>) -> Result<f64, RefineError>,
+) -> Result<bool, RefineError> {
+    for placebo in placebos(search.trials) {
+        let trials: Vec<&Trial> = placebo.iter().collect();
+        if evidence(&HypothesisSearch { trials: &trials, ..search.clone() })? > limit {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The trials with records of another time where these vary, or else of another direction.
+fn placebos(trials: &[&Trial]) -> Vec<Vec<Trial>> {
+    let all = |change: &dyn Fn(&Trial) -> Trial| trials.iter().map(|trial| change(trial)).collect();
+    if varies(trials) {
+        THRESHOLDS.effect.placebo_shifts.map(|share| all(&|trial| shifted(trial, share))).to_vec()
+    } else {
+        [FRAC_PI_2, -FRAC_PI_2].map(|angle| all(&|trial| turned(trial, angle))).to_vec()
+    }
+}
+
+/// Whether what comes from outside differs from itself at other times by enough.
+fn varies(trials: &[&Trial]) -> bool {
+    let (mut differs, mut is) = (0.0, 0.0);
+    for share in THRESHOLDS.effect.placebo_shifts {
+        for trial in trials {
+            let (own, other) = (components(trial), components(&shifted(trial, share)));
+            let square = |[a, b]: [f64; 2]| a * a + b * b;
+            differs += own
+                .iter()
+                .zip(&other)
+                .map(|(a, b)| square([a[0] - b[0], a[1] - b[1]]))
+                .sum::<f64>();
+            is += own.iter().map(|own| square(*own)).sum::<f64>();
+        }
+    }
+    differs > 2.0 * THRESHOLDS.effect.least_variation.powi(2) * is
+}
+
+/// The pairs of channels that say a strength and where it comes from.
+const WINDS: [(Channel, Channel); 2] = [
+    (Channel::WindSpeed, Channel::WindFrom),
+    (Channel::ApparentWindSpeed, Channel::ApparentWindFrom),
+];
+
+/// A wind's components, over time.
+fn components(trial: &Trial) -> Vec<[f64; 2]> {
+    let of = |(speed, from): &(Channel, Channel)| {
+        let (speed, from) = (trial.channel(*speed)?, trial.channel(*from)?);
+        let one = |(speed, from): (&f64, &f64)| [speed * from.cos(), speed * from.sin()];
+        Some(speed.iter().zip(from).map(one).collect())
+    };
+    WINDS.iter().find_map(of).unwrap_or_default()
+}
+
+/// A trial with its records of where something comes from turned by an angle, rad.
+fn turned(trial: &Trial, angle_rad: f64) -> Trial {
+    let mut trial = trial.clone();
+    for (_, from) in WINDS {
+        if let Some(values) = trial.channels.get_mut(&from) {
+            values.iter_mut().for_each(|value| *value += angle_rad);
+        }
+    }
+    trial
+}
+
+/// A trial with its records of what is outside shifted by a share of it; their ends are joined.
+fn shifted(trial: &Trial, share: f64) -> Trial {
+    let mut trial = trial.clone();
+    for channel in OUTSIDE {
+        if let Some(values) = trial.channels.get_mut(&channel) {
+            let by = (share * values.len() as f64) as usize;
+            values.rotate_left(by);
+        }
+    }
+    trial
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(speed_m_s: impl Fn(usize) -> f64) -> Trial {
+        let mut trial = Trial { t_s: (0..100).map(f64::from).collect(), ..Trial::default() };
+        trial.channels.insert(Channel::WindSpeed, (0..100).map(speed_m_s).collect());
+        trial.channels.insert(Channel::WindFrom, vec![1.0; 100]);
+        trial
+    }
+
+    #[test]
+    fn a_steady_wind_is_turned_and_a_gusty_one_shifted() {
+        let steady = trial(|k| 8.0 + 0.2 * (k as f64).sin());
+        let turned = placebos(&[&steady]);
+        assert_eq!(turned.len(), 2);
+        assert_eq!(turned[0][0].channels[&Channel::WindFrom][0], 1.0 + FRAC_PI_2);
+        assert_eq!(
+            turned[0][0].channels[&Channel::WindSpeed],
+            steady.channels[&Channel::WindSpeed]
+        );
+        let gusty = trial(|k| if k < 50 { 4.0 } else { 12.0 });
+        let shifted = placebos(&[&gusty]);
+        assert_eq!(shifted.len(), THRESHOLDS.effect.placebo_shifts.len());
+        assert_eq!(shifted[1][0].channels[&Channel::WindSpeed][0], 12.0);
+    }
+}

@@ -1,0 +1,176 @@
+//! What a hypothesis leaves: stretches of a trial in which the prediction errors are larger or
+//! steadier than noise.
+
+use std::collections::BTreeMap;
+
+use sistership_model::trial::{Channel, Trial};
+
+use super::linearised_trials::LinearisedTrials;
+use super::outcome::Unexplained;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{Discrepancies, Linearised, errors, responses};
+use sistership_identification::refine::RefineError;
+
+/// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is
+/// expected; the largest first. `effects` are the parts of the parameters that the laws of the
+/// effects leave open.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
+pub(super) fn unexplained(
+    workspace: &LinearisedTrials<'_>,
+    discrepancies: &Discrepancies,
+    parameters: &[f64],
+    effects: &[f64],
+    clean: Option<&BTreeMap<String, f64>>,
+) -> Result<Vec<Unexplained>, RefineError> {
+    let of_trial = |(place, trial): (usize, &&Trial)| {
+        let parts = &workspace.linear()[place];
+        in_trial((workspace, &trial.name), parts, discrepancies, (parameters, effects), clean)
+    };
+    let each: Vec<Vec<Unexplained>> =
+        workspace.trials.iter().enumerate().map(of_trial).collect::<Result<_, _>>()?;
+    let mut found: Vec<Unexplained> = each.into_iter().flatten().collect();
+    found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
+    Ok(found)
+}
+
+/// The same of the parts of one trial.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
+pub(super) fn in_trial(
+    (workspace, trial): (&LinearisedTrials<'_>, &str),
+    parts: &[Linearised],
+    discrepancies: &Discrepancies,
+    (parameters, effects): (&[f64], &[f64]),
+    clean: Option<&BTreeMap<String, f64>>,
+) -> Result<Vec<Unexplained>, RefineError> {
+    let limit = |channel: Channel| {
+        let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
+        THRESHOLDS.remainder.limit.max(THRESHOLDS.remainder.margin * seen)
+    };
+    let sums = sums(workspace, parts, discrepancies, (parameters, Some(effects)))?;
+    let of =
+        |(channel, sums): (Channel, BlockSums<'_>)| sums.stretches(trial, channel, limit(channel));
+    Ok(sums.into_iter().flat_map(of).collect())
+}
+
+/// The largest that any stretch of a trial leaves, by channel.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
+pub(super) fn largest(
+    workspace: &LinearisedTrials<'_>,
+    parts: &[Linearised],
+    discrepancies: &Discrepancies,
+    parameters: &[f64],
+) -> Result<Vec<(Channel, f64)>, RefineError> {
+    let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
+    let sums = sums(workspace, parts, discrepancies, (parameters, None))?;
+    Ok(sums.into_iter().map(of).collect())
+}
+
+/// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
+struct BlockSums<'a> {
+    part: &'a Linearised,
+    /// Samples in a block.
+    size: usize,
+    sums: Vec<f64>,
+    /// What the effects found may leave of what they move these sums by: their laws are not exact.
+    /// Empty where that is not asked.
+    moved: Vec<f64>,
+}
+
+fn sums<'a>(
+    workspace: &LinearisedTrials<'_>,
+    parts: &'a [Linearised],
+    discrepancies: &Discrepancies,
+    (parameters, effects): (&[f64], Option<&[f64]>),
+) -> Result<Vec<(Channel, BlockSums<'a>)>, RefineError> {
+    let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
+    let mut all = Vec::new();
+    for part in parts {
+        let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
+        let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
+        let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies)?;
+        let moved = match effects {
+            Some(effects) => responses(&part.along(effects), &workspace.noise, discrepancies)?,
+            None => Vec::new(),
+        };
+        for (place, &(channel, _)) in part
+            .channels
+            .iter()
+            .enumerate()
+            .filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
+        {
+            let of = |all: &[f64]| {
+                block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size)
+            };
+            all.push((channel, BlockSums { part, size, sums: of(&left), moved: of(&moved) }));
+        }
+    }
+    Ok(all)
+}
+
+fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {
+    let values: Vec<f64> = values.collect();
+    values
+        .chunks(size)
+        .map(|block| block.iter().sum::<f64>() / (block.len() as f64).sqrt())
+        .collect()
+}
+
+fn rms(sums: &[f64]) -> f64 {
+    (sums.iter().map(|s| s * s).sum::<f64>() / sums.len() as f64).sqrt()
+}
+
+impl BlockSums<'_> {
+    fn starts(&self) -> std::ops::Range<usize> {
+        0..self.sums.len().saturating_sub(THRESHOLDS.remainder.blocks - 1)
+    }
+
+    fn largest(&self) -> f64 {
+        self.starts()
+            .map(|from| rms(&self.sums[from..from + THRESHOLDS.remainder.blocks]))
+            .fold(0.0, f64::max)
+    }
+
+    /// Runs of blocks above the limit, each as one stretch.
+    fn stretches(&self, trial: &str, channel: Channel, limit: f64) -> Vec<Unexplained> {
+        let mut found: Vec<(usize, usize)> = Vec::new();
+        let is_large = |&from: &usize| {
+            let blocks = from..from + THRESHOLDS.remainder.blocks;
+            rms(&self.sums[blocks.clone()]) > limit.hypot(rms(&self.moved[blocks]))
+        };
+        for from in self.starts().filter(is_large) {
+            match found.last_mut().filter(|(_, end)| from <= *end) {
+                Some((_, end)) => *end = from + THRESHOLDS.remainder.blocks,
+                None => found.push((from, from + THRESHOLDS.remainder.blocks)),
+            }
+        }
+        let time = |block: usize| {
+            self.part.t_s[(block * self.size * self.part.every).min(self.part.t_s.len() - 1)]
+        };
+        let stretch = |(from, to): (usize, usize)| Unexplained {
+            channel: channel.name().to_owned(),
+            rms_over_noise: rms(&self.sums[from..to]),
+            trial: trial.to_owned(),
+            from_s: time(from),
+            to_s: time(to),
+        };
+        found.into_iter().map(|run| stretch(self.trimmed(run, limit))).collect()
+    }
+
+    /// A run without the blocks at its ends that came in only beside large ones.
+    fn trimmed(&self, (mut from, mut to): (usize, usize), limit: f64) -> (usize, usize) {
+        let is_small = |block: usize| self.sums[block].abs() < limit;
+        while to - from > THRESHOLDS.remainder.blocks && is_small(from) {
+            from += 1;
+        }
+        while to - from > THRESHOLDS.remainder.blocks && is_small(to - 1) {
+            to -= 1;
+        }
+        (from, to)
+    }
+}

@@ -1,0 +1,156 @@
+//! What a diagnosis says: of the effects found, of everything that was tried, and of how it came
+//! about.
+
+use std::collections::BTreeMap;
+
+use sistership_model::Model;
+use sistership_model::quantity::Quantity;
+
+use super::Request;
+use super::choose::EffectChoice;
+use super::confounded::Responses;
+use super::covariance::covariance;
+use super::hypothesis::JudgedHypothesis;
+use super::next_trial::next_trial;
+use super::outcome::{Found, Hypothesis, NextTrial, Value};
+use super::search::HypothesisSearch;
+use super::values::{acts_on, own_covariance, values};
+use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
+
+/// The effects found with those they are confounded with, the strongest first, and the trial that
+/// would separate them.
+pub(super) fn apart(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+    of_all: f64,
+) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
+    let mut all: Vec<Found> = (0..best.candidates.len())
+        .map(|place| found(request, search, best, place, of_all))
+        .collect::<Result<_, _>>()?;
+    let mut next = None;
+    if !all.is_empty() {
+        let level = best.level.min(search.levels.len() - 1);
+        let base = search.base(&best.candidates, &search.levels[level..=level])?;
+        let (columns, others) = (base.workspace.columns(), search.others(&best.candidates));
+        let responses = Responses::new(search, columns, best, (others, &base.total(0)))?;
+        for (place, found) in all.iter_mut().enumerate() {
+            found.confounded_with = responses.beside(place);
+        }
+        next = next_trial(search, &base, best, &all)?;
+    }
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    Ok((all, next))
+}
+
+/// `of_all` is the evidence of all effects together where the model alone may have any discrepancy:
+/// none has more.
+fn found(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+    place: usize,
+    of_all: f64,
+) -> Result<Found, RefineError> {
+    let candidate = &best.candidates[place];
+    let discount = search.discount(candidate);
+    let covariance = covariance(best, place, (&search.nuisance, &search.fixed), discount);
+    Ok(Found {
+        name: candidate.effect.clone(),
+        form: candidate.form.file.name.clone(),
+        meaning: candidate.form.file.meaning.clone(),
+        acts_on: acts_on(candidate),
+        parameters: values(candidate, &covariance, request.model),
+        evidence: search.evidence(best, place)?.min(of_all),
+        in_model: BTreeMap::new(),
+        confounded_with: Vec::new(),
+    })
+}
+
+/// The parameters of an effect as a model carries them, where they are others than those found.
+pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> {
+    let carried =
+        model.effects.iter().find(|own| own.name == found.name && own.form.name == found.form);
+    let all = carried.into_iter().flat_map(|own| &own.parameters);
+    let moved = all.clone().any(|(name, own)| {
+        found.parameters.get(name).is_some_and(|value| value.value != own.value)
+    });
+    let one = |(name, own): (&String, &Quantity)| {
+        (name.clone(), Value { value: own.value, se: own.standard_error.unwrap_or(0.0) })
+    };
+    if moved { all.map(one).collect() } else { BTreeMap::new() }
+}
+
+/// Everything that was judged where it stands, the most probable first.
+///
+/// # Errors
+/// Says that the information is not positive.
+pub(super) fn hypotheses(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    choice: &EffectChoice,
+) -> Result<Vec<Hypothesis>, RefineError> {
+    let alone = choice.alone.held_out(&search.fixed)?;
+    let one = |(place, judged): (usize, &JudgedHypothesis)| {
+        Ok(Hypothesis {
+            effects: judged.candidates.iter().map(EffectCandidate::key).collect(),
+            evidence: judged.log_evidence - choice.alone.log_evidence,
+            held_out: Some(judged.held_out(&search.fixed)? - alone),
+            parameters: parameters(request, judged),
+            taken: choice.taken == Some(place),
+        })
+    };
+    let mut all: Vec<Hypothesis> =
+        choice.tried.iter().enumerate().map(one).collect::<Result<_, RefineError>>()?;
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    Ok(all)
+}
+
+fn parameters(request: &Request<'_>, judged: &JudgedHypothesis) -> BTreeMap<String, Value> {
+    let of = |place: usize| {
+        let covariance = own_covariance(&judged.candidates, place, &judged.covariance);
+        values(&judged.candidates[place], &covariance, request.model)
+    };
+    (0..judged.candidates.len()).flat_map(of).collect()
+}
+
+/// How trials were left out; `refit` is how the coefficients were fitted, where they were.
+pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
+    let fitted = match request.trials.len() {
+        1 => {
+            "there is one trial only: these are errors on the trial that the effects were fitted on"
+                .to_owned()
+        }
+        count => format!("each of {count} trials simulated with effects fitted on the others"),
+    };
+    match refit {
+        Some(refit) => format!(
+            "{fitted}, and so were the coefficients, in the way that does best on the others \
+             ({refit})"
+        ),
+        None => fitted,
+    }
+}
+
+/// What is said of effects that were refused, and of the model that is given.
+pub(super) fn remarks(refused: &[String], is_better: bool, found: &[Found]) -> Vec<String> {
+    let one = |name: &String| {
+        format!(
+            "`{name}` would explain a part of what remains, but in one size here and in another \
+             there: it resembles what is missing and is not named"
+        )
+    };
+    let worse = "with what was found the model does not simulate trials better that the fit has \
+        not seen: no model is given";
+    let together = |found: &Found| {
+        format!(
+            "in the model that is given, `{}` was fitted once more, together with the \
+             coefficients, so that simulated trials follow the measured: its parameters there are \
+             not those that the diagnosis estimates",
+            found.name
+        )
+    };
+    let together = found.iter().filter(|found| !found.in_model.is_empty()).map(together);
+    refused.iter().map(one).chain((!is_better).then(|| worse.to_owned())).chain(together).collect()
+}

@@ -1,0 +1,111 @@
+//! Every effect alone beside those that are taken, by one linearisation.
+
+use rayon::prelude::*;
+
+use super::evidence::{MarginalInformation, NormalPrior};
+use super::filtered_base::FilteredBase;
+use super::hypothesis::priors;
+use super::search::HypothesisSearch;
+use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
+
+/// An effect that may be missing, by one linearisation.
+#[derive(Clone)]
+pub(super) struct ScreenedEffect {
+    pub evidence: f64,
+    /// Discounted by the effect's false-alarm level.
+    pub discounted: f64,
+    /// The level of the discrepancy at which it is most probable, among those of the base.
+    pub level: usize,
+    pub candidate: EffectCandidate,
+}
+
+/// The evidence of each other effect together with those taken, from one linearisation at the
+/// absence of all others, most probable first. One on which the trials' information is not positive
+/// is not among them.
+///
+/// # Errors
+/// Says that the information on the coefficients is not positive.
+pub(super) fn screen(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+) -> Result<Vec<ScreenedEffect>, RefineError> {
+    let others = search.others(&base.taken);
+    let showing = |candidate: &&EffectCandidate| base.workspace.columns().showing(candidate);
+    let columns =
+        base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
+    let places: Vec<usize> = (0..search.nuisance.len()).chain(columns).collect();
+    let at_level = |level: usize| {
+        Ok((level, MarginalInformation::new(&base.total(level).select(&places), &search.fixed)?))
+    };
+    let reduced: Vec<(usize, MarginalInformation)> =
+        (0..base.levels.len()).into_par_iter().map(at_level).collect::<Result<_, RefineError>>()?;
+    Ok(screened(search, base, &others, &reduced))
+}
+
+fn screened(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    others: &[&EffectCandidate],
+    reduced: &[(usize, MarginalInformation)],
+) -> Vec<ScreenedEffect> {
+    let kept: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
+    let mut first = kept.len();
+    let mut one = |candidate: &&EffectCandidate| {
+        let places: Vec<usize> =
+            kept.iter().copied().chain(first..first + candidate.at.len()).collect();
+        first += candidate.at.len();
+        let fixing: Vec<NormalPrior> =
+            base.taken.iter().chain([*candidate]).flat_map(priors).collect();
+        let reduced = weighed(base, reduced, candidate);
+        let gain = |(level, reduced): &&(usize, MarginalInformation)| {
+            let gain = reduced.estimate(&places, &fixing)?.gain;
+            Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
+        };
+        let (evidence, level) =
+            reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let own = (&places[kept.len()..], *candidate);
+        let discounted =
+            discounted(&reduced, (&kept, &base.taken), own, search.discount(candidate))?;
+        let prior = search.log_prior(candidate);
+        Some(ScreenedEffect {
+            evidence: evidence + prior,
+            discounted: discounted + prior,
+            level,
+            candidate: (*candidate).clone(),
+        })
+    };
+    let mut screened: Vec<ScreenedEffect> = others.iter().filter_map(&mut one).collect();
+    screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    screened
+}
+
+/// The levels that are weighed for a candidate, with what the trials say there.
+fn weighed<'r>(
+    base: &FilteredBase<'_>,
+    reduced: &'r [(usize, MarginalInformation)],
+    candidate: &EffectCandidate,
+) -> Vec<&'r (usize, MarginalInformation)> {
+    let is_weighed = |(level, _): &&(usize, MarginalInformation)| {
+        base.levels[*level].level.is_weighed(Some(candidate))
+    };
+    reduced.iter().filter(is_weighed).collect()
+}
+
+/// The discounted evidence of an effect beside those of a base, at the level at which it says most.
+fn discounted(
+    reduced: &[&(usize, MarginalInformation)],
+    (kept, taken): (&[usize], &[EffectCandidate]),
+    (own, candidate): (&[usize], &EffectCandidate),
+    discount: f64,
+) -> Option<f64> {
+    let others: Vec<NormalPrior> = taken.iter().flat_map(priors).collect();
+    let fixing = priors(candidate);
+    let columns: Vec<usize> = (0..own.len()).collect();
+    let gain = |(_, reduced): &&(usize, MarginalInformation)| {
+        let given = reduced.given(kept, &others, own)?.discounted(discount);
+        Some(given.estimate(&columns, &fixing)?.gain)
+    };
+    // The least: what is said at one level only is not said.
+    reduced.iter().filter_map(gain).min_by(f64::total_cmp)
+}

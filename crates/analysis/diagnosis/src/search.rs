@@ -1,0 +1,332 @@
+//! Which hypothesis is most probable: every effect alone, then those together that improve on it.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+use sistership_model::law::Law;
+use sistership_model::{Model, Trial};
+
+use super::Request;
+use super::calibrated_model::CalibratedModel;
+use super::coefficient_prior::CoefficientPrior;
+use super::discount::{discount, is_from_outside};
+use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive};
+use super::filtered_base::FilteredBase;
+use super::hypothesis::{JudgedHypothesis, halfway, placed, priors};
+use super::linearised_trials::LinearisedTrials;
+use super::nuisance::Terms;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{Columns, Discrepancies, EffectCandidate, Gram, Nuisance};
+use sistership_identification::refine::RefineError;
+
+/// What stays the same while hypotheses change.
+#[derive(Clone)]
+pub(super) struct HypothesisSearch<'a> {
+    pub model: &'a Model,
+    /// Its law, without effects.
+    pub law: &'a Law,
+    /// The model as its own trials have calibrated it.
+    pub calibrated_model: CalibratedModel,
+    /// By how much, by column; and by how much before any hypothesis shifted it further.
+    pub calibrated: Vec<f64>,
+    pub calibrated_at_first: Vec<f64>,
+    pub terms: Terms,
+    pub trials: &'a [&'a Trial],
+    pub nuisance: Vec<Nuisance>,
+    pub fixed: CoefficientPrior,
+    pub expected: Discrepancies,
+    /// Levels of the discrepancy that are weighed.
+    pub levels: Vec<DiscrepancyFactor>,
+    pub least_step_s: Option<f64>,
+    /// Forms of the library's effects that can be tried.
+    pub listed: Vec<EffectCandidate>,
+    /// Terms that the model lacks.
+    pub freed: Vec<EffectCandidate>,
+    /// Forms that are tried as a change within a trial only.
+    pub changing: Vec<EffectCandidate>,
+    /// Logarithm of the prior probability of each form among all.
+    pub log_priors: BTreeMap<String, f64>,
+    /// Whether anybody states odds. A library that does not is of before limits were told: its
+    /// diagnoses are as they were.
+    pub states_odds: bool,
+}
+
+impl<'a> HypothesisSearch<'a> {
+    /// The discrepancies at a level.
+    pub fn discrepancies(&self, level: DiscrepancyFactor) -> Discrepancies {
+        let scaled = |d: &sistership_model::uncertainty::Discrepancy| {
+            let (deviation, white) = (d.deviation * level.factor, d.white * level.factor);
+            sistership_model::uncertainty::Discrepancy { deviation, white, ..*d }
+        };
+        self.expected.iter().map(scaled).collect()
+    }
+
+    /// Trials and columns made ready.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn workspace(
+        &self,
+        candidates: Vec<EffectCandidate>,
+    ) -> Result<LinearisedTrials<'a>, RefineError> {
+        let columns = Columns { nuisance: self.nuisance.clone(), candidates };
+        LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
+    }
+
+    /// Effects that are taken with all others beside them, at some of the levels.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn base(
+        &self,
+        taken: &[EffectCandidate],
+        levels: &[DiscrepancyFactor],
+    ) -> Result<FilteredBase<'a>, RefineError> {
+        let has_column = |candidate: &&EffectCandidate| {
+            !self.nuisance.iter().any(|n| n.name == candidate.form.file.name)
+        };
+        let others = self.others(taken).into_iter().filter(has_column).cloned();
+        let workspace = self.workspace(taken.iter().cloned().chain(others).collect())?;
+        let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
+        FilteredBase::new(taken, workspace, levels)
+    }
+
+    /// Effects that are taken, with nothing beside them.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn bare(
+        &self,
+        taken: &[EffectCandidate],
+        levels: &[DiscrepancyFactor],
+    ) -> Result<FilteredBase<'a>, RefineError> {
+        let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
+        FilteredBase::new(taken, self.workspace(taken.to_vec())?, levels)
+    }
+
+    /// How far coefficients have given way to the trials that are diagnosed.
+    pub fn given_way(&self) -> Vec<f64> {
+        self.calibrated
+            .iter()
+            .zip(&self.calibrated_at_first)
+            .map(|(now, before)| now - before)
+            .collect()
+    }
+
+    /// No form of an effect is tried any more.
+    pub fn forget(&mut self, effect: &str) {
+        self.listed.retain(|candidate| candidate.effect != effect);
+        self.freed.retain(|candidate| candidate.effect != effect);
+    }
+
+    /// Every effect of which none is taken.
+    pub fn others(&self, taken: &[EffectCandidate]) -> Vec<&EffectCandidate> {
+        let is_other = |candidate: &&EffectCandidate| {
+            !taken.iter().any(|kept| kept.effect == candidate.effect)
+        };
+        self.listed.iter().chain(&self.freed).filter(is_other).collect()
+    }
+
+    /// The evidence for one of the effects judged together, given the others: discounted by its
+    /// false-alarm level on clean trials, after what the number of hypotheses costs.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Result<f64, RefineError> {
+        let candidate = &judged.candidates[place];
+        let sizes: Vec<usize> =
+            judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
+        let first: usize = sizes[..place].iter().sum();
+        let own: Vec<usize> = (first..first + sizes[place]).collect();
+        let others: Vec<usize> =
+            (0..sizes.iter().sum()).filter(|column| !own.contains(column)).collect();
+        let fixing: Vec<NormalPrior> = judged.linearised_at.iter().flat_map(priors).collect();
+        let of =
+            |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
+        let width = judged.grams.first().ok_or_else(not_positive)?.products.nrows();
+        let reduced = MarginalInformation::new(&Gram::sum(&judged.grams, width), &self.fixed)?
+            .given(&others, &of(&others), &own)
+            .ok_or_else(not_positive)?;
+        let reduced = reduced.discounted(self.discount(candidate));
+        let estimate = reduced
+            .estimate(&(0..own.len()).collect::<Vec<_>>(), &of(&own))
+            .ok_or_else(not_positive)?;
+        let linearised_at =
+            judged.linearised_at[place].at.iter().zip(candidate.form.parameters.values());
+        let absent = reduced.at(&linearised_at
+            .map(|(at, parameter)| parameter.absent - at)
+            .collect::<Vec<_>>()
+            .into());
+        Ok(estimate.gain - absent + self.log_prior(candidate))
+    }
+
+    /// The factor by which the information on an effect is discounted.
+    pub fn discount(&self, candidate: &EffectCandidate) -> f64 {
+        discount(self.model.uncertainty.as_ref(), candidate, &self.listed, self.trials.len())
+    }
+
+    /// Logarithm of the prior probability of an effect among all that can be tried.
+    pub fn log_prior(&self, candidate: &EffectCandidate) -> f64 {
+        self.log_priors.get(&candidate.key()).copied().unwrap_or_default()
+    }
+
+    /// The prior odds of each effect against the model alone, all its forms together.
+    pub fn prior_odds(&self) -> BTreeMap<String, f64> {
+        let mut odds: BTreeMap<String, f64> = BTreeMap::new();
+        for candidate in self.listed.iter().chain(&self.freed) {
+            *odds.entry(candidate.effect.clone()).or_default() += self.log_prior(candidate).exp();
+        }
+        odds
+    }
+
+    /// The effects of a base alone, at the level at which they are most probable.
+    ///
+    /// # Errors
+    /// Names what a trial lacks, or says that the information is not positive.
+    pub fn alone(&self, base: &FilteredBase<'_>) -> Result<(usize, JudgedHypothesis), RefineError> {
+        let outside = base.taken.iter().find(|candidate| is_from_outside(candidate));
+        self.alone_at(base, &|level| level.is_weighed(outside))
+    }
+
+    /// The same at some of the levels.
+    ///
+    /// # Errors
+    /// Names what a trial lacks, or says that the information is not positive.
+    pub fn alone_at(
+        &self,
+        base: &FilteredBase<'_>,
+        is_weighed: &dyn Fn(DiscrepancyFactor) -> bool,
+    ) -> Result<(usize, JudgedHypothesis), RefineError> {
+        // The same at each level, where what stands there is linearised once.
+        let stand = match base.taken.is_empty() {
+            true => None,
+            false => Some(base.linearised(&self.calibrated_model, &base.taken)?),
+        };
+        let at = |level: usize| {
+            let grams = stand.as_ref().map_or_else(|| Ok(base.alone(level)), |s| s.grams(level))?;
+            Ok((level, self.judged((base, level), &base.taken, grams)?))
+        };
+        let levels = 0..base.levels.len();
+        most_probable(levels.filter(|level| is_weighed(base.levels[*level].level)).map(at))
+    }
+
+    /// A hypothesis beside the effects of a base, linearised anew where it stands until it stays
+    /// there. What one linearisation promises of a step is not believed before it has been seen
+    /// from where the step leads: an instrument's error multiplies the motion, so that promises are
+    /// many times too high, or of the wrong sign.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn judge(
+        &self,
+        base: &FilteredBase<'_>,
+        candidate: &EffectCandidate,
+        level: usize,
+    ) -> Result<JudgedHypothesis, RefineError> {
+        let absent = [base.taken.as_slice(), std::slice::from_ref(candidate)].concat();
+        let promised = self.at(base, &absent, level)?;
+        let mut best = self.at(base, &promised.1.candidates, promised.0)?;
+        if best.1.log_evidence < promised.1.log_evidence - THRESHOLDS.search.same {
+            let less = self.at(base, &halfway(&absent, &promised.1.candidates), promised.0)?;
+            best = if less.1.log_evidence > best.1.log_evidence { less } else { best };
+        }
+        for _ in 1..THRESHOLDS.search.rounds {
+            let next = self.at(base, &best.1.candidates, best.0)?;
+            let gain = next.1.log_evidence - best.1.log_evidence;
+            best = if gain > 0.0 { next } else { break };
+            if gain < THRESHOLDS.search.same {
+                break;
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// This search with the model as a hypothesis teaches it.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn calibrated_by(
+        &self,
+        request: &Request<'_>,
+        judged: &JudgedHypothesis,
+    ) -> Result<Self, RefineError> {
+        let size = self.nuisance.len();
+        let total =
+            Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+        let cross = total.products.view((1, 1 + size), (size, total.products.ncols() - 1 - size));
+        let right = total.products.view((1, 0), (size, 1)).column(0)
+            - cross * DVector::from_vec(judged.moved());
+        let known = CoefficientPrior {
+            information: total.products.view((1, 1), (size, size)) + &self.fixed.information,
+            weighted_mean: right + &self.fixed.weighted_mean,
+        };
+        let shift = known.expected_shift(&self.nuisance).ok_or_else(not_positive)?;
+        let calibrated: Vec<f64> =
+            self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
+        Ok(Self {
+            calibrated_model: CalibratedModel::new(
+                request.model,
+                request.law,
+                &self.terms,
+                &self.nuisance,
+                &calibrated,
+            )?,
+            fixed: self.fixed.clone().from(&shift),
+            calibrated,
+            ..self.clone()
+        })
+    }
+
+    /// Where candidates stand, at a level or the one below, whichever is more probable.
+    fn at(
+        &self,
+        base: &FilteredBase<'_>,
+        candidates: &[EffectCandidate],
+        level: usize,
+    ) -> Result<(usize, JudgedHypothesis), RefineError> {
+        let stand = base.linearised(&self.calibrated_model, candidates)?;
+        let at = |level: usize| {
+            Ok((level, self.judged((base, level), candidates, stand.grams(level)?)?))
+        };
+        let is_weighed = |level: &usize| base.levels[*level].level.is_weighed(candidates.last());
+        most_probable((level.saturating_sub(1)..=level).filter(is_weighed).map(at))
+    }
+
+    /// Candidates at a level of a base by the products of each trial.
+    fn judged(
+        &self,
+        (base, level): (&FilteredBase<'_>, usize),
+        candidates: &[EffectCandidate],
+        grams: Vec<Gram>,
+    ) -> Result<JudgedHypothesis, RefineError> {
+        let priors: Vec<NormalPrior> = candidates.iter().flat_map(priors).collect();
+        let places: Vec<usize> = (0..priors.len()).collect();
+        let width = grams.first().ok_or_else(not_positive)?.products.nrows();
+        let reduced = MarginalInformation::new(&Gram::sum(&grams, width), &self.fixed)?;
+        let estimate = reduced.estimate(&places, &priors).ok_or_else(not_positive)?;
+        let prior: f64 = candidates.iter().map(|candidate| self.log_prior(candidate)).sum();
+        Ok(JudgedHypothesis {
+            log_evidence: base.levels[level].level.log_prior - 0.5 * reduced.deviance
+                + estimate.gain
+                + prior,
+            candidates: placed(candidates.to_vec(), &estimate),
+            linearised_at: candidates.to_vec(),
+            shift: &reduced.shift - &reduced.answers * &estimate.mean,
+            covariance: estimate.covariance,
+            level,
+            grams,
+        })
+    }
+}
+
+/// The most probable of a hypothesis at some levels.
+///
+/// # Errors
+/// The first of theirs, or that no level is weighed.
+fn most_probable(
+    all: impl Iterator<Item = Result<(usize, JudgedHypothesis), RefineError>>,
+) -> Result<(usize, JudgedHypothesis), RefineError> {
+    let all: Vec<(usize, JudgedHypothesis)> = all.collect::<Result<_, _>>()?;
+    let best = all.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+    best.ok_or_else(not_positive)
+}

@@ -1,0 +1,162 @@
+//! From a request to a search: which forms are tried, what the coefficients are left, which
+//! discrepancy is expected.
+
+use std::sync::Arc;
+
+use sistership_model::effect::Form;
+use sistership_model::law::Law;
+use sistership_model::{Effect, Model, Trial};
+
+use super::Request;
+use super::calibrated_model::CalibratedModel;
+use super::discount::is_from_outside;
+use super::evidence::DiscrepancyFactor;
+use super::linearised_trials::LinearisedTrials;
+use super::log_priors::{log_priors, states_odds};
+use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::{Columns, Discrepancies, EffectCandidate};
+use sistership_identification::refine::RefineError;
+
+/// The forms that can be tried on trials: those whose channels every trial has, of effects that the
+/// model does not carry, but for what its instruments are known to do.
+pub(super) fn listed(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Vec<EffectCandidate> {
+    let carried =
+        |effect: &&Arc<Effect>| !model.effects.iter().any(|applied| applied.name == effect.name);
+    let systematic_errors = model
+        .uncertainty
+        .as_ref()
+        .map(|known| known.systematic_errors.as_slice())
+        .unwrap_or_default();
+    let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
+        let is_systematic = |form: &Form| {
+            systematic_errors
+                .iter()
+                .any(|error| error.name == effect.name && error.form.name == form.file.name)
+        };
+        let forms =
+            effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
+        let forms = forms.filter(|form| !form.file.only_as_change);
+        forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
+    };
+    effects.iter().filter(carried).flat_map(of).collect()
+}
+
+/// The forms that are tried as a change within a trial only.
+fn changing(request: &Request<'_>) -> Vec<EffectCandidate> {
+    let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
+        let can =
+            |form: &&Arc<Form>| form.file.only_as_change && fits(form, request.law, request.trials);
+        let forms = effect.forms.iter().filter(can);
+        forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
+    };
+    request.effects.iter().flat_map(of).collect()
+}
+
+/// The terms that the library's grammars spell.
+fn freed(request: &Request<'_>) -> Vec<EffectCandidate> {
+    let terms = lacked(request.model, request.law, request.effects, request.trials);
+    terms.iter().map(|(effect, form)| EffectCandidate::absent(effect, form)).collect()
+}
+
+fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
+    let everywhere =
+        |channel: &_| trials.iter().all(|trial: &&Trial| trial.channel(*channel).is_some());
+    let somewhere =
+        |channel: &_| trials.iter().any(|trial: &&Trial| trial.channel(*channel).is_some());
+    let rolls = form.file.only_without_roll && law.has_roll();
+    form.file.needs.iter().all(everywhere) && !form.file.unless.iter().any(somewhere) && !rolls
+}
+
+/// # Errors
+/// Names what the model or a trial lacks.
+pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, RefineError> {
+    let listed = listed(request.model, request.law, request.effects, request.trials);
+    let (freed, changing) = (freed(request), changing(request));
+    let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
+    let nuisance = columns(request.model, request.law);
+    let (fixed, levels) = match &request.model.uncertainty {
+        Some(uncertainty) => {
+            (learned_prior(uncertainty)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec())
+        }
+        None => (
+            prior(request.model, &nuisance, &terms, request.settings.slack),
+            THRESHOLDS.discrepancy.unknown_factors.map(unknown).to_vec(),
+        ),
+    };
+    let shift = fixed
+        .expected_shift(&nuisance)
+        .ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
+    let mut search = HypothesisSearch {
+        model: request.model,
+        law: request.law,
+        calibrated_model: CalibratedModel::new(
+            request.model,
+            request.law,
+            &terms,
+            &nuisance,
+            &shift,
+        )?,
+        trials: request.trials,
+        nuisance,
+        terms,
+        fixed: fixed.from(&shift),
+        calibrated_at_first: shift.clone(),
+        calibrated: shift,
+        expected: Vec::new(),
+        levels,
+        least_step_s: request.settings.least_step_s,
+        log_priors: log_priors(request, &listed, &freed, &changing),
+        states_odds: states_odds(request),
+        listed,
+        freed,
+        changing,
+    };
+    search.expected = expected(request, &search)?;
+    Ok(search)
+}
+
+/// The search with a level of the discrepancy below what calibration saw, where something from
+/// outside is recorded: a part of what calibration left may have come of that.
+pub(super) fn with_level_below(mut search: HypothesisSearch<'_>) -> HypothesisSearch<'_> {
+    if search.model.uncertainty.is_some() && search.listed.iter().any(is_from_outside) {
+        search.levels.insert(0, known(THRESHOLDS.discrepancy.factor_below));
+    }
+    search
+}
+
+fn known(factor: f64) -> DiscrepancyFactor {
+    DiscrepancyFactor {
+        factor,
+        log_prior: -0.5 * (factor.ln() / THRESHOLDS.discrepancy.known_spread).powi(2),
+    }
+}
+
+fn unknown(factor: f64) -> DiscrepancyFactor {
+    DiscrepancyFactor { factor, log_prior: 0.0 }
+}
+
+/// The discrepancy that the model brings with it, or the least that is weighed.
+fn expected(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+) -> Result<Discrepancies, RefineError> {
+    let columns = Columns::default();
+    let workspace =
+        LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
+    let mut expected = workspace.scales().discrepancies(THRESHOLDS.discrepancy.least_level);
+    if let Some(uncertainty) = &request.model.uncertainty {
+        for (axis, discrepancy) in workspace.axes().iter().zip(&mut expected) {
+            if let Some(known) = uncertainty.discrepancy.get(axis) {
+                *discrepancy = *known;
+            }
+        }
+    }
+    Ok(expected)
+}

@@ -1,0 +1,105 @@
+//! Parameters with their standard errors, and the effect as a model carries it.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::effect::{ActsOn, AppliedEffect};
+use sistership_model::quantity::Quantity;
+use sistership_model::{Model, particulars};
+
+use super::outcome::Value;
+use super::thresholds::THRESHOLDS;
+use sistership_filtering::EffectCandidate;
+
+/// The parameters of a candidate and what follows from them, by the delta method; `covariance` is
+/// of its parameters.
+pub(super) fn values(
+    candidate: &EffectCandidate,
+    covariance: &DMatrix<f64>,
+    model: &Model,
+) -> BTreeMap<String, Value> {
+    let names: Vec<&String> = candidate.form.parameters.keys().collect();
+    let error = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    let own = names
+        .iter()
+        .enumerate()
+        .map(|(i, name)| ((*name).clone(), Value { value: candidate.at[i], se: error(i) }));
+    let mut values: BTreeMap<String, Value> = own.collect();
+    for name in candidate.form.reports.keys() {
+        let at = |point: &[f64]| {
+            let parameter =
+                |known: &str| names.iter().position(|name| *name == known).map(|i| point[i]);
+            candidate.form.report(name, &|known| {
+                parameter(known).or_else(|| particulars::value(&model.particulars, known))
+            })
+        };
+        let Some(value) = at(&candidate.at) else { continue };
+        let slope = |i: usize| {
+            let step = THRESHOLDS.effect.report_step * error(i).max(1e-12);
+            let (mut above, mut below) = (candidate.at.clone(), candidate.at.clone());
+            (above[i], below[i]) = (above[i] + step, below[i] - step);
+            Some((at(&above)? - at(&below)?) / (2.0 * step))
+        };
+        let gradient =
+            DVector::from_iterator(names.len(), (0..names.len()).map(|i| slope(i).unwrap_or(0.0)));
+        let se = (gradient.transpose() * covariance * &gradient)[(0, 0)].max(0.0).sqrt();
+        values.insert(name.clone(), Value { value, se });
+    }
+    values
+}
+
+/// The part of a joint covariance that belongs to a candidate.
+pub(super) fn own_covariance(
+    candidates: &[EffectCandidate],
+    place: usize,
+    covariance: &DMatrix<f64>,
+) -> DMatrix<f64> {
+    let start: usize = candidates[..place].iter().map(|candidate| candidate.at.len()).sum();
+    let size = candidates[place].at.len();
+    covariance.view((start, start), (size, size)).into_owned()
+}
+
+/// A model with effects. Its coefficients stay: what the new trials move them by is fitted together
+/// with terms that the model does not have, and would be wrong without these.
+pub(super) fn model_with(
+    model: &Model,
+    candidates: &[EffectCandidate],
+    errors: Option<&DMatrix<f64>>,
+) -> Model {
+    let mut model = model.clone();
+    for (place, candidate) in candidates.iter().enumerate() {
+        let covariance = errors.map(|errors| own_covariance(candidates, place, errors));
+        model.effects.push(applied(candidate, covariance.as_ref()));
+    }
+    model
+}
+
+fn applied(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> AppliedEffect {
+    let quantity = |(i, (name, value)): (usize, (&String, &f64))| {
+        let standard_error = covariance.map(|covariance| covariance[(i, i)].max(0.0).sqrt());
+        (name.clone(), Quantity { standard_error, ..Quantity::new(*value, "diagnosed") })
+    };
+    AppliedEffect {
+        name: candidate.effect.clone(),
+        acts_on: acts_on(candidate),
+        parameters: candidate
+            .form
+            .parameters
+            .keys()
+            .zip(&candidate.at)
+            .enumerate()
+            .map(quantity)
+            .collect(),
+        form: candidate.form.file.clone(),
+    }
+}
+
+/// Where a form acts, by what it does.
+pub(super) fn acts_on(candidate: &EffectCandidate) -> ActsOn {
+    let form = &candidate.form;
+    match (form.forces.is_empty(), form.measures.is_empty()) {
+        (false, _) => ActsOn::Force,
+        (true, false) => ActsOn::Measurement,
+        _ => ActsOn::Inflow,
+    }
+}

@@ -1,0 +1,121 @@
+//! How improbable parts of trials are, several of them in lockstep.
+//!
+//! The filter of [`super::filter`] with one column, a part in each lane: the numbers are those of
+//! one part after the other to the last bit.
+
+use rayon::prelude::*;
+use sistership_identification::refine::RefineError;
+use sistership_simulation::wide::{Wide, widest};
+
+use super::discrepancies::Discrepancies;
+use super::filter::errors;
+use super::filter_value::{LANES, ValueLanes};
+use super::kalman_filter::KalmanFilter;
+use super::linearised::Linearised;
+use super::noise::Noise;
+
+/// Minus twice the logarithm of the likelihood of each part, less a constant; parts have all
+/// columns in one ([`Linearised::along`]).
+///
+/// # Errors
+/// Names a channel of which no noise is known.
+pub fn deviances(
+    parts: &[&Linearised],
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Result<Vec<f64>, RefineError> {
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    // Parts of one shape go together, those of like length first.
+    let moves = |part: &Linearised| part.samples.len() > 1;
+    let shape = |place: &usize| {
+        let part = parts[*place];
+        let channels: Vec<usize> = part.channels.iter().map(|(_, state)| *state).collect();
+        (moves(part), part.by_state.is_some(), part.sizes.states, part.every, channels)
+    };
+    order.sort_by_cached_key(|place| (shape(place), usize::MAX - parts[*place].samples.len()));
+    let alike = order.chunk_by(|a, b| {
+        let (a, b) = (parts[*a], parts[*b]);
+        moves(a)
+            && moves(b)
+            && a.by_state.is_some() == b.by_state.is_some()
+            && (a.sizes, a.every, &a.channels) == (b.sizes, b.every, &b.channels)
+    });
+    let together: Vec<&[usize]> = alike.flat_map(|alike| alike.chunks(LANES)).collect();
+    let of = |places: &&[usize]| {
+        let each: Vec<&Linearised> = places.iter().map(|place| parts[*place]).collect();
+        let found = match each[..] {
+            [only] => vec![alone(only, noise, discrepancies)?],
+            _ => in_lanes(each, noise, discrepancies)?,
+        };
+        Ok(places.iter().copied().zip(found).collect())
+    };
+    let mut all = vec![0.0; parts.len()];
+    let found: Vec<Vec<(usize, f64)>> =
+        together.par_iter().map(of).collect::<Result<_, RefineError>>()?;
+    found.into_iter().flatten().for_each(|(place, deviance)| all[place] = deviance);
+    Ok(all)
+}
+
+fn alone(
+    part: &Linearised,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Result<f64, RefineError> {
+    let (errors, log_variance) = errors(part, noise, discrepancies)?;
+    Ok(errors.iter().map(|error| error * error).sum::<f64>() + log_variance)
+}
+
+fn in_lanes(
+    parts: Vec<&Linearised>,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Result<Vec<f64>, RefineError> {
+    let filter = KalmanFilter::new(parts.clone(), noise, discrepancies, 2)?;
+    // What sums of floating-point numbers begin with.
+    let (mut squares, mut log_variances) = ([-0.0; LANES], [0.0; LANES]);
+    widest(Deviance {
+        parts: &parts,
+        filter,
+        squares: &mut squares,
+        log_variances: &mut log_variances,
+    });
+    Ok((0..parts.len()).map(|lane| squares[lane] + log_variances[lane]).collect())
+}
+
+/// Parts of which squared prediction errors and logarithms of variances are summed.
+struct Deviance<'a> {
+    parts: &'a [&'a Linearised],
+    filter: KalmanFilter<'a, ValueLanes>,
+    squares: &'a mut [f64; LANES],
+    log_variances: &'a mut [f64; LANES],
+}
+
+impl Wide for Deviance<'_> {
+    #[inline(always)]
+    fn go(self) {
+        let Self { parts, mut filter, squares, log_variances } = self;
+        let longest = parts.iter().map(|part| part.samples.len()).max().unwrap_or(0);
+        for k in 0..longest {
+            if k > 0 {
+                filter.predict(k - 1);
+            }
+            if !k.is_multiple_of(parts[0].every) {
+                continue;
+            }
+            filter.update(k, |error, variance| {
+                for (lane, part) in parts.iter().enumerate() {
+                    if k < part.samples.len() {
+                        let scale = variance.0[lane].sqrt().recip();
+                        let whitened = error[0].0[lane] * scale - -error[1].0[lane] * scale;
+                        squares[lane] += whitened * whitened;
+                        log_variances[lane] += variance.0[lane].ln();
+                    }
+                }
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "likelihood_tests.rs"]
+mod tests;

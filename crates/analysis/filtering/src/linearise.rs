@@ -1,0 +1,24 @@
+//! From a model and a recorded trial to the linearisation along its path.
+
+use super::linearised::{Detail, Linearised};
+use super::lineariser::PathLineariser;
+use super::path::RecordedPath;
+use super::{ResidualSystem, TrialReadings};
+use sistership_identification::refine::RefineError;
+
+/// Linearises a model along each gap-free part of a trial.
+///
+/// # Errors
+/// Names the channel that the trial lacks.
+pub fn linearise(
+    system: &ResidualSystem,
+    record: &TrialReadings<'_>,
+    detail: Detail,
+) -> Result<Vec<Linearised>, RefineError> {
+    let path = RecordedPath::new(system, record)?;
+    Ok(record
+        .parts
+        .iter()
+        .map(|part| PathLineariser::new(system, &path, detail).walk(part))
+        .collect())
+}

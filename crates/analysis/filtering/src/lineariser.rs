@@ -1,0 +1,285 @@
+//! Along a path, block by block of samples.
+
+use sistership_model::coefficient::Axis;
+use sistership_model::manifest::VelocityFrame;
+use sistership_simulation::instruments::THROUGH_WATER;
+
+use super::instruments::InstrumentBlock;
+use super::lanes::LANES;
+use super::linearised::{Detail, Sizes};
+use super::path::RecordedPath;
+use super::regressor_block::RegressorBlock;
+use super::sample_block::SampleBlock;
+use super::secants::Secants;
+use super::tangents::{Place, Tangent, tangents};
+use super::{Linearised, NuisanceKind, ResidualSystem};
+
+/// Where the tapes stand at a block of samples.
+pub(super) struct PathLineariser<'a> {
+    system: &'a ResidualSystem,
+    path: &'a RecordedPath<'a>,
+    detail: Detail,
+    sizes: Sizes,
+    block: SampleBlock<'a>,
+    tangents: Vec<Tangent>,
+    secants: Secants,
+    regressors: RegressorBlock,
+}
+
+/// The model at a sample.
+#[derive(Debug, Clone)]
+struct SampleLinearisation {
+    rate: Vec<f64>,
+    jacobian: Vec<f64>,
+    accelerations: Vec<f64>,
+}
+
+impl<'a> PathLineariser<'a> {
+    pub fn new(system: &'a ResidualSystem, path: &'a RecordedPath<'a>, detail: Detail) -> Self {
+        let sizes = Sizes {
+            states: system.order(),
+            axes: system.axes.len(),
+            columns: system.columns.len(),
+        };
+        let secants = Secants::new(system, path);
+        Self {
+            system,
+            path,
+            detail,
+            sizes,
+            block: SampleBlock::new(system, path),
+            tangents: tangents(system, detail, |parameter| !secants.has(parameter)),
+            secants,
+            regressors: RegressorBlock::new(system),
+        }
+    }
+
+    pub fn walk(mut self, part: &[usize]) -> Linearised {
+        let recorded: Vec<usize> =
+            (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
+        let mut out = self.empty(part, &recorded);
+        let mut instruments = (!self.system.says.is_empty())
+            .then(|| InstrumentBlock::new(self.system, &out.measured, self.detail));
+        let mut before: Option<SampleLinearisation> = None;
+        let mut here = vec![self.nothing(); LANES];
+        for (block, samples) in part.chunks(LANES).enumerate() {
+            self.linearise(samples, &mut here);
+            if let Some(instruments) = &mut instruments {
+                instruments.at(&self.block);
+                if block == 0 && self.system.expected_rates {
+                    out.by_rate = instruments.by_rate(&self.block, &out, &recorded);
+                }
+            }
+            for (lane, &k) in samples.iter().enumerate() {
+                let last = if lane > 0 { Some(&here[lane - 1]) } else { before.as_ref() };
+                if let Some(last) = last {
+                    let from = part[block * LANES + lane - 1];
+                    self.interval(last, &here[lane], (from, k), &mut out);
+                }
+                self.readings((k, lane), instruments.as_ref(), &recorded, &mut out);
+            }
+            std::mem::swap(before.get_or_insert_with(|| here[0].clone()), &mut here[LANES - 1]);
+        }
+        out
+    }
+
+    fn empty(&self, part: &[usize], recorded: &[usize]) -> Linearised {
+        let trial = self.path.record.trial;
+        let (Sizes { states, axes, columns }, steps) = (self.sizes, part.len().saturating_sub(1));
+        Linearised {
+            samples: part.to_vec(),
+            t_s: part.iter().map(|&k| trial.t_s[k]).collect(),
+            sizes: self.sizes,
+            // As large as they become: what a vector grows by would stay with it.
+            jacobian: Vec::with_capacity(steps * states * states),
+            accelerations: Vec::with_capacity(steps * axes * columns),
+            defect: Vec::with_capacity(steps * states),
+            reading: Vec::with_capacity(part.len() * recorded.len()),
+            by_state: (!self.system.says.is_empty()).then(Vec::new),
+            by_column: Vec::new(),
+            measured: self.measuring(),
+            by_rate: Vec::new(),
+            channels: recorded.iter().map(|&c| self.system.channels[c]).collect(),
+            every: self.path.record.every,
+        }
+    }
+
+    /// Columns of candidates that act on instruments.
+    fn measuring(&self) -> Vec<usize> {
+        let columns = &self.system.columns;
+        let acting = (0..columns.candidates.len())
+            .filter(|&c| !columns.candidates[c].form.measures.is_empty());
+        let has_log = THROUGH_WATER.iter().any(|&(log, _)| self.path.record.has(log));
+        let water = has_log || self.system.frame == VelocityFrame::Water;
+        let seeing = (0..columns.candidates.len())
+            .filter(|&c| water && !columns.candidates[c].form.sees.is_empty());
+        acting.chain(seeing).flat_map(|c| columns.places(c)).collect()
+    }
+
+    fn nothing(&self) -> SampleLinearisation {
+        let Sizes { states, axes, columns } = self.sizes;
+        SampleLinearisation {
+            rate: vec![0.0; states],
+            jacobian: vec![0.0; states * states],
+            accelerations: vec![0.0; axes * columns],
+        }
+    }
+
+    /// At samples that follow each other.
+    fn linearise(&mut self, samples: &[usize], out: &mut [SampleLinearisation]) {
+        self.block.at(samples);
+        if !self.system.columns.nuisance.is_empty() {
+            self.regressors.run(&self.system.regressors, &self.block.inputs);
+        }
+        for (lane, out) in out.iter_mut().enumerate() {
+            out.jacobian.fill(0.0);
+            out.accelerations.fill(0.0);
+            self.block.rate.iter().zip(&mut out.rate).for_each(|(from, to)| *to = from[lane]);
+        }
+        self.differentiate(out);
+        for (lane, out) in out.iter_mut().enumerate() {
+            self.add_regressors(lane, out);
+        }
+        let columns = self.sizes.columns;
+        self.secants.along(&self.block, |column, slopes| {
+            for (lane, out) in out.iter_mut().enumerate() {
+                for (row, slope) in slopes.iter().enumerate() {
+                    out.accelerations[row * columns + column] = slope[lane];
+                }
+            }
+        });
+        self.correct(out);
+    }
+
+    /// Derivatives of the ship's accelerations in place of those of the law, where something was
+    /// learned beside it.
+    fn correct(&self, out: &mut [SampleLinearisation]) {
+        let Some(correction) = &self.block.correction else { return };
+        let Sizes { states, columns, .. } = self.sizes;
+        for (lane, out) in out.iter_mut().enumerate() {
+            correction.carry_over(lane, &mut out.jacobian, states);
+            correction.add_states(lane, &mut out.jacobian, states);
+            correction.carry_over(lane, &mut out.accelerations, columns);
+        }
+        let first = self.system.columns.nuisance.len();
+        for parameter in 0..self.system.followed.len() {
+            let Some((input, moved)) = self.block.moved_input(parameter) else { continue };
+            for (lane, out) in out.iter_mut().enumerate() {
+                let slopes = correction.by_input(lane, input).unwrap_or_default();
+                for (axis, slope) in slopes.iter().enumerate() {
+                    out.accelerations[axis * columns + first + parameter] += slope * moved[lane];
+                }
+            }
+        }
+    }
+
+    fn differentiate(&mut self, out: &mut [SampleLinearisation]) {
+        let motion = &self.system.motion;
+        let Sizes { states, axes, columns } = self.sizes;
+        for Tangent { place, direction } in &mut self.tangents {
+            motion.tape.differentiate(direction, &self.block.primal, &self.block.slopes);
+            let rows = self.block.accelerations(direction.tangents());
+            match *place {
+                Place::Column(column) => {
+                    for (lane, out) in out.iter_mut().enumerate() {
+                        for (row, value) in rows.iter().enumerate() {
+                            out.accelerations[row * columns + column] = value[lane];
+                        }
+                    }
+                }
+                Place::State(state) => {
+                    let read = |&output: &usize| motion.tape.read(output, direction.tangents());
+                    let rows = rows.into_iter().chain(motion.kinematics.iter().map(read));
+                    for (row, value) in rows.enumerate().take(axes + motion.kinematics.len()) {
+                        for (lane, out) in out.iter_mut().enumerate() {
+                            out.jacobian[row * states + state] = value[lane];
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_regressors(&self, lane: usize, out: &mut SampleLinearisation) {
+        let Sizes { axes, columns, .. } = self.sizes;
+        let inverse = |row: usize, axis: usize| self.block.inverse[row * axes + axis][lane];
+        for (range, axis) in self.regressors.alike() {
+            let forces = &self.regressors.of_sample(lane)[range.clone()];
+            for row in 0..axes {
+                let weight = inverse(row, *axis);
+                let to = &mut out.accelerations[row * columns..][range.clone()];
+                to.iter_mut().zip(forces).for_each(|(to, force)| *to += weight * force);
+            }
+        }
+        for (column, nuisance) in self.system.columns.nuisance.iter().enumerate() {
+            let NuisanceKind::Mass(row, other) = nuisance.kind else { continue };
+            for (axis, force) in self.heavier((row, other), lane) {
+                for row in 0..axes {
+                    out.accelerations[row * columns + column] += inverse(row, axis) * force;
+                }
+            }
+        }
+    }
+
+    /// The forces that a larger entry of the mass matrix takes, by place of the axis.
+    fn heavier(&self, (row, column): (Axis, Axis), lane: usize) -> Vec<(usize, f64)> {
+        let place = |axis: Axis| self.system.axes.iter().position(|&known| known == axis);
+        let (Some(i), Some(j)) = (place(row), place(column)) else { return Vec::new() };
+        let rate = |axis: usize| self.block.by_law[axis][lane];
+        let unit = (self.block.mass(i)[lane] * self.block.mass(j)[lane]).sqrt();
+        if i == j {
+            vec![(i, -unit * rate(i))]
+        } else {
+            vec![(i, -unit * rate(j)), (j, -unit * rate(i))]
+        }
+    }
+
+    /// From a sample to the next, by the mean of both ends.
+    fn interval(
+        &self,
+        before: &SampleLinearisation,
+        after: &SampleLinearisation,
+        (k, next): (usize, usize),
+        out: &mut Linearised,
+    ) {
+        let dt = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
+        out.jacobian.extend(means(&before.jacobian, &after.jacobian));
+        out.accelerations.extend(means(&before.accelerations, &after.accelerations));
+        for (state, rate) in means(&before.rate, &after.rate).enumerate() {
+            let moved = self.path.states[state][next] - self.path.states[state][k];
+            out.defect.push(dt * rate - moved);
+        }
+    }
+
+    /// What is read at a sample, which stands in a lane of the block.
+    fn readings(
+        &self,
+        (k, lane): (usize, usize),
+        instruments: Option<&InstrumentBlock>,
+        recorded: &[usize],
+        out: &mut Linearised,
+    ) {
+        let system = self.system;
+        let mut says: Vec<f64> =
+            system.channels.iter().map(|&(_, place)| self.path.states[place][k]).collect();
+        if let (Some(by_state), Some(instruments)) = (&mut out.by_state, instruments) {
+            system
+                .says
+                .iter()
+                .enumerate()
+                .for_each(|(output, &place)| says[place] = instruments.says(system, output)[lane]);
+            for &channel in recorded {
+                by_state.extend(instruments.by_state(system, channel, lane));
+                out.by_column.extend(instruments.by_column(system, channel, lane));
+            }
+        }
+        for &channel in recorded {
+            let said = self.path.said[channel].map_or(0.0, |said| said[k]);
+            out.reading.push(said - says[channel]);
+        }
+    }
+}
+
+fn means<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    a.iter().zip(b).map(|(x, y)| 0.5 * (x + y))
+}

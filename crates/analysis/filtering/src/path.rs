@@ -1,0 +1,163 @@
+//! The recorded motion that a model is linearised along.
+
+use sistership_model::trial::Channel;
+use sistership_simulation::instruments::THROUGH_WATER;
+use sistership_simulation::state::at;
+use sistership_simulation::tape::{Lanes, Slots};
+
+use super::followed::Followed;
+use super::lanes::{LANES, lanes};
+use super::record::smoothed;
+use super::{ResidualSystem, TrialReadings};
+use sistership_identification::refine::RefineError;
+
+/// The recorded motion and inputs over the samples of a trial.
+pub(super) struct RecordedPath<'a> {
+    pub record: &'a TrialReadings<'a>,
+    /// By state of the filter.
+    pub states: Vec<Vec<f64>>,
+    /// What the instruments said, by channel of the system; absent where nothing was recorded.
+    pub said: Vec<Option<&'a [f64]>>,
+    pub inputs: Vec<Vec<f64>>,
+    /// For each parameter that acts on how an input is followed: the input with a slightly (or
+    /// first) larger figure of that, and by how much.
+    pub followed: Vec<Option<(Vec<f64>, f64)>>,
+}
+
+impl<'a> RecordedPath<'a> {
+    pub fn new(
+        system: &ResidualSystem,
+        record: &'a TrialReadings<'a>,
+    ) -> Result<Self, RefineError> {
+        for channel in [Channel::U, Channel::V, Channel::R] {
+            record.need(channel)?;
+        }
+        if system.axes.len() > 3 {
+            record.need(Channel::Phi)?;
+            record.need(Channel::P)?;
+        }
+        let said: Vec<Option<&[f64]>> =
+            system.channels.iter().map(|&(channel, _)| record.trial.channel(channel)).collect();
+        let mut states = vec![vec![0.0; record.trial.len()]; system.order()];
+        for (&(channel, place), said) in system.channels.iter().zip(&said) {
+            if let Some(said) = said.filter(|_| is_state(channel)) {
+                states[place] = smoothed(said);
+            }
+        }
+        let mut inputs = Vec::new();
+        for (name, default) in &system.inputs {
+            inputs.push(record.input(name, *default)?);
+        }
+        let followed = followed(system, record, &mut inputs);
+        let mut path = Self { record, states, said, inputs, followed };
+        path.correct(system);
+        Ok(path)
+    }
+
+    /// Takes from the path what instruments say beside it: the model is linearised along where the
+    /// ship was.
+    fn correct(&mut self, system: &ResidualSystem) {
+        if system.says.is_empty() {
+            return;
+        }
+        let t_s = &self.record.trial.t_s;
+        let smooth = self.states.clone();
+        let mut work = Slots::default();
+        for first in (0..t_s.len()).step_by(LANES) {
+            let samples = std::array::from_fn(|k| (first + k).min(t_s.len() - 1));
+            let slopes = |state: usize| lanes(|k| slope(t_s, &smooth[state], samples[k]));
+            let inputs = self.instrument_inputs(system, &samples, &slopes);
+            system.instruments.run(&inputs, &mut work);
+            let moves = |channel: usize| {
+                self.said[channel].is_some() && is_state(system.channels[channel].0)
+            };
+            let moving: Vec<(usize, usize)> =
+                system.says.iter().copied().enumerate().filter(|&(_, c)| moves(c)).collect();
+            for (output, channel) in moving {
+                let state = system.channels[channel].1;
+                let says = system.instruments.read(output, &work);
+                let here = inputs[of_instruments(system.states[state])];
+                for (k, value) in self.states[state].iter_mut().skip(first).take(LANES).enumerate()
+                {
+                    *value -= says[k] - here[k];
+                }
+            }
+        }
+    }
+
+    pub fn instrument_inputs(
+        &self,
+        system: &ResidualSystem,
+        samples: &[usize; LANES],
+        rate: &dyn Fn(usize) -> Lanes<LANES>,
+    ) -> Vec<Lanes<LANES>> {
+        let of = |values: &[f64]| lanes(|k| values[samples[k]]);
+        let by_place = |values: &dyn Fn(usize) -> Lanes<LANES>| {
+            let state = |place: usize| system.states.iter().position(|&state| state == place);
+            INSTRUMENTS.map(|place| state(place).map_or([0.0; LANES], values))
+        };
+        let mut inputs = by_place(&|state| of(&self.states[state])).to_vec();
+        inputs.extend(by_place(rate));
+        inputs.extend(self.inputs.iter().map(|input| of(input)));
+        inputs.extend(system.parameters().map(|value| [value; LANES]));
+        inputs
+    }
+}
+
+/// The states in the order in which instruments take them, followed by their rates.
+const INSTRUMENTS: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
+
+pub(super) fn of_instruments(place: usize) -> usize {
+    INSTRUMENTS.iter().position(|&known| known == place).unwrap_or(0)
+}
+
+pub(super) fn rate_of_instruments(place: usize) -> usize {
+    INSTRUMENTS.len() + of_instruments(place)
+}
+
+/// Whether the path goes by a channel: a log through the water stands beside the state that does.
+fn is_state(channel: Channel) -> bool {
+    THROUGH_WATER.iter().all(|&(log, _)| log != channel)
+}
+
+/// Central differences; at the ends one-sided.
+fn slope(t_s: &[f64], values: &[f64], k: usize) -> f64 {
+    let (before, after) = (k.saturating_sub(1), (k + 1).min(values.len() - 1));
+    (values[after] - values[before]) / (t_s[after] - t_s[before]).max(1e-9)
+}
+
+impl<'a> RecordedPath<'a> {
+    /// Roll of a law without it is what was recorded, if anything was.
+    pub fn roll(&self, name: &str) -> Option<&'a [f64]> {
+        let trial = self.record.trial;
+        Channel::by_name(name).and_then(|channel| trial.channel(channel))
+    }
+}
+
+/// Puts lags and dead bands into effect and prepares their derivatives.
+fn followed(
+    system: &ResidualSystem,
+    record: &TrialReadings<'_>,
+    inputs: &mut [Vec<f64>],
+) -> Vec<Option<(Vec<f64>, f64)>> {
+    let t_s = &record.trial.t_s;
+    let parameters = system
+        .columns
+        .candidates
+        .iter()
+        .flat_map(|c| c.at.iter().copied().zip(c.form.parameters.values()));
+    let mut derivatives = Vec::new();
+    for ((value, parameter), followed) in parameters.zip(&system.followed) {
+        let Some(Followed { input, way }) = *followed else {
+            derivatives.push(None);
+            continue;
+        };
+        let more = way.more(value, parameter.start);
+        let larger = way.of(t_s, &inputs[input], value + more);
+        if value > 0.0 {
+            inputs[input] = way.of(t_s, &inputs[input], value);
+        }
+        derivatives.push(Some((larger, more)));
+    }
+    derivatives
+}

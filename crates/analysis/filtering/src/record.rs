@@ -1,0 +1,105 @@
+//! What a filter reads from a trial.
+
+use sistership_model::effect::{TIME, input_channel};
+use sistership_model::trial::{Channel, Trial};
+
+use super::jumps::undisturbed;
+use sistership_identification::refine::RefineError;
+
+/// A trial as a filter reads it: times, readings, a smooth path through them, and inputs.
+#[derive(Debug, Clone)]
+pub struct TrialReadings<'a> {
+    /// The trial.
+    pub trial: &'a Trial,
+    /// The samples that are used, in gap-free parts.
+    pub parts: Vec<Vec<usize>>,
+    /// Of these samples, how many go with one reading.
+    pub every: usize,
+}
+
+impl<'a> TrialReadings<'a> {
+    /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`;
+    /// none within `settles_s` of a jump.
+    pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {
+        let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
+        let parts = undisturbed(trial, settles_s)
+            .into_iter()
+            .map(|range| range.step_by(stride).collect::<Vec<usize>>());
+        Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
+    }
+
+    /// From one sample that is used to the next, s; none where no two are.
+    pub fn step_s(&self) -> Option<f64> {
+        let part = self.parts.first()?;
+        Some(self.trial.t_s[*part.get(1)?] - self.trial.t_s[part[0]])
+    }
+
+    /// One reading in so long a time, s.
+    pub fn read_every(&mut self, interval_s: f64) {
+        let samples = self.step_s().map_or(1.0, |step_s| (interval_s / step_s).round());
+        self.every = samples.max(1.0) as usize;
+    }
+
+    /// How many samples are used.
+    pub fn len(&self) -> usize {
+        self.parts.iter().map(Vec::len).sum()
+    }
+
+    /// Whether none is.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether a channel was recorded.
+    pub fn has(&self, channel: Channel) -> bool {
+        self.trial.channel(channel).is_some()
+    }
+
+    /// A channel that must be there.
+    ///
+    /// # Errors
+    /// Names the trial and the channel.
+    pub fn need(&self, channel: Channel) -> Result<&'a [f64], RefineError> {
+        self.trial
+            .channel(channel)
+            .ok_or_else(|| RefineError::Channel { trial: self.trial.name.clone(), channel })
+    }
+
+    /// An input of a law over the samples of the trial: recorded, or constant.
+    ///
+    /// # Errors
+    /// Names the trial and the channel.
+    pub fn input(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, RefineError> {
+        let trial = self.trial;
+        if name == TIME {
+            let start = trial.t_s.first().copied().unwrap_or_default();
+            return Ok(trial.t_s.iter().map(|t| t - start).collect());
+        }
+        let channel = input_channel(name);
+        if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
+            return Ok(column.to_vec());
+        }
+        let constant =
+            if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+        match (constant, channel) {
+            (Some(value), _) => Ok(vec![value; trial.len()]),
+            (None, Some(channel)) => {
+                Err(RefineError::Channel { trial: trial.name.clone(), channel })
+            }
+            (None, None) => {
+                Err(RefineError::Law(format!("no trial can record the input `{name}`")))
+            }
+        }
+    }
+}
+
+/// A parabola through each five samples, read in their middle: white noise loses half its variance,
+/// a motion of more than some ten samples nothing. The model is linearised along it.
+pub fn smoothed(values: &[f64]) -> Vec<f64> {
+    let fitted = |w: &[f64]| (17.0 * w[2] + 12.0 * (w[1] + w[3]) - 3.0 * (w[0] + w[4])) / 35.0;
+    let mut out = values.to_vec();
+    for (k, window) in values.windows(5).enumerate() {
+        out[k + 2] = fitted(window);
+    }
+    out
+}

@@ -1,0 +1,62 @@
+//! The forces by which coefficients act, at samples that follow each other.
+
+use std::ops::Range;
+
+use sistership_simulation::tape::{Lanes, Slots, Tape};
+
+use super::lanes::LANES;
+use super::{NuisanceKind, ResidualSystem};
+
+/// Regressors at up to [`LANES`] samples together: there are hundreds of them, and in lanes they
+/// cost little more than at one sample.
+pub(super) struct RegressorBlock {
+    columns: usize,
+    /// Columns that follow each other and act on one axis of the filter, with its place; masses and
+    /// what acts on another axis are left out.
+    alike: Vec<(Range<usize>, usize)>,
+    forces: Slots<LANES>,
+    /// N or N m per unit: sample by sample, column by column.
+    by_sample: Vec<f64>,
+}
+
+impl RegressorBlock {
+    pub fn new(system: &ResidualSystem) -> Self {
+        let columns = system.columns.nuisance.len();
+        let (forces, by_sample) = (Slots::default(), Vec::new());
+        Self { columns, alike: alike(system), forces, by_sample }
+    }
+
+    /// At the points of a block, given as the tape of motion takes them.
+    pub fn run(&mut self, regressors: &Tape, inputs: &[Lanes<LANES>]) {
+        regressors.run(inputs, &mut self.forces);
+        self.by_sample.resize(LANES * self.columns, 0.0);
+        for column in 0..self.columns {
+            let forces = regressors.read(column, &self.forces);
+            (0..LANES).for_each(|k| self.by_sample[k * self.columns + column] = forces[k]);
+        }
+    }
+
+    /// Columns that act on one axis.
+    pub fn alike(&self) -> &[(Range<usize>, usize)] {
+        &self.alike
+    }
+
+    /// The forces at a sample, by column.
+    pub fn of_sample(&self, lane: usize) -> &[f64] {
+        &self.by_sample[lane * self.columns..][..self.columns]
+    }
+}
+
+fn alike(system: &ResidualSystem) -> Vec<(Range<usize>, usize)> {
+    let mut alike: Vec<(Range<usize>, usize)> = Vec::new();
+    for (column, nuisance) in system.columns.nuisance.iter().enumerate() {
+        let place = system.axes.iter().position(|&known| known == nuisance.kind.axis());
+        let is_mass = matches!(nuisance.kind, NuisanceKind::Mass(..));
+        let Some(axis) = place.filter(|_| !is_mass) else { continue };
+        match alike.last_mut() {
+            Some((range, last)) if *last == axis && range.end == column => range.end += 1,
+            _ => alike.push((column..column + 1, axis)),
+        }
+    }
+    alike
+}

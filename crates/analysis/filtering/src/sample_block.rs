@@ -1,0 +1,139 @@
+//! A model at samples that follow each other, a lane each.
+
+use nalgebra::DMatrix;
+use sistership_model::law::STATES;
+use sistership_simulation::tape::{Lanes, Slopes, Slots};
+
+use super::ResidualSystem;
+use super::correction::CorrectionBlock;
+use super::lanes::{LANES, lanes};
+use super::path::RecordedPath;
+use super::tangents::place_of;
+
+/// The model where the path is at up to [`LANES`] samples.
+pub(super) struct SampleBlock<'a> {
+    pub system: &'a ResidualSystem,
+    path: &'a RecordedPath<'a>,
+    /// Of each state that laws know, what the path says of it.
+    states: Vec<Option<&'a [f64]>>,
+    /// In each lane a sample; those after the last of a part are the first again.
+    samples: [usize; LANES],
+    /// Of the tape of motion.
+    pub inputs: Vec<Lanes<LANES>>,
+    pub primal: Slots<LANES>,
+    pub slopes: Slopes<LANES>,
+    /// Inverse of the mass matrix, row by row.
+    pub inverse: Vec<Lanes<LANES>>,
+    /// Rates of the filter's states.
+    pub rate: Vec<Lanes<LANES>>,
+    /// Accelerations by the law alone.
+    pub by_law: Vec<Lanes<LANES>>,
+    /// What was learned beside the law.
+    pub correction: Option<CorrectionBlock<'a>>,
+}
+
+impl<'a> SampleBlock<'a> {
+    pub fn new(system: &'a ResidualSystem, path: &'a RecordedPath<'a>) -> Self {
+        let of = |name: &str| {
+            let place = system.states.iter().position(|&state| state == place_of(name));
+            place.map_or_else(|| path.roll(name), |state| Some(&path.states[state][..]))
+        };
+        Self {
+            system,
+            path,
+            states: STATES.iter().map(|(name, _)| of(name)).collect(),
+            samples: [0; LANES],
+            inputs: Vec::new(),
+            primal: Slots::default(),
+            slopes: Slopes::default(),
+            inverse: Vec::new(),
+            rate: Vec::new(),
+            by_law: Vec::new(),
+            correction: system.correction.as_ref().map(CorrectionBlock::new),
+        }
+    }
+
+    /// Evaluates the model at samples of the path.
+    pub fn at(&mut self, samples: &[usize]) {
+        self.samples = std::array::from_fn(|k| *samples.get(k).unwrap_or(&samples[0]));
+        let of = |values: &[f64]| lanes(|k| values[self.samples[k]]);
+        let states = self.states.iter().map(|values| values.map_or([0.0; LANES], of));
+        self.inputs.clear();
+        self.inputs.extend(states.chain(self.path.inputs.iter().map(|input| of(input))));
+        self.inputs.extend(self.system.parameters().map(|value| [value; LANES]));
+        let motion = &self.system.motion;
+        motion.tape.run(&self.inputs, &mut self.primal);
+        motion.tape.slopes(&self.primal, &mut self.slopes);
+        self.invert_masses();
+        self.rate = self.accelerations(&self.primal);
+        self.by_law.clone_from(&self.rate);
+        if let Some(correction) = &mut self.correction {
+            let velocities = [self.inputs[0], self.inputs[1], self.inputs[2]];
+            let inputs = &self.inputs[STATES.len()..];
+            correction.add(velocities, inputs, &mut self.rate);
+        }
+        let kinematics = motion.kinematics.iter();
+        self.rate.extend(kinematics.map(|&output| motion.tape.read(output, &self.primal)));
+    }
+
+    fn invert_masses(&mut self) {
+        let (motion, axes) = (&self.system.motion, self.system.axes.len());
+        self.inverse.resize(axes * axes, [0.0; LANES]);
+        for lane in 0..LANES {
+            let entry = |output: &Option<usize>| {
+                output.map_or(0.0, |output| motion.tape.read(output, &self.primal)[lane])
+            };
+            let mass = DMatrix::from_row_iterator(axes, axes, motion.mass.iter().map(entry));
+            let inverse = mass.try_inverse();
+            for (place, to) in self.inverse.iter_mut().enumerate() {
+                let (row, column) = (place / axes, place % axes);
+                to[lane] = inverse.as_ref().map_or(f64::NAN, |inverse| inverse[(row, column)]);
+            }
+        }
+    }
+
+    /// Accelerations, or their derivatives, of what the tape of motion holds: by axis.
+    pub fn accelerations(&self, held: &[Lanes<LANES>]) -> Vec<Lanes<LANES>> {
+        let (motion, axes) = (&self.system.motion, self.system.axes.len());
+        let row = |row: usize| {
+            // What sums of floating-point numbers begin with.
+            let mut sum = [-0.0; LANES];
+            for (c, &output) in motion.forces.iter().enumerate() {
+                let (inverse, force) =
+                    (&self.inverse[row * axes + c], motion.tape.read(output, held));
+                (0..LANES).for_each(|k| sum[k] += inverse[k] * force[k]);
+            }
+            let added = motion.additions[row].map(|output| motion.tape.read(output, held));
+            let added = added.unwrap_or([0.0; LANES]);
+            lanes(|k| sum[k] + added[k])
+        };
+        (0..axes).map(row).collect()
+    }
+
+    /// By how much a parameter that acts on how an input is followed moves that input, by its own
+    /// change, and which.
+    pub fn moved_input(&self, parameter: usize) -> Option<(usize, Lanes<LANES>)> {
+        let input = self.system.followed[parameter]?.input;
+        let (larger, by) = self.path.followed[parameter].as_ref()?;
+        let here = self.inputs[STATES.len() + input];
+        Some((input, lanes(|k| (larger[self.samples[k]] - here[k]) / by)))
+    }
+
+    /// What a parameter changes of an input, with a larger figure.
+    pub fn followed(&self, parameter: usize) -> Lanes<LANES> {
+        let larger = self.path.followed[parameter].as_ref();
+        larger.map_or([0.0; LANES], |(larger, _)| lanes(|k| larger[self.samples[k]]))
+    }
+
+    /// An entry of the diagonal of the mass matrix.
+    pub fn mass(&self, axis: usize) -> Lanes<LANES> {
+        let motion = &self.system.motion;
+        let output = motion.mass[axis * (self.system.axes.len() + 1)];
+        output.map_or([0.0; LANES], |output| motion.tape.read(output, &self.primal))
+    }
+
+    /// What instruments say there.
+    pub fn instrument_inputs(&self) -> Vec<Lanes<LANES>> {
+        self.path.instrument_inputs(self.system, &self.samples, &|state| self.rate[state])
+    }
+}

@@ -1,0 +1,99 @@
+//! Sums over readings of the products of all columns, of a symmetric matrix one triangle.
+//!
+//! What a general matrix product does with three packings and both triangles is done with one and
+//! half of them. Each sum is made as `matrixmultiply` makes it, product by product with fused
+//! multiplication and in blocks of as many readings: the results are the same to the last bit, and
+//! so are models that were made by it.
+
+use nalgebra::DMatrix;
+use sistership_simulation::wide::{Wide, fused};
+
+/// Readings in a block: those of `matrixmultiply`, whose sums these are.
+const READINGS: usize = 256;
+/// Columns in a strip: the lanes of the widest instructions.
+const STRIP: usize = 8;
+
+/// A strip of columns at one reading.
+type Lanes = [f64; STRIP];
+
+/// Products of readings, `width` numbers each; none where the processor does not fuse.
+pub(super) fn symmetric_products(readings: &[f64], width: usize) -> Option<DMatrix<f64>> {
+    let mut products = DMatrix::zeros(width, width);
+    fused(SymmetricProducts { readings, width, products: &mut products }).then(|| {
+        products.fill_upper_triangle_with_lower_triangle();
+        products
+    })
+}
+
+struct SymmetricProducts<'a> {
+    readings: &'a [f64],
+    width: usize,
+    /// Its lower triangle is filled.
+    products: &'a mut DMatrix<f64>,
+}
+
+impl Wide for SymmetricProducts<'_> {
+    #[inline(always)]
+    fn go(self) {
+        let Self { readings, width, products } = self;
+        let mut strips = Vec::new();
+        for block in readings.chunks(READINGS * width) {
+            let count = block.len() / width;
+            pack(block, width, &mut strips);
+            for (row, left) in strips.chunks_exact(count).enumerate() {
+                for (column, right) in strips.chunks_exact(count).take(row + 1).enumerate() {
+                    let tile = tile(left, right);
+                    add(&tile, (row * STRIP, column * STRIP), products);
+                }
+            }
+        }
+    }
+}
+
+/// A block of readings, strip by strip; columns beyond the last are nothing.
+#[inline(always)]
+fn pack(block: &[f64], width: usize, strips: &mut Vec<Lanes>) {
+    let count = block.len() / width;
+    strips.clear();
+    strips.resize(count * width.div_ceil(STRIP), [0.0; STRIP]);
+    for (place, reading) in block.chunks_exact(width).enumerate() {
+        for (strip, columns) in reading.chunks(STRIP).enumerate() {
+            strips[strip * count + place][..columns.len()].copy_from_slice(columns);
+        }
+    }
+}
+
+/// Products of the columns of two strips: rows of the left one's.
+#[inline(always)]
+fn tile(left: &[Lanes], right: &[Lanes]) -> [Lanes; STRIP] {
+    let mut sums = [[0.0; STRIP]; STRIP];
+    for (left, right) in left.iter().zip(right) {
+        for (sums, factor) in sums.iter_mut().zip(left) {
+            for (sum, value) in sums.iter_mut().zip(right) {
+                *sum = factor.mul_add(*value, *sum);
+            }
+        }
+    }
+    sums
+}
+
+#[inline(always)]
+fn add(tile: &[Lanes; STRIP], (row, column): (usize, usize), products: &mut DMatrix<f64>) {
+    let width = products.nrows();
+    for j in column..width.min(column + STRIP) {
+        for i in j.max(row)..width.min(row + STRIP) {
+            products[(i, j)] += tile[i - row][j - column];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_reading_has_no_product() {
+        let none = symmetric_products(&[], 12);
+        assert!(none.is_none_or(|products| products == DMatrix::zeros(12, 12)));
+    }
+}

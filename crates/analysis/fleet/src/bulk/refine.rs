@@ -1,0 +1,76 @@
+//! One ship refined from the statistics of its trials.
+
+use std::collections::BTreeMap;
+
+use sistership_model::quantity::Quantity;
+use sistership_model::vessel::Status;
+use sistership_model::{Law, Model};
+
+use super::outcome::BulkRefinement;
+use super::report::outcome;
+use super::request::BulkRequest;
+use super::sails::sail;
+use super::solved::solve;
+use sistership_identification::refine::{Fitted, RefineError};
+use sistership_propulsion::{Evidence, balance, needs_balance};
+
+/// Refines, and pulls the model towards the prior, a decade at a time, until it sails what the
+/// model before sails.
+///
+/// # Errors
+/// As [`solve`]; and where not even the prior's mean sails, which is then no prior for this ship.
+pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> {
+    let BulkRequest { model, law, trials, prior, settings } = *request;
+    let solved = solve(trials, prior, settings)?;
+    let mut before = None;
+    for pulled in 0.. {
+        let (coefficients, moved) = solved.coefficients(pulled);
+        let refined = refined_model(model, &coefficients, "bulk");
+        // The model before sails beside the first attempt, which costs next to nothing.
+        let asked = [&refined, model];
+        let mut sailed = sail(&asked[..if before.is_none() { 2 } else { 1 }], law).into_iter();
+        let Some(after) = sailed.next() else { break };
+        let before = before.get_or_insert_with(|| sailed.next().unwrap_or_default());
+        if after.as_well_as(before) {
+            let before = before.clone();
+            return outcome(&solved, request, pulled, &coefficients, (before, after));
+        }
+        if !moved {
+            let failure = after
+                .failures
+                .first()
+                .cloned()
+                .unwrap_or_else(|| "a turn or zigzag does not answer".to_owned());
+            return Err(RefineError::Diverged(format!(
+                "not even the prior sails what the model before sails: {failure}"
+            )));
+        }
+    }
+    Err(RefineError::Cancelled)
+}
+
+/// The model with a surge balance where its law lets coefficients say what the propeller does, or
+/// takes no revolutions. Statistics do not tell the range of the trials: the law alone counts at
+/// the approach.
+pub fn with_balance(model: Model, law: &Law) -> Model {
+    if model.propulsion.is_some() || !needs_balance(law) {
+        return model;
+    }
+    let evidence = Evidence { model: &model, law, estimate: None, trials: &[] };
+    Model { propulsion: balance(&evidence), ..model }
+}
+
+/// The model with these coefficients and no others.
+pub fn refined_model(
+    model: &Model,
+    coefficients: &BTreeMap<String, Fitted>,
+    source: &str,
+) -> Model {
+    let quantity = |fitted: &Fitted| Quantity {
+        standard_error: Some(fitted.standard_error),
+        ..Quantity::new(fitted.value, format!("refined from {source}"))
+    };
+    let coefficients =
+        coefficients.iter().map(|(name, fitted)| (name.clone(), quantity(fitted))).collect();
+    Model { status: Status::Refined, coefficients, uncertainty: None, ..model.clone() }
+}

@@ -1,0 +1,96 @@
+//! What a refinement from statistics says for itself.
+
+use std::collections::BTreeMap;
+
+use super::outcome::{AxisOutcome, BulkRefinement, Coefficient};
+use super::request::BulkRequest;
+use super::sails::SailedFigures;
+use super::solved::SolvedPath;
+use crate::statistics::TrialStatistics;
+use sistership_identification::refine::{Fitted, RefineError};
+
+/// The outcome of a ship by what its path gives, pulled so many decades towards the prior.
+///
+/// # Errors
+/// The statistics mix axes that cannot be told apart.
+pub(super) fn outcome(
+    solved: &SolvedPath,
+    request: &BulkRequest<'_>,
+    pulled: usize,
+    fitted: &BTreeMap<String, Fitted>,
+    (before, after): (SailedFigures, SailedFigures),
+) -> Result<BulkRefinement, RefineError> {
+    let mut priors = BTreeMap::new();
+    for group in &solved.groups {
+        let pairs = group
+            .names
+            .iter()
+            .zip(&group.means)
+            .flat_map(|(names, means)| names.iter().cloned().zip(means.iter().copied()));
+        priors.extend(pairs);
+    }
+    let values = request
+        .model
+        .coefficients
+        .iter()
+        .map(|(name, quantity)| (name.clone(), quantity.value))
+        .collect();
+    let axes = axes(solved, request.trials, pulled, &values, &priors)?;
+    let coefficient = |(name, fitted): (&String, &Fitted)| Coefficient {
+        name: name.clone(),
+        before: request.model.coefficient(name),
+        prior: priors.get(name).copied().unwrap_or(0.0),
+        prior_deviation: fitted.prior_deviation,
+        refined: fitted.value,
+        standard_error: fitted.standard_error,
+    };
+    let coefficients = fitted.iter().map(coefficient).collect();
+    Ok(BulkRefinement { coefficients, axes, pulled, before, after, trials: request.trials.len() })
+}
+
+fn axes(
+    solved: &SolvedPath,
+    trials: &[TrialStatistics],
+    pulled: usize,
+    before: &BTreeMap<String, f64>,
+    priors: &BTreeMap<String, f64>,
+) -> Result<Vec<AxisOutcome>, RefineError> {
+    let (before, prior) = (left(trials, before)?, left(trials, priors)?);
+    let places = solved
+        .groups
+        .iter()
+        .enumerate()
+        .flat_map(|(g, group)| (0..group.axes.len()).map(move |axis| (g, axis)));
+    let one = |(place, (group, axis)): (usize, (usize, usize))| {
+        let (left, target) = before[place];
+        AxisOutcome {
+            axis: solved.groups[group].axes[axis],
+            strength: solved.strength(group, axis, pulled),
+            before: (left / target).sqrt(),
+            prior: (prior[place].0 / target).sqrt(),
+            after: (solved.error(group, axis, pulled) / target).sqrt(),
+        }
+    };
+    Ok(places.enumerate().map(one).collect())
+}
+
+/// Mean squares of what coefficients leave and of the targets, by axis, in the mean over the
+/// trials.
+fn left(
+    trials: &[TrialStatistics],
+    coefficients: &BTreeMap<String, f64>,
+) -> Result<Vec<(f64, f64)>, RefineError> {
+    let mut all: Vec<(f64, f64)> = Vec::new();
+    for trial in trials {
+        let left = trial.left_by(coefficients)?;
+        all.resize(left.len(), (0.0, 0.0));
+        let share = 1.0 / trials.len() as f64;
+        all.iter_mut().zip(left).for_each(|(sum, left)| {
+            *sum = (sum.0 + share * left.residual, sum.1 + share * left.target)
+        });
+    }
+    Ok(all
+        .into_iter()
+        .map(|(residual, target)| (residual, target.max(f64::MIN_POSITIVE)))
+        .collect())
+}

@@ -1,0 +1,87 @@
+//! What a member's trials say of the coefficients of an axis: a precision and what it is about, in
+//! units in which coefficients are alike in size.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::thresholds::FAMILY;
+use crate::statistics::TrialStatistics;
+use sistership_identification::refine::RefineError;
+use sistership_numerics::{Moments, Whitened};
+
+/// What trials say: a likelihood proportional to `exp(-z' precision z/2 + information' z)`.
+#[derive(Debug, Clone)]
+pub(super) struct MemberEvidence {
+    pub precision: DMatrix<f64>,
+    pub information: DVector<f64>,
+    /// How much more the trials of the member scatter than their samples would if each spoke for
+    /// itself; none of one trial.
+    pub design_effect: Option<f64>,
+}
+
+/// An axis of a family: where its coefficients stand among the statistics, and their units.
+#[derive(Debug, Clone)]
+pub(super) struct AxisPlace {
+    pub regression: usize,
+    pub axis: usize,
+    pub units: Vec<f64>,
+}
+
+impl AxisPlace {
+    /// Regressors in units of the coefficients, and the axis' own target.
+    fn moments(&self, trials: &[TrialStatistics]) -> Result<Vec<Moments>, RefineError> {
+        let Some(first) = trials.first() else { return Ok(Vec::new()) };
+        let regression = &first.regressions[self.regression];
+        let (p, q) = (self.units.len(), regression.axes.len());
+        let unmixing = regression.unmixing()?;
+        let mut map = DMatrix::zeros(p + q, p + 1);
+        (0..p).for_each(|j| map[(j, j)] = self.units[j]);
+        (0..q).for_each(|target| map[(p + target, p)] = unmixing[(self.axis, target)]);
+        let own = |trial: &TrialStatistics| {
+            trial.regressions[self.regression].moments.mapped(&map, p).about_origin()
+        };
+        Ok(trials.iter().map(own).collect())
+    }
+
+    /// What a member's trials say; none where they have no sample.
+    ///
+    /// # Errors
+    /// Says that their axes cannot be told apart.
+    pub fn evidence(
+        &self,
+        trials: &[TrialStatistics],
+    ) -> Result<Option<MemberEvidence>, RefineError> {
+        let parts = self.moments(trials)?;
+        let Some(all) = Moments::sum(&parts).filter(|all| all.count > 0.0) else {
+            return Ok(None);
+        };
+        let whitened = Whitened::new(&all);
+        let lambda = whitened.least_lambda();
+        let variance = whitened.residual_variance(0, lambda).max(f64::MIN_POSITIVE);
+        let (covariance, cross) = all.covariances();
+        let share = all.count / variance;
+        let least = whitened.basis() * whitened.solution(0, lambda);
+        let design_effect =
+            (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
+        Ok(Some(MemberEvidence {
+            precision: covariance * share,
+            information: cross.column(0) * share,
+            design_effect,
+        }))
+    }
+}
+
+/// The variance of a residual by which the trials' scores scatter (a sandwich estimate with whole
+/// trials as its units: Liang and Zeger 1986, Biometrika 73, 13-22, Eq. 8), in the mean over the
+/// directions that the trials tell.
+fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVector<f64>) -> f64 {
+    let variances = whitened.variances(0.0);
+    let best = variances.min();
+    let told: Vec<usize> =
+        (0..variances.len()).filter(|&k| best / variances[k] > FAMILY.telling).collect();
+    let of_trial = |part: &Moments| -> f64 {
+        let score = whitened.basis().transpose() * part.score(all, least);
+        told.iter().map(|&k| score[k].powi(2) * variances[k]).sum()
+    };
+    let trials = parts.len() as f64;
+    parts.iter().map(of_trial).sum::<f64>() / (told.len().max(1) as f64 * (1.0 - 1.0 / trials))
+}

@@ -1,0 +1,276 @@
+//! Learning a family's mean and covariance.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
+
+use super::evidence::{AxisPlace, MemberEvidence};
+use super::prior::{FORMAT, FamilyAxis, FamilyPrior};
+use super::thresholds::FAMILY;
+use crate::statistics::TrialStatistics;
+use sistership_identification::refine::RefineError;
+use sistership_numerics::Moments;
+
+/// Why nothing can be learned of a family.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FamilyError {
+    /// Too few.
+    #[error("{0} members have trials; a family's prior needs at least {least}", least = FAMILY.least_members)]
+    Few(usize),
+    /// One that does not belong.
+    #[error("`{member}` has other coefficients than `{first}`, so that they share no prior")]
+    Other {
+        /// The member.
+        member: String,
+        /// Another one.
+        first: String,
+    },
+    /// The statistics of one cannot be used.
+    #[error("the statistics of `{member}` cannot be used: {reason}")]
+    Statistics {
+        /// The member.
+        member: String,
+        /// Why.
+        reason: String,
+    },
+    /// The numbers broke down.
+    #[error("the covariance over the members cannot be learned: {0}")]
+    Numbers(String),
+}
+
+/// A member with the statistics of its trials.
+#[derive(Debug, Clone, Copy)]
+pub struct Member<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its trials.
+    pub trials: &'a [TrialStatistics],
+}
+
+/// Learns mean and covariance of every axis over the members; those without trials say nothing.
+///
+/// # Errors
+/// As [`FamilyError`] says.
+pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
+    let members: Vec<&Member<'_>> =
+        members.iter().filter(|member| !member.trials.is_empty()).collect();
+    if members.len() < FAMILY.least_members {
+        return Err(FamilyError::Few(members.len()));
+    }
+    alike(&members)?;
+    let places = places(&members)?;
+    let evidence: Vec<Vec<MemberEvidence>> =
+        places.iter().map(|place| said(place, &members)).collect::<Result<_, _>>()?;
+    let design_effect = design_effect(&evidence);
+    let kept = |p: usize| members.len() as f64 / (members.len() + p + 1) as f64;
+    let first = &members[0].trials[0];
+    let mut prior = FamilyPrior {
+        format: FORMAT.to_owned(),
+        members: members.iter().map(|member| member.name.to_owned()).collect(),
+        design_effect,
+        correlations_kept: kept(places.iter().map(|place| place.units.len()).max().unwrap_or(0)),
+        steps: 0,
+        axes: Vec::new(),
+    };
+    for (place, evidence) in places.iter().zip(evidence) {
+        let regression = &first.regressions[place.regression];
+        let learned = FamilyEstimate::from(discounted(evidence, design_effect))?;
+        prior.steps = prior.steps.max(learned.steps);
+        let names = regression.names[place.axis].clone();
+        prior.axes.push(learned.axis(
+            regression.axes[place.axis],
+            names,
+            &place.units,
+            prior.correlations_kept,
+        ));
+    }
+    Ok(prior)
+}
+
+fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
+    let names = |member: &Member<'_>| -> Vec<Vec<Vec<String>>> {
+        member.trials[0].regressions.iter().map(|regression| regression.names.clone()).collect()
+    };
+    let first = names(members[0]);
+    match members.iter().find(|member| names(member) != first) {
+        Some(other) => Err(FamilyError::Other {
+            member: other.name.to_owned(),
+            first: members[0].name.to_owned(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The axes with units in which a coefficient of 1 explains all of its target, over all members.
+///
+/// # Errors
+/// Names a member whose statistics cannot be used.
+fn places(members: &[&Member<'_>]) -> Result<Vec<AxisPlace>, FamilyError> {
+    let regressions = &members[0].trials[0].regressions;
+    let axes = regressions
+        .iter()
+        .enumerate()
+        .flat_map(|(r, regression)| (0..regression.axes.len()).map(move |axis| (r, axis)));
+    let place = |(regression, axis): (usize, usize)| {
+        Ok(AxisPlace { regression, axis, units: units(members, regression, axis)? })
+    };
+    axes.map(place).collect()
+}
+
+/// Medians over the members of target deviation by regressor deviation, which a few odd ships do
+/// not move.
+fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Result<Vec<f64>, FamilyError> {
+    let p = members[0].trials[0].regressions[regression].moments.regressors();
+    let of_member = |member: &&Member<'_>| -> Result<Option<Vec<f64>>, FamilyError> {
+        let own = member.trials.iter().map(|trial| &trial.regressions[regression].moments);
+        let Some(all) = Moments::sum(own) else { return Ok(None) };
+        let all = all.about_origin();
+        let unmixing = member.trials[0].regressions[regression].unmixing();
+        let unmixing = unmixing.map_err(|reason| unusable(member, &reason))?;
+        let q = all.targets();
+        let target = (0..q)
+            .map(|t| unmixing[(axis, t)].powi(2) * all.target_variance(t))
+            .sum::<f64>()
+            .sqrt();
+        let moves = |j: usize| all.variance(j).sqrt().max(1e-12 * all.mean(j).abs());
+        Ok(Some((0..p).map(|j| target / moves(j).max(f64::MIN_POSITIVE)).collect()))
+    };
+    let all: Vec<Option<Vec<f64>>> = members.iter().map(of_member).collect::<Result<_, _>>()?;
+    let unit = |j: usize| median(all.iter().flatten().map(|units| units[j]));
+    // What moves in no member has any unit.
+    Ok((0..p).map(|j| unit(j).unwrap_or(1.0)).collect())
+}
+
+fn unusable(member: &Member<'_>, reason: &RefineError) -> FamilyError {
+    FamilyError::Statistics { member: member.name.to_owned(), reason: reason.to_string() }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Result<Vec<MemberEvidence>, FamilyError> {
+    let of_member = |member: &&Member<'_>| {
+        place.evidence(member.trials).map_err(|reason| unusable(member, &reason))
+    };
+    let all: Vec<Option<MemberEvidence>> =
+        members.par_iter().map(of_member).collect::<Result<_, _>>()?;
+    Ok(all.into_iter().flatten().collect())
+}
+
+/// The median over members and axes; samples never say more than they would alone.
+fn design_effect(evidence: &[Vec<MemberEvidence>]) -> f64 {
+    median(evidence.iter().flatten().filter_map(|evidence| evidence.design_effect))
+        .unwrap_or(1.0)
+        .max(1.0)
+}
+
+fn discounted(mut evidence: Vec<MemberEvidence>, design_effect: f64) -> Vec<MemberEvidence> {
+    for one in &mut evidence {
+        one.precision /= design_effect;
+        one.information /= design_effect;
+    }
+    evidence
+}
+
+/// What a family has learned of an axis, in units of the coefficients.
+struct FamilyEstimate {
+    mean: DVector<f64>,
+    covariance: DMatrix<f64>,
+    told: DVector<f64>,
+    members: f64,
+    steps: usize,
+}
+
+impl FamilyEstimate {
+    fn from(evidence: Vec<MemberEvidence>) -> Result<Self, FamilyError> {
+        let p = evidence.first().map_or(0, |one| one.information.len());
+        let mut learned = Self {
+            mean: DVector::zeros(p),
+            covariance: DMatrix::identity(p, p) * FAMILY.start.powi(2),
+            told: DVector::zeros(p),
+            members: evidence.len() as f64,
+            steps: 0,
+        };
+        for step in 1..=FAMILY.steps {
+            let before = learned.covariance.diagonal();
+            learned.step(&evidence)?;
+            learned.steps = step;
+            let changed = before.zip_map(&learned.covariance.diagonal(), |a, b| {
+                (a.sqrt() / b.sqrt().max(FAMILY.least) - 1.0).abs()
+            });
+            if changed.max() < FAMILY.settled {
+                break;
+            }
+        }
+        Ok(learned)
+    }
+
+    /// Members given the family, then the family given the members.
+    fn step(&mut self, evidence: &[MemberEvidence]) -> Result<(), FamilyError> {
+        let precision = inverse(&self.covariance)?;
+        let pull = &precision * &self.mean;
+        let member = |one: &MemberEvidence| -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
+            let covariance = inverse(&(&precision + &one.precision))?;
+            Ok((&covariance * (&pull + &one.information), covariance))
+        };
+        // Collected in order, so that the sums do not depend on the machine's cores.
+        let members: Vec<_> = evidence.par_iter().map(member).collect::<Result<_, _>>()?;
+        let mut mean = DVector::zeros(self.mean.len());
+        members.iter().for_each(|(own, _)| mean += own / self.members);
+        let mut covariance = DMatrix::zeros(mean.len(), mean.len());
+        let mut open = DVector::zeros(mean.len());
+        for (own, left) in &members {
+            let apart = own - &mean;
+            covariance += left / self.members;
+            covariance.ger(1.0 / self.members, &apart, &apart, 1.0);
+            open += left.diagonal() / self.members;
+        }
+        (0..mean.len())
+            .for_each(|j| covariance[(j, j)] = covariance[(j, j)].max(FAMILY.least.powi(2)));
+        self.told = open
+            .zip_map(&self.covariance.diagonal(), |open, all| (1.0 - open / all).clamp(0.0, 1.0));
+        self.covariance = covariance;
+        self.mean = mean;
+        Ok(())
+    }
+
+    /// In the law's units, for a ship that was not among the members: their mean is known no better
+    /// than from so many, which also makes the greatest likelihood's variances too small.
+    fn axis(
+        &self,
+        axis: sistership_model::coefficient::Axis,
+        names: Vec<String>,
+        units: &[f64],
+        kept: f64,
+    ) -> FamilyAxis {
+        let p = names.len();
+        let wider = self.members / (self.members - 1.0) * (1.0 + 1.0 / self.members);
+        let deviation: Vec<f64> =
+            (0..p).map(|j| (self.covariance[(j, j)] * wider).sqrt()).collect();
+        let correlation = |i: usize, j: usize| {
+            let full = self.covariance[(i, j)]
+                / (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt();
+            if i == j { 1.0 } else { kept * full }
+        };
+        FamilyAxis {
+            axis,
+            names,
+            mean: (0..p).map(|j| self.mean[j] * units[j]).collect(),
+            deviation: deviation
+                .iter()
+                .zip(units)
+                .map(|(deviation, unit)| deviation * unit)
+                .collect(),
+            correlation: (0..p).map(|i| (0..p).map(|j| correlation(i, j)).collect()).collect(),
+            told_by_trials: self.told.iter().copied().collect(),
+        }
+    }
+}
+
+fn inverse(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, FamilyError> {
+    let root: Option<Cholesky<f64, Dyn>> = matrix.clone().cholesky();
+    root.map(|root| root.inverse())
+        .ok_or_else(|| FamilyError::Numbers("a covariance is not positive".into()))
+}

@@ -1,0 +1,47 @@
+//! Statistics in a document: their shape in words, their numbers as the base64 of their bytes, so
+//! that none is rounded.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use sistership_numerics::Moments;
+
+/// As it is written.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PackedMoments {
+    /// Number of regressors.
+    regressors: usize,
+    /// Number of targets.
+    targets: usize,
+    /// [`Moments::numbers`], little-endian doubles.
+    numbers: String,
+}
+
+pub(super) fn serialize<S: Serializer>(
+    moments: &Moments,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let bytes: Vec<u8> = moments.numbers().iter().flat_map(|number| number.to_le_bytes()).collect();
+    PackedMoments {
+        regressors: moments.regressors(),
+        targets: moments.targets(),
+        numbers: STANDARD.encode(bytes),
+    }
+    .serialize(serializer)
+}
+
+pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Moments, D::Error> {
+    let PackedMoments { regressors, targets, numbers } = PackedMoments::deserialize(deserializer)?;
+    let bytes = STANDARD.decode(numbers).map_err(D::Error::custom)?;
+    let (doubles, rest) = bytes.as_chunks::<8>();
+    let numbers: Vec<f64> = doubles.iter().map(|double| f64::from_le_bytes(*double)).collect();
+    let moments = Moments::from_numbers(&numbers, regressors, targets).filter(|_| rest.is_empty());
+    moments.ok_or_else(|| {
+        D::Error::custom(format!(
+            "not the statistics of {regressors} regressors and {targets} targets"
+        ))
+    })
+}

@@ -1,0 +1,32 @@
+//! Why limits cannot be kept.
+
+use clarabel::solver::SolverStatus;
+use sistership_simulation::PlantError;
+
+use super::settings::StraightLine;
+
+/// Why limits of the coefficients cannot be made, or are not kept.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LimitError {
+    /// Bounds of a coefficient that the model does not have.
+    #[error("bounds.{0}: the model has no such coefficient")]
+    Unknown(String),
+    /// The model cannot be made ready.
+    #[error(transparent)]
+    Model(#[from] PlantError),
+    /// A coefficient of the limits is not one of the solution.
+    #[error("constraints: a coefficient was not fitted")]
+    NotFitted,
+    /// Limits that exclude each other, none of which can be left out, by name.
+    #[error("these constraints cannot be kept together: {}", .0.join("; "))]
+    Conflict(Vec<String>),
+    /// The solver found no solution.
+    #[error("constraints: the solver ended with {0:?}")]
+    Solver(SolverStatus),
+    /// A model breaks the limit of that name.
+    #[error("it breaks the constraint `{0}`")]
+    Broken(String),
+    /// A model is not what was declared.
+    #[error("it is not {} on a straight course", if *.0 == StraightLine::Stable { "stable" } else { "unstable" })]
+    StraightLine(StraightLine),
+}

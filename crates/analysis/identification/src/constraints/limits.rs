@@ -1,0 +1,210 @@
+//! The limits of one variant of a refinement, and coefficients within them.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, Matrix2};
+use sistership_model::Model;
+use sistership_model::law::Law;
+use sistership_simulation::PlantError;
+
+use super::conflict::conflict;
+use super::error::LimitError;
+use super::limit::{AffineFunction, Limit};
+use super::programme::{NearestPointProblem, Overstepping};
+use super::settings::{Constraints, StraightLine};
+use super::straight::{affine, fastest, holds, limit, surge, sway_and_yaw};
+use super::thresholds::CONSTRAINTS;
+
+/// Signs that physics fixes: 1 for what is at least 0, -1 for what is at most 0.
+const SIGNS: [(&str, f64); 4] = [("Y_v", -1.0), ("N_r", -1.0), ("Y_delta", -1.0), ("N_delta", 1.0)];
+/// Surge terms that brake in every published set.
+const BRAKES: [&str; 1] = ["X_deltadelta"];
+
+/// Limits of the coefficients of a model.
+pub struct CoefficientLimits {
+    names: Vec<String>,
+    source: Vec<f64>,
+    /// Those that do not depend on a solution.
+    fixed: Vec<Limit>,
+    trust_sd: Option<f64>,
+    straight: Option<(StraightLine, [AffineFunction; 4])>,
+}
+
+impl CoefficientLimits {
+    /// For the coefficients that a model has; `speeds` are the least and the greatest that the
+    /// trials covered, m/s.
+    ///
+    /// # Errors
+    /// Names the setting that asks for what the model does not have.
+    pub fn new(
+        settings: &Constraints,
+        model: &Model,
+        law: &Law,
+        speeds: [f64; 2],
+    ) -> Result<Self, LimitError> {
+        let names: Vec<String> = model.coefficients.keys().cloned().collect();
+        let mut fixed = Vec::new();
+        if settings.physical_signs {
+            fixed.extend(signs(&names, &SIGNS, "physical sign"));
+        }
+        if settings.dissipative {
+            fixed.extend(signs(&names, &BRAKES.map(|name| (name, -1.0)), "dissipation"));
+            fixed.extend(damping(model, law, &names, speeds)?);
+        }
+        for (name, bound) in &settings.bounds {
+            let unknown = || LimitError::Unknown(name.clone());
+            let place = names.iter().position(|own| own == name).ok_or_else(unknown)?;
+            for (sign, bound, word) in [(1.0, bound.min, "least"), (-1.0, bound.max, "greatest")] {
+                let limit = |bound| {
+                    Limit::least(
+                        format!("bound of {name}: {word} {bound}"),
+                        AffineFunction::of_one(names.len(), place, sign, bound),
+                    )
+                };
+                fixed.extend(bound.map(limit));
+            }
+        }
+        let straight = settings
+            .straight_line
+            .map(|line| Ok::<_, PlantError>((line, affine(model, law, &names, &sway_and_yaw)?)));
+        let source = model.coefficients.values().map(|quantity| quantity.value).collect();
+        Ok(Self {
+            names,
+            source,
+            fixed,
+            trust_sd: settings.trust_sd,
+            straight: straight.transpose()?,
+        })
+    }
+
+    /// The coefficients within the limits that are nearest to a solution. `curvature` is over
+    /// `names`, `prior` how far the prior lets each be from the source.
+    ///
+    /// # Errors
+    /// Names the limits that cannot be kept together, or says why no solution was found.
+    pub fn nearest(
+        &self,
+        solution: &BTreeMap<String, f64>,
+        names: &[String],
+        curvature: &DMatrix<f64>,
+        prior: &dyn Fn(&str) -> f64,
+    ) -> Result<BTreeMap<String, f64>, LimitError> {
+        let place = |name: &String| names.iter().position(|own| own == name);
+        let places: Option<Vec<usize>> = self.names.iter().map(place).collect();
+        let places = places.ok_or(LimitError::NotFitted)?;
+        let curvature = curvature.select_rows(&places).select_columns(&places);
+        let centre: Vec<f64> =
+            self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
+        let nearest = NearestPointProblem { centre: &centre, curvature: &curvature };
+        let mut common = self.fixed.clone();
+        common.extend(self.trust(prior));
+        let mut at = centre.clone();
+        for _ in 0..if self.straight.is_some() { CONSTRAINTS.references } else { 1 } {
+            let own = self.straight_line(&at);
+            let limits: Vec<&Limit> = common.iter().chain(&own).collect();
+            if limits.is_empty() {
+                break;
+            }
+            at = within(&nearest, &limits)?;
+        }
+        Ok(self.names.iter().cloned().zip(at).collect())
+    }
+
+    /// Whether coefficients keep the limits that do not depend on a prior.
+    ///
+    /// # Errors
+    /// Names the first limit that they do not keep.
+    pub fn check(&self, model: &Model) -> Result<(), LimitError> {
+        let at: Vec<f64> = self.names.iter().map(|name| model.coefficient(name)).collect();
+        let broken = self.fixed.iter().find(|limit| limit.cone[0].at(&at) < 0.0);
+        if let Some(limit) = broken {
+            return Err(LimitError::Broken(limit.name.clone()));
+        }
+        match &self.straight {
+            Some((line, functions)) if !holds(*line, &matrix(functions, &at)) => {
+                Err(LimitError::StraightLine(*line))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The trust region about the source.
+    fn trust(&self, prior: &dyn Fn(&str) -> f64) -> Vec<Limit> {
+        let Some(sd) = self.trust_sd else { return Vec::new() };
+        let one = |(place, name): (usize, &String)| {
+            let reach = sd * prior(name);
+            [1.0, -1.0].map(|sign| {
+                let edge = self.source[place] - sign * reach;
+                let word = if sign > 0.0 { "below" } else { "above" };
+                let label = format!(
+                    "trust region of {name}: at most {sd} standard deviations {word} the source"
+                );
+                Limit::least(label, AffineFunction::of_one(self.names.len(), place, sign, edge))
+            })
+        };
+        self.names.iter().enumerate().flat_map(one).collect()
+    }
+
+    /// The limit of the straight course by a reference that has what is declared: the solution, the
+    /// source, or the solution with all eigenvalues shifted.
+    fn straight_line(&self, at: &[f64]) -> Option<Limit> {
+        let (line, functions) = self.straight.as_ref()?;
+        let (own, source) = (matrix(functions, at), matrix(functions, &self.source));
+        let towards =
+            if *line == StraightLine::Stable { -CONSTRAINTS.shift } else { CONSTRAINTS.shift };
+        let shifted = own + Matrix2::identity() * (towards - fastest(&own));
+        let candidates = [own, source, shifted].into_iter().filter(|matrix| holds(*line, matrix));
+        candidates.filter_map(|reference| limit(*line, functions, &reference)).next()
+    }
+}
+
+/// The point within limits that is nearest.
+fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f64>, LimitError> {
+    match nearest.within(limits, Overstepping::Held) {
+        Ok(point) => Ok(point.coefficients),
+        Err(status) => Err(match conflict(nearest, limits) {
+            Some(names) => LimitError::Conflict(names),
+            None => LimitError::Solver(status),
+        }),
+    }
+}
+
+fn matrix(functions: &[AffineFunction; 4], at: &[f64]) -> Matrix2<f64> {
+    let [vv, vr, rv, rr] = [0, 1, 2, 3].map(|k: usize| functions[k].at(at));
+    Matrix2::new(vv, vr, rv, rr)
+}
+
+/// Signs of those coefficients that there are.
+fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
+    let one = |&(name, sign): &(&str, f64)| {
+        let place = names.iter().position(|own| own == name)?;
+        let word = if sign > 0.0 { "at least" } else { "at most" };
+        Some(Limit::least(
+            format!("{what}: {name} {word} 0"),
+            AffineFunction::of_one(names.len(), place, sign, 0.0),
+        ))
+    };
+    signs.iter().filter_map(one).collect()
+}
+
+/// Surge acceleration that falls with speed, over the speeds ahead that the trials covered.
+fn damping(
+    model: &Model,
+    law: &Law,
+    names: &[String],
+    [low, high]: [f64; 2],
+) -> Result<Vec<Limit>, PlantError> {
+    let ahead = low.max(CONSTRAINTS.least_speed * high);
+    let speeds: Vec<f64> = (0..CONSTRAINTS.speeds)
+        .map(|k| ahead + (high - ahead) * k as f64 / (CONSTRAINTS.speeds - 1) as f64)
+        .filter(|u| *u > 0.0)
+        .collect();
+    let one = |speed: f64| {
+        let [slope] = affine(model, law, names, &|ship| [surge(ship, speed)])?;
+        Ok(Limit::least(
+            format!("dissipation: surge damping at {speed:.2} m/s"),
+            slope.with(-1.0, &slope, 0.0),
+        ))
+    };
+    speeds.into_iter().map(one).collect()
+}

@@ -1,0 +1,134 @@
+//! How a ship answers to small disturbances of a straight course, as an affine function of its
+//! coefficients.
+
+use nalgebra::{Matrix2, Matrix3, Vector3};
+use sistership_model::Model;
+use sistership_model::law::Law;
+use sistership_simulation::plant::Work;
+use sistership_simulation::state::{at, straight};
+use sistership_simulation::{PlantError, Ship, StateVector};
+
+use super::limit::{AffineFunction, Limit};
+use super::settings::StraightLine;
+use super::thresholds::CONSTRAINTS;
+
+/// Rates of change of the velocities at a straight course disturbed in one of them, by central
+/// differences.
+fn slope(ship: &Ship, speed_m_s: f64, place: usize, size: f64) -> StateVector {
+    let rate = |by: f64| {
+        let mut state = straight(speed_m_s);
+        state[place] += by;
+        ship.rate_at(&state, 0.0, ship.revolutions_at(speed_m_s), &mut Work::default())
+    };
+    (rate(size) - rate(-size)) / (2.0 * size)
+}
+
+/// The matrix of sway and yaw: rates of `v/U` and `r L/U` by themselves, time by `L/U`.
+pub(super) fn sway_and_yaw(ship: &Ship) -> [f64; 4] {
+    let (length, speed) = (ship.lpp_m(), ship.approach_speed_m_s());
+    let time = length / speed;
+    let by_sway = slope(ship, speed, at::V, CONSTRAINTS.disturbance * speed);
+    let by_yaw = slope(ship, speed, at::R, CONSTRAINTS.disturbance * speed / length);
+    [
+        by_sway[at::V] * time,
+        by_yaw[at::V] / speed,
+        by_sway[at::R] * length * time,
+        by_yaw[at::R] * time,
+    ]
+}
+
+/// How surge acceleration changes with speed.
+pub(super) fn surge(ship: &Ship, speed_m_s: f64) -> f64 {
+    slope(ship, speed_m_s, at::U, CONSTRAINTS.disturbance * speed_m_s)[at::U]
+}
+
+/// Functions of a model's coefficients that are affine in them, by differences.
+pub(super) fn affine<const N: usize>(
+    model: &Model,
+    law: &Law,
+    names: &[String],
+    of: &dyn Fn(&Ship) -> [f64; N],
+) -> Result<[AffineFunction; N], PlantError> {
+    let at = |model: &Model| Ship::new(model, law).map(|ship| of(&ship));
+    let here = at(model)?;
+    let mut normals: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(names.len()));
+    for name in names {
+        let mut moved = model.clone();
+        let value = model.coefficient(name);
+        let by = if value == 0.0 { CONSTRAINTS.difference } else { value.abs() };
+        moved.coefficients.get_mut(name).into_iter().for_each(|quantity| quantity.value += by);
+        let there = at(&moved)?;
+        (0..N).for_each(|k| normals[k].push((there[k] - here[k]) / by));
+    }
+    let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
+    Ok(std::array::from_fn(|k| {
+        let linear = AffineFunction { normal: normals[k].clone(), constant: 0.0 };
+        AffineFunction { constant: here[k] - linear.at(&values), ..linear }
+    }))
+}
+
+/// Whether a matrix has what is declared.
+pub(super) fn holds(line: StraightLine, matrix: &Matrix2<f64>) -> bool {
+    match line {
+        StraightLine::Stable => fastest(matrix) < 0.0,
+        StraightLine::Unstable => fastest(matrix) > 0.0,
+    }
+}
+
+/// Of the definite matrix that makes it so.
+fn sign(line: StraightLine) -> f64 {
+    if line == StraightLine::Stable { -1.0 } else { 1.0 }
+}
+
+/// What is declared as a limit: `P A + A' P` is definite for the `P` with which it is so at a
+/// reference. By Lyapunov's theorems, negative definite with the `P` of a stable reference makes
+/// `A` stable, and positive definite with the `P` of an unstable one makes it unstable (Khalil
+/// 2002, Nonlinear systems, Theorems 4.3 and 4.6). None where the reference has no such `P`.
+pub(super) fn limit(
+    line: StraightLine,
+    functions: &[AffineFunction; 4],
+    reference: &Matrix2<f64>,
+) -> Option<Limit> {
+    let p = lyapunov(reference, sign(line))?;
+    let [vv, vr, rv, rr] = functions;
+    let twice = |a: &AffineFunction, pa: f64, b: &AffineFunction, pb: f64| {
+        a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line))
+    };
+    let margin = |mut function: AffineFunction| {
+        function.constant -= CONSTRAINTS.margin;
+        function
+    };
+    let first = margin(twice(vv, p[(0, 0)], rv, p[(0, 1)]));
+    let last = margin(twice(vr, p[(0, 1)], rr, p[(1, 1)]));
+    let cross =
+        vr.with(p[(0, 0)], vv, p[(0, 1)]).with(1.0, &rr.with(p[(0, 1)], rv, p[(1, 1)]), 1.0);
+    let cross = cross.with(sign(line), &cross, 0.0);
+    let name = if line == StraightLine::Stable {
+        "straight-line stability"
+    } else {
+        "straight-line instability"
+    };
+    Some(Limit::matrix(name.to_owned(), [&first, &cross, &last]))
+}
+
+/// The largest real part of the eigenvalues.
+pub(super) fn fastest(matrix: &Matrix2<f64>) -> f64 {
+    matrix.complex_eigenvalues().iter().map(|value| value.re).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The symmetric `P` with `P A + A' P = sign I`.
+fn lyapunov(a: &Matrix2<f64>, sign: f64) -> Option<Matrix2<f64>> {
+    let equations = Matrix3::new(
+        2.0 * a[(0, 0)],
+        2.0 * a[(1, 0)],
+        0.0,
+        a[(0, 1)],
+        a[(0, 0)] + a[(1, 1)],
+        a[(1, 0)],
+        0.0,
+        2.0 * a[(0, 1)],
+        2.0 * a[(1, 1)],
+    );
+    let p = equations.lu().solve(&Vector3::new(sign, 0.0, sign))?;
+    Some(Matrix2::new(p[0], p[1], p[1], p[2]))
+}

@@ -1,0 +1,136 @@
+//! A source of one law as the prior of another.
+//!
+//! What a source says of a ship is not its coefficients but its accelerations. Where they are to
+//! hold another law, they are regressed on its terms over the envelope in which the model will be
+//! used ([`OperatingEnvelope`]): mean and covariance of that regression are the prior
+//! ([`SourceRegression`]). docs/decisions/0015 has the reasons.
+
+mod plane_source;
+mod source_envelopes;
+mod source_regression;
+
+use std::sync::Arc;
+
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel};
+
+use super::envelope::OperatingEnvelope;
+use super::outcome::RefineError;
+pub(super) use plane_source::PlaneSource;
+use sistership_priors::transfer::{Approach, blank_of, transfer};
+pub use source_envelopes::SourceEnvelopes;
+pub(super) use source_regression::SourceRegression;
+
+/// A source by its own law on a ship; as it is on its own.
+pub(super) fn carried_over(
+    (source, own): (&Model, &Law),
+    target: &Vessel,
+    approach: Option<Approach>,
+) -> Model {
+    if source.ship == target.name() {
+        return source.clone();
+    }
+    transfer(source, own, target, approach)
+}
+
+/// A source carried over to the target by its own law, and a model of the law to be fitted that
+/// knows nothing yet.
+pub(super) fn begun(
+    (source, own): (&Model, &Law),
+    law: &Law,
+    target: &Vessel,
+    approach: Option<Approach>,
+    (trials, known): (&[&Trial], &SourceEnvelopes),
+) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
+    let carried = carried_over((source, own), target, approach);
+    let envelope = known.of((source, own), || {
+        let envelope = OperatingEnvelope::new(&carried, own, trials)?;
+        Ok(OperatingEnvelope { source: source.name.clone(), ..envelope })
+    })?;
+    let mut model = blank_of(law, target, &carried, approach)?;
+    (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
+    model.steering = carried.steering;
+    model.note = Some(format!("regressed on what {} says", source.name));
+    Ok((model, envelope))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use crate::refine::{Method, Refinement, Request, Settings, refine};
+    use crate::testing::trials;
+
+    /// The Mariner, which does not roll, as the source of a container ship that does.
+    fn by_the_mariner(hydrostatic_roll: bool) -> Refinement {
+        by("mariner", Settings { hydrostatic_roll, ..Settings::default() })
+    }
+
+    fn by(source: &str, settings: Settings) -> Refinement {
+        let zoo = Zoo::embedded().unwrap();
+        let [truth, source] = ["sr108", source].map(|name| zoo.model(name).unwrap());
+        let law = |name: &str| zoo.law(name).unwrap();
+        let trials = trials(&truth, law(&truth.law), 0.001);
+        let settings = Settings { method: Method::Weak, strengths: vec![1e-3, 1e-4], ..settings };
+        let request = Request {
+            target: zoo.vessel("sr108").unwrap(),
+            source: &source,
+            source_law: Some(law(&source.law)),
+            law: law("abkowitz-roll"),
+            trials: &trials.iter().collect::<Vec<_>>(),
+            population: &[],
+            settings: &settings,
+        };
+        refine(&request, &|_, _| true).unwrap()
+    }
+
+    #[test]
+    fn a_law_that_lists_no_coefficient_is_held_by_a_source_of_another() {
+        let made = by_the_mariner(false);
+        assert!(made.model.coefficients.contains_key("Y_phi"), "third order");
+        assert!(made.transferred.coefficients.get("K_heel").is_none_or(|heel| heel.value == 0.0));
+    }
+
+    #[test]
+    fn a_source_of_the_plane_turns_the_ship_and_hydrostatics_roll_it() {
+        let alone = by("kcs", Settings::default()).transferred;
+        assert!(alone.coefficients.is_empty(), "surge, sway and yaw are not asked");
+        let made = by("kcs", Settings { plane_source: true, ..Settings::default() });
+        let begun = &made.transferred;
+        assert!(begun.coefficient("Y_v") < 0.0 && begun.coefficient("N_delta") != 0.0);
+        assert!(begun.coefficient("K_heel") < 0.0 && !begun.coefficients.contains_key("K_v"));
+        assert!(made.remarks.iter().any(|remark| remark.contains("its own revolutions")));
+        let of = |errors: &std::collections::BTreeMap<_, f64>| errors["psi"];
+        assert!(of(&made.held_out.refined) < 0.2 * of(&made.held_out.source));
+        assert!(of(&made.held_out.source) < 1.0, "it turns as ships do, rad");
+    }
+
+    #[test]
+    fn what_the_plane_does_not_say_is_held_where_it_is() {
+        let weak = Settings { plane_source: true, ..Settings::default() };
+        let strong = Settings { roll_strength: Some(1e12), ..weak.clone() };
+        let moved = |settings| {
+            let made = by("kcs", settings);
+            let rolls = made.model.coefficients.keys().filter(|name| name.starts_with("K_"));
+            let squares = rolls.map(|name| {
+                (made.model.coefficient(name) - made.transferred.coefficient(name)).powi(2)
+            });
+            squares.sum::<f64>()
+        };
+        let (free, held) = (moved(weak), moved(strong));
+        assert!(held < 1e-3 * free, "{held} of {free}");
+    }
+
+    #[test]
+    fn roll_begins_with_hydrostatics_where_that_is_asked() {
+        let made = by_the_mariner(true);
+        assert!(made.transferred.coefficient("K_heel") < 0.0);
+        assert!(made.remarks.iter().any(|remark| remark.contains("metacentric height")));
+        let of = |errors: &std::collections::BTreeMap<_, f64>| {
+            errors[&sistership_model::trial::Channel::Psi.name().to_owned()]
+        };
+        assert!(of(&made.held_out.refined) < 0.2 * of(&made.held_out.source));
+    }
+}

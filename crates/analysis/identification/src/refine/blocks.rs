@@ -1,0 +1,280 @@
+//! How a law becomes linear regressions: groups of axes that the mass matrix couples, and what each
+//! regression solves.
+//!
+//! As published, accelerations are regressed: `acceleration = M^-1 (scale sum(c_i phi_i) + rest)`.
+//! Axes that the mass matrix couples have their coefficients mixed by `M^-1`; where they have the
+//! same terms, one common set of regressors serves all of them and the coefficients are unmixed
+//! afterwards (Kanazawa 2023, Eqs. 5.9-5.10). Where their terms differ, the force on each axis is
+//! regressed instead.
+
+use std::borrow::Cow;
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+use sistership_model::law::Law;
+use sistership_simulation::equations::{EquationsOfMotion, Lowering};
+use sistership_simulation::tape::Tape;
+
+use super::outcome::RefineError;
+use sistership_numerics::{Metric, Moments};
+
+/// One regression: its axes, the coefficients of each, and where its pieces stand on the tape.
+#[derive(Debug, Clone)]
+pub struct Block {
+    /// The axes it solves for.
+    pub axes: Vec<Axis>,
+    /// Names of the coefficients by axis; the same place in each is the same regressor.
+    pub names: Vec<Vec<String>>,
+    /// Regressors without scale, in the order of the names.
+    pub(crate) terms: Vec<usize>,
+    /// How many times the precision of each one's prior is the common one: more than 1 for
+    /// deviations of submodels.
+    pub shrinkage: Vec<f64>,
+    /// Joint precision of the prior at strength 1, in the units of the regressors, where a source
+    /// has earned one.
+    pub(crate) precision: Option<DMatrix<f64>>,
+    /// Scale by axis.
+    pub(crate) scales: Vec<usize>,
+    /// Rest by axis.
+    pub(crate) rests: Vec<usize>,
+    /// Mass matrix rows of these axes, over all coupled axes.
+    pub(crate) mass: Vec<Vec<Option<usize>>>,
+    /// The axes of the mass matrix' columns.
+    pub(crate) columns: Vec<Axis>,
+    /// What effects add to the accelerations of these, where they do.
+    pub(crate) additions: Vec<Option<usize>>,
+    /// What the regression solves for is this matrix times the coefficients of its axes.
+    pub mixing: DMatrix<f64>,
+    /// Its inverse: from what the regression solves for to the coefficients of the axes.
+    pub(crate) unmixing: DMatrix<f64>,
+}
+
+/// Every regression of a law, and the tape that evaluates their pieces.
+#[derive(Debug, Clone)]
+pub struct Blocks {
+    /// The regressions.
+    pub blocks: Vec<Block>,
+    pub(crate) tape: Tape,
+    /// What the tape takes after the states.
+    pub(crate) inputs: Vec<(String, Option<f64>)>,
+}
+
+impl Blocks {
+    /// For the coefficients that a source model has.
+    ///
+    /// # Errors
+    /// Names what the model does not give, or the coefficient the law does not have.
+    pub fn new(model: &Model, law: &Law) -> Result<Self, RefineError> {
+        let equations = EquationsOfMotion::of_law(model, Cow::Borrowed(law));
+        if let Some(blocks) = Self::build(&equations, true)? {
+            return Ok(blocks);
+        }
+        // Mass or scales change during a run: there is no constant mixture to undo, so forces are
+        // regressed.
+        let forces = Self::build(&equations, false)?;
+        forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
+    }
+
+    fn build(
+        equations: &EquationsOfMotion<'_>,
+        allow_common: bool,
+    ) -> Result<Option<Self>, RefineError> {
+        let names = equations.names();
+        let mut lowering = Lowering::new(equations, &names);
+        let mut blocks = Vec::new();
+        for group in coupled(equations.law()) {
+            for axes in split(equations, &group, allow_common) {
+                blocks.extend(block(equations, &mut lowering, axes, &group)?);
+            }
+        }
+        let tape = lowering.finish();
+        for block in &mut blocks {
+            let Some(mixing) = mixing(block, &tape, names.len()) else { return Ok(None) };
+            block.unmixing = inverse(&mixing).ok_or_else(|| singular(equations.law(), block))?;
+            block.mixing = mixing;
+        }
+        Ok(Some(Self { blocks, tape, inputs: equations.inputs() }))
+    }
+}
+
+/// Groups of axes that the mass matrix couples.
+fn coupled(law: &Law) -> Vec<Vec<Axis>> {
+    let mut groups: Vec<Vec<Axis>> = Vec::new();
+    for axis in law.axes.keys().copied() {
+        let touches = |group: &Vec<Axis>| {
+            group
+                .iter()
+                .any(|&o| law.mass.contains_key(&(axis, o)) || law.mass.contains_key(&(o, axis)))
+        };
+        let (mut joined, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(touches);
+        let mut group: Vec<Axis> = joined.drain(..).flatten().collect();
+        group.push(axis);
+        groups = apart;
+        groups.push(group);
+    }
+    groups
+}
+
+/// The part of a coefficient's name after its axis.
+fn suffix(name: &str) -> &str {
+    name.split_once('_').map_or(name, |(_, suffix)| suffix)
+}
+
+/// A group whose axes have the same terms is solved together, else axis by axis.
+fn split(equations: &EquationsOfMotion<'_>, group: &[Axis], allow_common: bool) -> Vec<Vec<Axis>> {
+    let terms = |axis: Axis| -> Vec<_> {
+        let term = |name: &String| (suffix(name).to_owned(), equations.term(name).ok());
+        equations.coefficients(axis).map(term).collect()
+    };
+    let same = allow_common && group.windows(2).all(|pair| terms(pair[0]) == terms(pair[1]));
+    if same { vec![group.to_vec()] } else { group.iter().map(|&axis| vec![axis]).collect() }
+}
+
+fn block(
+    equations: &EquationsOfMotion<'_>,
+    lowering: &mut Lowering<'_>,
+    axes: Vec<Axis>,
+    group: &[Axis],
+) -> Result<Option<Block>, RefineError> {
+    let law = equations.law();
+    let names: Vec<Vec<String>> =
+        axes.iter().map(|&axis| equations.coefficients(axis).cloned().collect()).collect();
+    if names[0].is_empty() {
+        return Ok(None);
+    }
+    let mut terms = Vec::new();
+    for name in &names[0] {
+        terms.push(lowering.output(&equations.term(name)?)?);
+    }
+    let scales =
+        axes.iter().map(|axis| lowering.output(&law.axes[axis].scale)).collect::<Result<_, _>>()?;
+    let rests =
+        axes.iter().map(|axis| lowering.output(&law.axes[axis].rest)).collect::<Result<_, _>>()?;
+    let mut mass = Vec::new();
+    for &axis in &axes {
+        mass.push(
+            group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?,
+        );
+    }
+    let unmixed = DMatrix::identity(axes.len(), axes.len());
+    let additions = lowering.additions(group)?;
+    let shrinkage = names[0]
+        .iter()
+        .map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage))
+        .collect();
+    Ok(Some(Block {
+        axes,
+        names,
+        terms,
+        shrinkage,
+        precision: None,
+        scales,
+        rests,
+        mass,
+        columns: group.to_vec(),
+        mixing: unmixed.clone(),
+        unmixing: unmixed,
+        additions,
+    }))
+}
+
+impl Block {
+    /// Number of regressors.
+    pub fn regressors(&self) -> usize {
+        self.terms.len()
+    }
+
+    /// Columns of its table: regressors, then targets.
+    pub(crate) fn width(&self) -> usize {
+        self.regressors() + self.axes.len()
+    }
+
+    /// How its prior measures coefficients.
+    pub(crate) fn metric(&self, moments: &Moments) -> Metric {
+        let earned = self.precision.as_ref().and_then(Metric::of_precision);
+        earned.unwrap_or_else(|| Metric::of_regressors(moments, &self.shrinkage))
+    }
+
+    /// The square by which each regressor moves, over an envelope or the trials where that is more,
+    /// with its shrinkage.
+    pub(super) fn sizes(&self, envelope: &Moments, trials: &Moments) -> DVector<f64> {
+        let moves = |j: usize| envelope.variance(j).max(trials.variance(j));
+        DVector::from_fn(self.regressors(), |j, _| self.shrinkage[j] * moves(j))
+    }
+
+    /// Whether the force of one axis of a coupled group is regressed, and not accelerations.
+    pub(crate) fn is_force(&self) -> bool {
+        self.axes.len() < self.columns.len()
+    }
+}
+
+/// The inverse of a mixing matrix; none where it is singular.
+fn inverse(mixing: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let (rows, columns) = mixing.shape();
+    let inverse = mixing.clone().lu().solve(&DMatrix::identity(rows, columns))?;
+    inverse.iter().all(|value| value.is_finite()).then_some(inverse)
+}
+
+/// The refusal of a mixing matrix that has no inverse.
+fn singular(law: &Law, block: &Block) -> RefineError {
+    let axes: Vec<String> = block.axes.iter().map(|axis| format!("{axis:?}")).collect();
+    RefineError::Law(format!(
+        "the coefficients of the axes {} of law `{}` cannot be told from their common regression: \
+         the mass matrix with the scales of these axes is singular; check the scales in the law, \
+         and mass, inertia and added masses of the ship",
+        axes.join(", "),
+        law.name
+    ))
+}
+
+/// `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the regressors. `None`
+/// where it is not constant.
+fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
+    let q = block.axes.len();
+    if q == 1 {
+        return Some(DMatrix::identity(1, 1));
+    }
+    let entry =
+        |output: Option<usize>| output.map_or(Some(0.0), |output| tape.constant_output(output));
+    let mut mass = DMatrix::zeros(q, q);
+    for (row, column) in (0..q).flat_map(|row| (0..q).map(move |column| (row, column))) {
+        mass[(row, column)] = entry(block.mass[row][column])?;
+    }
+    let ratios = |at: f64| {
+        let values = tape.values(&(0..inputs).map(|i| at + 0.1 * i as f64).collect::<Vec<f64>>());
+        DVector::from_iterator(
+            q,
+            block.scales.iter().map(|&scale| values[scale] / values[block.scales[0]]),
+        )
+    };
+    let (here, there) = (ratios(0.7), ratios(1.9));
+    let constant = here.iter().zip(there.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * a.abs());
+    if !constant {
+        return None;
+    }
+    mass.lu().solve(&DMatrix::from_diagonal(&here))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use super::*;
+
+    #[test]
+    fn a_mixture_that_cannot_be_undone_is_refused_with_its_axes() {
+        let regular = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]);
+        let one = inverse(&regular).unwrap() * &regular;
+        assert!((one - DMatrix::identity(2, 2)).amax() < 1e-12);
+        assert!(inverse(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
+        assert!(inverse(&DMatrix::from_row_slice(1, 1, &[f64::NAN])).is_none());
+        let zoo = Zoo::embedded().unwrap();
+        let law = zoo.law("abkowitz").unwrap();
+        let blocks = Blocks::new(&zoo.model("mariner").unwrap(), law).unwrap();
+        let coupled = blocks.blocks.iter().find(|block| block.axes.len() == 2).unwrap();
+        let refusal = singular(law, coupled).to_string();
+        assert!(refusal.contains("axes Y, N of law `abkowitz`"), "{refusal}");
+    }
+}

@@ -1,0 +1,154 @@
+//! A candidate: a fit with its errors on trials left out, and which of several is best.
+
+use sistership_model::Model;
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::horizons::{HorizonErrors, combined};
+
+use super::cma_es::SearchReport;
+use super::errors::CoefficientErrors;
+use super::outcome::{RefineError, StepOption};
+use super::problem::Problem;
+use super::ridge::{Choices, Fit};
+use super::simulated::Simulated;
+use super::thresholds::SELECTION;
+use super::variant::Variant;
+use sistership_numerics::RidgeChoice;
+
+/// What a candidate gives where it is taken: its fit on all trials.
+pub(super) trait Solution: Sync {
+    /// The coefficients without their errors; `None` where the source stays as it is.
+    ///
+    /// # Errors
+    /// The trials have no sample, or the constraints cannot be kept.
+    fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError>;
+
+    /// Joint errors of the coefficients, where the estimator knows them.
+    ///
+    /// # Errors
+    /// A trial lacks a channel.
+    fn errors(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError>;
+
+    /// The ridge that it is: the place of its variant, and its choices.
+    fn ridge(&self) -> Option<(usize, &Choices)> {
+        None
+    }
+}
+
+/// The source as it is.
+pub(super) struct UnchangedSource;
+
+impl Solution for UnchangedSource {
+    fn fit(&self, _: &[Variant]) -> Result<Option<Fit>, RefineError> {
+        Ok(None)
+    }
+
+    fn errors(
+        &self,
+        _: &Problem<'_>,
+        _: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
+        Ok(None)
+    }
+}
+
+/// A fit with what it takes to compare and to take it.
+pub(super) struct CandidateFit {
+    pub option: StepOption,
+    pub solution: Box<dyn Solution>,
+    /// Squared errors at the shortest restart interval.
+    pub errors: SquaredError,
+    /// Standardised errors by restart interval, the shortest first.
+    pub horizons: Vec<HorizonErrors>,
+    /// Standardised errors by trial, over every restart interval.
+    pub each: Vec<f64>,
+    /// Whether those are parts of so few trials that even the source gives way to what is clearly
+    /// better only.
+    pub few: bool,
+    /// Number of coefficients that are fitted.
+    pub size: usize,
+    /// The model of each fold, which did not see it; none of the source.
+    pub left_out: Vec<Model>,
+    /// What a search did.
+    pub search: Option<SearchReport>,
+}
+
+impl CandidateFit {
+    /// Of a solution whose trials left out were simulated; `size` is the number of its
+    /// coefficients.
+    pub fn new(
+        problem: &Problem<'_>,
+        (step, lambda_min): (String, Option<f64>),
+        solution: impl Solution + 'static,
+        size: usize,
+        simulated: Simulated,
+    ) -> Self {
+        let Simulated { total: errors, horizons, reason } = simulated;
+        let (error, each) = combined(&horizons);
+        let error = reason.is_none().then_some(error);
+        let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
+            solution
+                .ridge()
+                .into_iter()
+                .flat_map(|(_, choices)| choices.iter().flatten())
+                .map(of)
+                .collect()
+        };
+        let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
+        let option = StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason };
+        Self {
+            option,
+            solution: Box::new(solution),
+            errors,
+            horizons,
+            each,
+            few: problem.settings.in_parts,
+            size,
+            left_out: Vec::new(),
+            search: None,
+        }
+    }
+
+    /// Counts errors at further restart intervals, too.
+    pub fn add_horizons(&mut self, horizons: Vec<HorizonErrors>) {
+        self.horizons.extend(horizons);
+        let (error, each) = combined(&self.horizons);
+        (self.option.error, self.each) = (Some(error), each);
+    }
+}
+
+/// The option with the least error; an earlier one wins unless a later one is better by more than
+/// one per cent, and against one with fewer coefficients by more than two standard errors of the
+/// difference over the trials (Breiman et al. 1984, Classification and regression trees, section
+/// 3.4.3).
+pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
+    let mut best: Option<(usize, f64)> = None;
+    for (index, error) in
+        options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?)))
+    {
+        let better = |(at, least): (usize, f64)| {
+            error < SELECTION.better * least && clearly(&options[index], &options[at])
+        };
+        if error.is_finite() && best.is_none_or(better) {
+            best = Some((index, error));
+        }
+    }
+    best.map(|(index, _)| index)
+}
+
+/// Whether an option may replace one that has fewer coefficients; the source has none of its own to
+/// count, and gives way to any that is better where there are trials enough.
+fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
+    let is_larger = old.size > 0 && new.size > old.size;
+    if !(new.few || is_larger) || new.each.len() != old.each.len() || new.each.len() < 2 {
+        return true;
+    }
+    let gains: Vec<f64> = old.each.iter().zip(&new.each).map(|(old, new)| old - new).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean > SELECTION.standard_errors * (variance / count).sqrt()
+}

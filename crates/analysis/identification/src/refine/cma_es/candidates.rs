@@ -1,0 +1,301 @@
+//! The search as a candidate of a refinement.
+
+use std::collections::BTreeMap;
+
+use sistership_model::Model;
+use sistership_model::trial::Channel;
+use sistership_simulation::candidates::CandidateSystem;
+use sistership_simulation::state::at;
+
+use super::super::candidate::{CandidateFit, Solution};
+use super::super::errors::CoefficientErrors;
+use super::super::outcome::RefineError;
+use super::super::problem::Problem;
+use super::super::progress::{Iterate, PartProgress, Progress, step};
+use super::super::ridge::{Fit, Fitted};
+use super::super::ridge_candidates::share;
+use super::super::simulated::simulate_training;
+use super::super::trajectory::{
+    ComparisonPlan, Segment, SegmentLengths, WeakFormPrior, compared, cut,
+};
+use super::super::variant::Variant;
+use super::deviation::DeviationPenalty;
+use super::objective::{Objective, Sequences};
+use super::thresholds::OBJECTIVE;
+use super::{CmaEs, SearchReport};
+use sistership_numerics::cma_es::{
+    Budget, CmaEsSearch, SearchCancelled, SearchOutcome, SearchState,
+};
+use sistership_priors::transfer::ready;
+
+/// The search among one variant's coefficients.
+struct VariantSearch<'a> {
+    problem: &'a Problem<'a>,
+    variant: &'a Variant,
+    settings: &'a CmaEs,
+    objective: Objective,
+    segments: Vec<Segment>,
+    /// Coefficients that the trials move, by their places among all.
+    moved: Vec<usize>,
+}
+
+/// What the fit on all trials and those with trials left out found: coefficients each.
+struct SearchSolution {
+    all: Vec<f64>,
+    left_out: Vec<Vec<f64>>,
+    report: SearchReport,
+}
+
+impl Solution for Fit {
+    fn fit(&self, _: &[Variant]) -> Result<Option<Fit>, RefineError> {
+        Ok(Some(self.clone()))
+    }
+
+    /// A search without slopes knows none.
+    fn errors(
+        &self,
+        _: &Problem<'_>,
+        _: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
+        Ok(None)
+    }
+}
+
+/// Adds a candidate for each family of terms.
+///
+/// # Errors
+/// A trial lacks a channel, the trials are too short, or it was cancelled.
+pub(super) fn search(
+    problem: &Problem<'_>,
+    variants: &[Variant],
+    candidates: &mut Vec<CandidateFit>,
+    progress: Progress<'_>,
+) -> Result<(), RefineError> {
+    let settings = problem.settings.cma_es.clone().unwrap_or_default();
+    for (index, variant) in variants.iter().enumerate() {
+        let told = |done: f64, what: &str| step(progress, share(index, done, variants.len()), what);
+        let searching = VariantSearch::new(problem, variant, &settings)?;
+        let found = searching.search(&told)?;
+        candidates.push(searching.candidate(found)?);
+    }
+    Ok(())
+}
+
+/// How trials are cut into subsequences, and the comparisons that fall on samples.
+fn sequences(problem: &Problem<'_>) -> SegmentLengths {
+    let (interval, settings) = (problem.interval_s(), &problem.settings);
+    let wanted = settings.step_s.unwrap_or(interval);
+    let step_s = if wanted >= interval {
+        interval * (wanted / interval).round()
+    } else {
+        interval / (interval / wanted).ceil()
+    };
+    let residual_s = settings.residual_s.unwrap_or(interval).max(step_s);
+    SegmentLengths {
+        segment_s: settings.segment_s.unwrap_or(OBJECTIVE.fallback_steps * step_s),
+        residual_s,
+        step_s,
+    }
+}
+
+impl<'a> VariantSearch<'a> {
+    fn new(
+        problem: &'a Problem<'a>,
+        variant: &'a Variant,
+        settings: &'a CmaEs,
+    ) -> Result<Self, RefineError> {
+        let system = CandidateSystem::new(&variant.model, problem.law)?;
+        let cutting = sequences(problem);
+        let plan = plan(problem, &system, cutting)?;
+        let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
+        if segments.is_empty() {
+            return Err(RefineError::Data(
+                "no trial is as long as a third of a subsequence".into(),
+            ));
+        }
+        let ship = ready(&variant.model, problem.law, &problem.training)?;
+        let sizes = natural_sizes(variant, system.names())?;
+        let moved = (0..sizes.len()).filter(|k| sizes[*k] > 0.0).collect();
+        let objective = Objective {
+            deviation: DeviationPenalty::new(
+                &system,
+                problem.law,
+                &problem.training,
+                cutting.step_s,
+                OBJECTIVE.mean_steps * cutting.step_s,
+            ),
+            source: system.names().iter().map(|name| variant.model.coefficient(name)).collect(),
+            system,
+            plan,
+            method: settings.integration,
+            envelope: *ship.envelope(),
+            weights: (settings.deviation, settings.absolute),
+            sizes,
+            width: settings.box_width,
+        };
+        Ok(Self { problem, variant, settings, objective, segments, moved })
+    }
+
+    /// On all trials, then without those of each fold.
+    fn search(&self, told: PartProgress<'_>) -> Result<SearchSolution, RefineError> {
+        let given = self.settings;
+        let budget =
+            Budget { evaluations: given.evaluations, wall_s: given.wall_s, cpu_s: given.cpu_s };
+        let sequences = Sequences::new(&self.objective, self.segments.iter());
+        let search = self.searching(budget, given.seed);
+        let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
+        let mut tell = |standing: &SearchState<'_>| self.tell(standing, &budget, told);
+        let outcome =
+            search.least(&cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)?;
+        let budget = Budget {
+            evaluations: (given.fold_share * outcome.spent.evaluations as f64).ceil() as usize,
+            wall_s: None,
+            cpu_s: None,
+        };
+        let mut fold_evaluations = 0;
+        let mut left_out = Vec::new();
+        for fold in 0..self.problem.fold_count() {
+            told(
+                0.7 + 0.3 * fold as f64 / self.problem.fold_count() as f64,
+                "the search without the trials of each fold",
+            )?;
+            let again = self.without(fold, &outcome, budget, told)?;
+            fold_evaluations += again.spent.evaluations;
+            left_out.push(self.objective.coefficients(&self.spread(&again.best)));
+        }
+        let all = self.objective.coefficients(&self.spread(&outcome.best));
+        let report = SearchReport {
+            seed: given.seed,
+            evaluations: outcome.spent.evaluations,
+            fold_evaluations,
+            restarts: outcome.populations.len() - 1,
+            populations: outcome.populations,
+            objective: outcome.cost,
+            error: self.objective.error(&sequences, &all),
+            deviation: self.objective.deviated(&all),
+        };
+        Ok(SearchSolution { all, left_out, report })
+    }
+
+    /// Goes on from the optimum for all trials with those of a fold left out.
+    fn without(
+        &self,
+        fold: usize,
+        optimum: &SearchOutcome,
+        budget: Budget,
+        told: PartProgress<'_>,
+    ) -> Result<SearchOutcome, RefineError> {
+        let inside = |segment: &&Segment| self.problem.is_fitted(segment.trial, fold);
+        let sequences = Sequences::new(&self.objective, self.segments.iter().filter(inside));
+        let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
+        let search =
+            self.searching(budget, self.settings.seed.wrapping_add(1000 * (fold as u64 + 1)));
+        let first = optimum.strategy.renewed(
+            &optimum.best,
+            OBJECTIVE.fold_spread * self.settings.spread,
+            search.seed,
+        );
+        let mut tell =
+            |_: &SearchState<'_>| told(0.7, "the search without the trials of each fold").is_ok();
+        search.from(first, &cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)
+    }
+
+    fn searching(&self, budget: Budget, seed: u64) -> CmaEsSearch {
+        let CmaEs { population, largest_population, spread, box_width, .. } = *self.settings;
+        CmaEsSearch {
+            widths: vec![box_width; self.moved.len()],
+            sigma: spread,
+            population,
+            largest_population,
+            seed,
+            budget,
+        }
+    }
+
+    /// Parameters of all coefficients from those that are searched.
+    fn spread(&self, searched: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.objective.source.len()];
+        self.moved.iter().zip(searched).for_each(|(&k, value)| all[k] = *value);
+        all
+    }
+
+    fn tell(&self, standing: &SearchState<'_>, budget: &Budget, told: PartProgress<'_>) -> bool {
+        let (best, cost) = standing.best;
+        let model = || self.model(&self.objective.coefficients(&self.spread(best)));
+        self.problem.show(&Iterate {
+            evaluations: standing.spent.evaluations,
+            objective: cost,
+            model: &model,
+        });
+        let what = format!(
+            "{} evaluations, objective {cost:.4}, restarts {}",
+            standing.spent.evaluations, standing.restarts
+        );
+        told(0.7 * standing.spent.share(budget).min(1.0), &what).is_ok()
+    }
+
+    fn model(&self, coefficients: &[f64]) -> Model {
+        let values: BTreeMap<String, f64> = self
+            .objective
+            .system
+            .names()
+            .iter()
+            .cloned()
+            .zip(coefficients.iter().copied())
+            .collect();
+        self.variant.model_at(&values)
+    }
+
+    fn candidate(&self, found: SearchSolution) -> Result<CandidateFit, RefineError> {
+        let models: Vec<Model> =
+            found.left_out.iter().map(|coefficients| self.model(coefficients)).collect();
+        let simulated =
+            simulate_training(self.problem, &models, &|trial| self.problem.fold_of(trial))?;
+        let one = |(k, name): (usize, &String)| {
+            let deviation = self.objective.sizes[k];
+            (
+                name.clone(),
+                Fitted { value: found.all[k], standard_error: 0.0, prior_deviation: deviation },
+            )
+        };
+        let coefficients = self.objective.system.names().iter().enumerate().map(one).collect();
+        let fit =
+            Fit { coefficients, condition_number: 1.0, collinear_groups: Vec::new(), errors: None };
+        let label = format!("cma-es, {}", self.variant.family.name());
+        let candidate =
+            CandidateFit::new(self.problem, (label, None), fit, self.moved.len(), simulated);
+        Ok(CandidateFit { left_out: models, search: Some(found.report), ..candidate })
+    }
+}
+
+/// What is compared: u, v and r.
+fn plan(
+    problem: &Problem<'_>,
+    system: &CandidateSystem,
+    cutting: SegmentLengths,
+) -> Result<ComparisonPlan, RefineError> {
+    let all = compared(system.states(), &problem.deviations);
+    let velocities: Vec<_> =
+        all.into_iter().filter(|&(_, place, _)| [at::U, at::V, at::R].contains(&place)).collect();
+    if velocities.len() < 3 {
+        let missing = [Channel::U, Channel::V, Channel::R]
+            .into_iter()
+            .find(|channel| !problem.deviations.contains_key(channel));
+        let message = missing.map_or("a velocity never changes".to_owned(), |channel| {
+            format!("no trial has `{channel}`")
+        });
+        return Err(RefineError::Data(message));
+    }
+    let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
+    Ok(ComparisonPlan { compared: velocities, stride, step_s: cutting.step_s })
+}
+
+/// The change of each coefficient that changes an acceleration by the acceleration's own size; zero
+/// where the trials say nothing of it.
+fn natural_sizes(variant: &Variant, names: &[String]) -> Result<Vec<f64>, RefineError> {
+    let all = variant.together(|_| true)?;
+    let prior = WeakFormPrior::new(names, &variant.blocks, &all, &|_| (0.0, 0.0), 0.0);
+    let size =
+        |square: &f64| if *square > 0.0 && square.is_finite() { 1.0 / square.sqrt() } else { 0.0 };
+    Ok(prior.hessian.diagonal().iter().map(size).collect())
+}

@@ -1,0 +1,169 @@
+//! Accelerations from extreme states under extreme controls: Miyauchi 2024, Eqs. 29 to 33.
+
+use sistership_model::effect::input_channel;
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::Method;
+use sistership_simulation::candidates::{CandidateRun, CandidateSystem};
+use sistership_simulation::state::{RECORDED, StateVector};
+use sistership_simulation::tape::Lanes;
+
+use super::thresholds::OBJECTIVE;
+
+/// States and controls in lockstep.
+const LANES: usize = 16;
+/// The combinations, with what their accelerations may be.
+#[derive(Debug)]
+pub(super) struct DeviationPenalty {
+    blocks: Vec<(Vec<StateVector>, Vec<Lanes<LANES>>)>,
+    limits: [f64; 3],
+    steps: usize,
+    step_s: f64,
+    count: f64,
+}
+
+impl DeviationPenalty {
+    /// From the extremes of trials; accelerations are means over `window_s`, for as long as which
+    /// each combination is simulated.
+    pub fn new(
+        system: &CandidateSystem,
+        law: &Law,
+        trials: &[&Trial],
+        step_s: f64,
+        window_s: f64,
+    ) -> Self {
+        let starts = combinations(
+            &RECORDED[..3]
+                .iter()
+                .map(|&(c, _)| three(trials, c, OBJECTIVE.beyond))
+                .collect::<Vec<_>>(),
+        );
+        let controls: Vec<Vec<f64>> =
+            system.input_names().iter().map(|name| settings(name, law, trials)).collect();
+        let controls: Vec<Vec<f64>> =
+            combinations(&controls).iter().map(|inputs| system.prepared(inputs)).collect();
+        let pairs: Vec<(StateVector, &Vec<f64>)> = starts
+            .iter()
+            .flat_map(|start| controls.iter().map(|inputs| (state(start), inputs)))
+            .collect();
+        let blocks = pairs.chunks(LANES).map(|chunk| {
+            let starts = chunk.iter().map(|(start, _)| *start).collect();
+            let width = chunk[0].1.len();
+            let lane = |input: usize| {
+                std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)].1[input])
+            };
+            (starts, (0..width).map(lane).collect())
+        });
+        let blocks = blocks.collect();
+        let limits =
+            [Channel::U, Channel::V, Channel::R].map(|channel| limit(trials, channel, window_s));
+        let steps = (window_s / step_s).round().max(1.0) as usize;
+        Self { blocks, limits, steps, step_s, count: pairs.len() as f64 }
+    }
+
+    /// The mean penalty over the combinations, Eq. 29 by their number: 0 where none leaves the
+    /// limits, about 1 where all do at once.
+    pub fn penalty(&self, system: &CandidateSystem, method: Method, coefficients: &[f64]) -> f64 {
+        let mut run = CandidateRun::<LANES>::new(system);
+        let one = |(starts, inputs): &(Vec<StateVector>, Vec<Lanes<LANES>>)| {
+            (0..LANES).for_each(|lane| run.start(lane, &starts[lane.min(starts.len() - 1)]));
+            let mut over = [self.steps; LANES];
+            for step in 0..self.steps {
+                run.step(method, self.step_s, [inputs, inputs, inputs], coefficients);
+                for (row, limit) in self.limits.iter().enumerate() {
+                    for (over, rate) in over.iter_mut().zip(run.rate(row)) {
+                        // What is not a number is beyond any limit.
+                        let within = rate.abs() <= *limit;
+                        *over = if within { *over } else { step.min(*over) };
+                    }
+                }
+            }
+            let soon = |over: &usize| {
+                if *over < self.steps {
+                    1.0 - (*over as f64 - 1.0) / self.steps as f64
+                } else {
+                    0.0
+                }
+            };
+            over[..starts.len()].iter().map(soon).sum::<f64>()
+        };
+        self.blocks.iter().map(one).sum::<f64>() / self.count.max(1.0)
+    }
+}
+
+/// Low, middle (rest where that is between) and high of a channel; a single zero where no trial has
+/// it.
+fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
+    let values = trials.iter().filter_map(|trial| trial.channel(channel)).flatten();
+    let (low, high) = values
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+    if low > high {
+        return vec![0.0];
+    }
+    let beyond = margin * (high - low);
+    let (low, high) = (low - beyond, high + beyond);
+    let middle = if low < 0.0 && high > 0.0 { 0.0 } else { 0.5 * (low + high) };
+    if low < high { vec![low, middle, high] } else { vec![low] }
+}
+
+/// What an input is set to: extremes of a control, no wind, and of anything else what it is where
+/// nobody says.
+fn settings(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
+    let default = law.inputs.get(name).and_then(|input| input.default);
+    match (default, input_channel(name)) {
+        (Some(default), _) => vec![default],
+        (None, Some(channel)) => three(trials, channel, 0.0),
+        (None, None) => vec![0.0],
+    }
+}
+
+/// Every combination of one value from each; beyond the first few that have several, their middle
+/// alone.
+fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut all = vec![Vec::new()];
+    let mut several = 0;
+    for choice in choices {
+        several += usize::from(choice.len() > 1);
+        let taken = if several > OBJECTIVE.controls {
+            &choice[choice.len() / 2..=choice.len() / 2]
+        } else {
+            &choice[..]
+        };
+        let longer = |before: &Vec<f64>| {
+            taken
+                .iter()
+                .map(|value| before.iter().copied().chain([*value]).collect::<Vec<f64>>())
+                .collect::<Vec<_>>()
+        };
+        all = all.iter().flat_map(longer).collect();
+    }
+    all
+}
+
+fn state(velocities: &[f64]) -> StateVector {
+    let mut state = StateVector::zeros();
+    RECORDED.iter().zip(velocities).for_each(|(&(_, place), value)| state[place] = *value);
+    state
+}
+
+/// The 99.7th percentile of absolute accelerations, as means over a window: Eq. 33.
+fn limit(trials: &[&Trial], channel: Channel, window_s: f64) -> f64 {
+    let mut sizes = Vec::new();
+    for trial in trials {
+        let (Some(column), stride) =
+            (trial.channel(channel), (window_s / trial.interval_s()).round().max(1.0) as usize)
+        else {
+            continue;
+        };
+        for part in trial.segments() {
+            let within = part.start..part.end.saturating_sub(stride);
+            let rate = |k: usize| {
+                ((column[k + stride] - column[k]) / (trial.t_s[k + stride] - trial.t_s[k])).abs()
+            };
+            sizes.extend(within.map(rate));
+        }
+    }
+    sizes.sort_by(f64::total_cmp);
+    let at = (OBJECTIVE.percentile * sizes.len() as f64) as usize;
+    sizes.get(at.min(sizes.len().saturating_sub(1))).copied().unwrap_or(f64::INFINITY)
+}

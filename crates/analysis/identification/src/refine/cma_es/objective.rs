@@ -1,0 +1,203 @@
+//! What a set of coefficients costs: Miyauchi 2024, Eqs. 20 to 23, by the duration of the trials.
+
+use sistership_simulation::candidates::{CandidateRun, CandidateSystem};
+use sistership_simulation::state::StateVector;
+use sistership_simulation::tape::Lanes;
+use sistership_simulation::{Envelope, Method};
+
+use super::super::trajectory::{ComparisonPlan, Segment};
+use super::deviation::DeviationPenalty;
+use super::thresholds::OBJECTIVE;
+
+/// Subsequences in lockstep.
+const LANES: usize = 16;
+
+/// Subsequences in lockstep: where each starts, what is put in and what should come out, by lane.
+#[derive(Debug)]
+struct SequenceBlock {
+    starts: Vec<StateVector>,
+    /// At every whole or half step, as the method needs, one after the other.
+    inputs: Vec<Lanes<LANES>>,
+    steps: usize,
+    /// u, v and r at every comparison; not a number where a lane has ended.
+    measured: Vec<[Lanes<LANES>; 3]>,
+    /// Comparisons of each lane.
+    compared: Lanes<LANES>,
+}
+
+/// The sequences of some trials.
+#[derive(Debug)]
+pub(super) struct Sequences {
+    blocks: Vec<SequenceBlock>,
+    /// Comparisons of all.
+    count: f64,
+}
+
+/// What the error is made of, the same for all sequences.
+#[derive(Debug)]
+pub(super) struct Objective {
+    pub system: CandidateSystem,
+    pub plan: ComparisonPlan,
+    pub method: Method,
+    pub envelope: Envelope,
+    pub deviation: DeviationPenalty,
+    /// Weights of the deviation and of the sizes.
+    pub weights: (f64, f64),
+    /// The source's coefficients, and the natural size of each.
+    pub source: Vec<f64>,
+    pub sizes: Vec<f64>,
+    /// Half width of the box.
+    pub width: f64,
+}
+
+impl Sequences {
+    /// Of segments, those of a length together.
+    pub fn new<'s>(objective: &Objective, segments: impl Iterator<Item = &'s Segment>) -> Self {
+        let all: Vec<&Segment> = segments.collect();
+        let blocks: Vec<SequenceBlock> =
+            all.chunks(LANES).map(|chunk| SequenceBlock::new(objective, chunk)).collect();
+        let count = blocks.iter().flat_map(|block| block.compared).sum();
+        Self { blocks, count }
+    }
+}
+
+impl SequenceBlock {
+    fn new(objective: &Objective, segments: &[&Segment]) -> Self {
+        let Objective { system, plan, method, .. } = objective;
+        let (steps, width) = (segments[0].steps, system.input_names().len());
+        let every = if *method == Method::Euler { 2 } else { 1 };
+        // Lanes without a segment repeat the first, and nothing of theirs is compared.
+        let of = |lane: usize| segments.get(lane).copied().unwrap_or(segments[0]);
+        let mut inputs = Vec::new();
+        for half in (0..=2 * steps).step_by(every) {
+            let lanes: Vec<Vec<f64>> = (0..LANES)
+                .map(|lane| {
+                    let at = half.min(2 * of(lane).steps) * width;
+                    system.prepared(&of(lane).inputs[at..at + width])
+                })
+                .collect();
+            inputs.extend(
+                (0..lanes[0].len()).map(|input| std::array::from_fn(|lane| lanes[lane][input])),
+            );
+        }
+        let measured = |k: usize, channel: usize| -> Lanes<LANES> {
+            let own = |segment: &&Segment| {
+                segment.measured.get(k * plan.compared.len() + channel).copied()
+            };
+            std::array::from_fn(|lane| segments.get(lane).and_then(own).unwrap_or(f64::NAN))
+        };
+        let measured: Vec<[Lanes<LANES>; 3]> = (0..steps / plan.stride)
+            .map(|k| std::array::from_fn(|channel| measured(k, channel)))
+            .collect();
+        let compared = std::array::from_fn(|lane| {
+            measured.iter().filter(|m| m[0][lane].is_finite()).count() as f64
+        });
+        Self {
+            starts: (0..LANES).map(|lane| of(lane).start).collect(),
+            inputs,
+            steps,
+            measured,
+            compared,
+        }
+    }
+}
+
+impl Objective {
+    /// The coefficients that parameters stand for.
+    pub fn coefficients(&self, parameters: &[f64]) -> Vec<f64> {
+        self.source
+            .iter()
+            .zip(&self.sizes)
+            .zip(parameters)
+            .map(|((source, size), p)| source + size * p)
+            .collect()
+    }
+
+    /// The whole objective.
+    pub fn cost(&self, sequences: &Sequences, parameters: &[f64]) -> f64 {
+        let coefficients = self.coefficients(parameters);
+        let (by_deviation, by_size) = self.weights;
+        let mut cost = self.error(sequences, &coefficients);
+        if by_size > 0.0 {
+            cost += by_size * parameters.iter().map(|p| p.abs()).sum::<f64>() / self.width;
+        }
+        if by_deviation > 0.0 { cost + by_deviation * self.deviated(&coefficients) } else { cost }
+    }
+
+    /// The deviation penalty as a mean over the combinations.
+    pub fn deviated(&self, coefficients: &[f64]) -> f64 {
+        self.deviation.penalty(&self.system, self.method, coefficients)
+    }
+
+    /// The first part: the standardised squared error of u, v and r together, in the mean over
+    /// time.
+    pub fn error(&self, sequences: &Sequences, coefficients: &[f64]) -> f64 {
+        let mut run = CandidateRun::new(&self.system);
+        let sum: f64 =
+            sequences.blocks.iter().map(|block| self.of_block(block, &mut run, coefficients)).sum();
+        sum / sequences.count.max(1.0)
+    }
+
+    fn of_block(
+        &self,
+        block: &SequenceBlock,
+        run: &mut CandidateRun<'_, LANES>,
+        coefficients: &[f64],
+    ) -> f64 {
+        block.starts.iter().enumerate().for_each(|(lane, start)| run.start(lane, start));
+        let width = block.inputs.len()
+            / if self.method == Method::Euler { block.steps + 1 } else { 2 * block.steps + 1 };
+        let at = |k: usize| &block.inputs[k * width..(k + 1) * width];
+        let (mut sums, mut left, mut lost) = ([0.0; LANES], block.compared, [false; LANES]);
+        for k in 0..block.steps {
+            let inputs = match self.method {
+                Method::Euler => [at(k); 3],
+                Method::Rk4 => [at(2 * k), at(2 * k + 1), at(2 * k + 2)],
+            };
+            run.step(self.method, self.plan.step_s, inputs, coefficients);
+            if (k + 1) % self.plan.stride == 0 {
+                self.compare(
+                    run,
+                    &block.measured[(k + 1) / self.plan.stride - 1],
+                    &mut sums,
+                    &mut left,
+                    &mut lost,
+                );
+                if lost.iter().all(|lost| *lost) {
+                    break;
+                }
+            }
+        }
+        sums.iter()
+            .zip(&left)
+            .map(|(sum, left)| sum + 3.0 * OBJECTIVE.lost * OBJECTIVE.lost * left)
+            .sum()
+    }
+
+    /// Adds a comparison to the lanes that have not left the physical range before; `left` are
+    /// those that remain.
+    fn compare(
+        &self,
+        run: &CandidateRun<'_, LANES>,
+        measured: &[Lanes<LANES>; 3],
+        sums: &mut Lanes<LANES>,
+        left: &mut Lanes<LANES>,
+        lost: &mut [bool; LANES],
+    ) {
+        let states = [run.state(0), run.state(1), run.state(2)];
+        let (speed, turn) = (self.envelope.speed_m_s().powi(2), self.envelope.yaw_rate_rad_s());
+        for lane in 0..LANES {
+            let [u, v, r] = states.map(|state| state[lane]);
+            // What is not a number is outside.
+            lost[lane] |= !(u * u + v * v <= speed && r.abs() <= turn);
+        }
+        for lane in (0..LANES).filter(|lane| !lost[*lane] && measured[0][*lane].is_finite()) {
+            left[lane] -= 1.0;
+            for (channel, state) in states.iter().enumerate() {
+                let difference =
+                    (state[lane] - measured[channel][lane]) / self.plan.compared[channel].2;
+                sums[lane] += difference * difference;
+            }
+        }
+    }
+}

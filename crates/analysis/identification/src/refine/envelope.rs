@@ -1,0 +1,381 @@
+//! Where a model will be used, and what its source says there: the states of the trials, and those
+//! of the source's own standard manoeuvres.
+
+use std::collections::BTreeMap;
+
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
+use sistership_simulation::plant::{Inputs, MAX_INPUTS, Work};
+use sistership_simulation::state::{RECORDED, StateVector, Trajectory, at};
+
+use super::blocks::{Block, Blocks};
+use super::outcome::RefineError;
+use super::rows::{Table, known_tables};
+use super::thresholds::SOURCE;
+use sistership_numerics::{Moments, merged};
+use sistership_priors::transfer::ready;
+
+/// What a model says at the states of an envelope: by group, the accelerations of each axis in the
+/// order of [`Axis`].
+pub(super) type Rates = Vec<[Vec<f64>; 4]>;
+
+/// What a ship of a population says there.
+#[derive(Debug)]
+pub(super) struct MemberRates {
+    /// Its model's name.
+    pub name: String,
+    /// Its accelerations.
+    pub rates: Rates,
+}
+
+/// What a source says where a model will be used.
+#[derive(Debug, Clone)]
+pub(super) struct OperatingEnvelope {
+    /// The source, for people.
+    pub source: String,
+    /// Its law.
+    pub law: String,
+    /// Whether it knows of roll.
+    pub roll: bool,
+    /// Revolutions at which it approaches, 1/s; 0 where it states none.
+    pub n_rps: f64,
+    /// Whether its propeller turns at these because a trial records none.
+    pub at_own_revolutions: bool,
+    /// How it was moved to what another model says, for people.
+    pub mixed: Option<String>,
+    /// Samples that go together.
+    pub groups: Vec<SampleGroup>,
+}
+
+/// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
+#[derive(Debug, Clone)]
+pub(super) struct SampleGroup {
+    /// States and inputs; time only counts them.
+    pub samples: Trial,
+    /// By axis, in the order of [`Axis`].
+    rates: [Vec<f64>; 4],
+    /// What each sample counts as.
+    pub weight: f64,
+}
+
+impl SampleGroup {
+    /// The source's acceleration of an axis at each sample.
+    fn rate(&self, axis: Axis) -> &[f64] {
+        &self.rates[axis as usize]
+    }
+
+    /// As [`OperatingEnvelope::moments_of`]. Targets are linear in accelerations: what each axis'
+    /// does to them is the same for every model.
+    fn moments_of(
+        &self,
+        blocks: &Blocks,
+        models: &[&[Vec<f64>; 4]],
+    ) -> Result<Vec<Moments>, RefineError> {
+        let (zero, one) = (vec![0.0; self.samples.len()], vec![1.0; self.samples.len()]);
+        let mut at_rest = known_tables(blocks, &self.samples, &|_| &zero)?;
+        let alone = |axis: Axis| {
+            known_tables(blocks, &self.samples, &|of| if of == axis { &one } else { &zero })
+        };
+        let axes: Vec<Axis> = blocks.blocks.iter().flat_map(|block| block.axes.clone()).collect();
+        let alone: Vec<(Axis, Vec<Table>)> = axes
+            .into_iter()
+            .map(|axis| Ok((axis, alone(axis)?)))
+            .collect::<Result<_, RefineError>>()?;
+        let of_block = |(place, (block, table)): (usize, (&Block, &mut Table))| {
+            let rest = table.split_off(block.regressors());
+            silence(table);
+            for rates in models {
+                for (target, rest) in rest.iter().enumerate() {
+                    let mut column = rest.clone();
+                    for (axis, tables) in &alone {
+                        let moved = &tables[place][block.regressors() + target];
+                        let rates = &rates[*axis as usize];
+                        column.iter_mut().enumerate().for_each(|(k, value)| {
+                            *value += (moved[k] - rest[k]) * rates[k];
+                        });
+                    }
+                    table.push(column);
+                }
+            }
+            Moments::about_zero(table, block.regressors(), self.weight)
+        };
+        Ok(blocks.blocks.iter().zip(&mut at_rest).enumerate().map(of_block).collect())
+    }
+
+    fn moments(&self, blocks: &Blocks) -> Result<Vec<Moments>, RefineError> {
+        let mut tables = known_tables(blocks, &self.samples, &|axis| self.rate(axis))?;
+        let one = |(block, table): (&Block, &mut Table)| {
+            silence(&mut table[..block.regressors()]);
+            Moments::about_zero(table, block.regressors(), self.weight)
+        };
+        Ok(blocks.blocks.iter().zip(&mut tables).map(one).collect())
+    }
+}
+
+impl OperatingEnvelope {
+    /// Of a source that is carried over to the ship, by its own law. The trials together weigh as
+    /// much as the manoeuvres.
+    ///
+    /// # Errors
+    /// The source cannot sail, or the trials are nowhere that it knows.
+    pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
+        let ship = ready(source, law, trials)?;
+        let asked = SourceResponse::new(&ship, source, law);
+        let recorded =
+            trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
+        let sailed = sail_together(
+            &ship,
+            &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])),
+            &ManoeuvreSettings::default(),
+        );
+        let sailed = sailed
+            .into_iter()
+            .flatten()
+            .filter_map(|sailed| asked.group(None, asked.sailed(&sailed.track)));
+        let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) =
+            (recorded.collect(), sailed.collect());
+        if recorded.is_empty() && sailed.is_empty() {
+            return Err(RefineError::Data(format!(
+                "`{}` can neither sail the standard manoeuvres nor the trials",
+                source.name
+            )));
+        }
+        let groups = [recorded, sailed].into_iter().flat_map(evened).collect();
+        Ok(Self {
+            source: source.name.clone(),
+            law: law.name.clone(),
+            roll: law.has_roll(),
+            n_rps: source.revolutions_rps.unwrap_or(0.0),
+            at_own_revolutions: asked.propeller
+                && trials.iter().any(|trial| trial.channel(Channel::N).is_none()),
+            mixed: None,
+            groups,
+        })
+    }
+
+    /// The same states, where the accelerations of each axis are moved by a share of the way to
+    /// what another model says there, at as large a part of its own revolutions.
+    ///
+    /// # Errors
+    /// The other model cannot be made ready, or does not know a state.
+    pub fn moved_to(
+        &self,
+        (model, law): (&Model, &Law),
+        shares: &[f64; 4],
+        trials: &[&Trial],
+    ) -> Result<Self, RefineError> {
+        let said = self.asked_of((model, law), trials)?;
+        let mut moved = self.clone();
+        for (group, rates) in moved.groups.iter_mut().zip(&said) {
+            for ((own, other), share) in group.rates.iter_mut().zip(rates).zip(shares) {
+                own.iter_mut().zip(other).for_each(|(own, other)| *own += share * (other - *own));
+            }
+        }
+        Ok(moved)
+    }
+
+    /// What another model says at the same states, at as large a part of its own revolutions.
+    ///
+    /// # Errors
+    /// As [`OperatingEnvelope::moved_to`].
+    pub fn asked_of(
+        &self,
+        (model, law): (&Model, &Law),
+        trials: &[&Trial],
+    ) -> Result<Rates, RefineError> {
+        let ship = ready(model, law, trials)?;
+        let asked = SourceResponse::new(&ship, model, law);
+        let of_group = |group: &SampleGroup| {
+            let mut points = asked.recorded(&group.samples);
+            for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
+                *n_rps *= asked.n_rps / self.n_rps;
+            }
+            let message = || format!("`{}` says nothing of some state", model.name);
+            let rates = asked.rates(&points, group.samples.depth_m);
+            rates.ok_or_else(|| RefineError::Data(message()))
+        };
+        self.groups.iter().map(of_group).collect()
+    }
+
+    /// The statistics of what several models say at these states, as a law's regressions see it:
+    /// each model's accelerations are targets of their own, one model after the other.
+    ///
+    /// # Errors
+    /// The law takes something that the states do not have.
+    pub fn moments_of(
+        &self,
+        blocks: &Blocks,
+        models: &[&Rates],
+    ) -> Result<Vec<Moments>, RefineError> {
+        let of_group = |(place, group): (usize, &SampleGroup)| {
+            let said: Vec<&[Vec<f64>; 4]> = models.iter().map(|rates| &rates[place]).collect();
+            group.moments_of(blocks, &said)
+        };
+        let groups: Vec<Vec<Moments>> =
+            self.groups.iter().enumerate().map(of_group).collect::<Result<_, _>>()?;
+        Ok(merged(&groups, |_| true).unwrap_or_default())
+    }
+
+    /// The statistics of what the source says, as a law's regressions see it: by group and
+    /// regression.
+    ///
+    /// # Errors
+    /// The law takes something that the trials do not record.
+    pub fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
+        self.groups.iter().map(|group| group.moments(blocks)).collect()
+    }
+}
+
+#[cfg(test)]
+impl OperatingEnvelope {
+    /// Sum of the squares by which accelerations of an axis differ at the same states.
+    pub fn distance(&self, other: &Self, axis: Axis) -> f64 {
+        let pairs = self.groups.iter().zip(&other.groups);
+        let values = pairs.flat_map(|(one, other)| one.rate(axis).iter().zip(other.rate(axis)));
+        values.map(|(one, other)| (one - other).powi(2)).sum()
+    }
+}
+
+/// Groups that together count as much as [`SOURCE`]'s samples.
+fn evened(mut groups: Vec<SampleGroup>) -> Vec<SampleGroup> {
+    let all: usize = groups.iter().map(|group| group.samples.len()).sum();
+    groups.iter_mut().for_each(|group| group.weight = SOURCE.samples as f64 / all as f64);
+    groups
+}
+
+/// A state with its revolutions.
+type OperatingPoint = (StateVector, f64);
+
+/// A source that is asked.
+struct SourceResponse<'a> {
+    ship: &'a Ship,
+    /// Whether its law knows what revolutions do; else it holds for those of the approach.
+    propeller: bool,
+    n_rps: f64,
+    /// Slower motion than this it does not know.
+    least_m_s: f64,
+}
+
+impl<'a> SourceResponse<'a> {
+    fn new(ship: &'a Ship, source: &Model, law: &Law) -> Self {
+        let expanded = law.approach_speed_parameter().is_some();
+        let least_m_s = if expanded { SOURCE.least_speed * ship.approach_speed_m_s() } else { 0.0 };
+        Self {
+            ship,
+            propeller: ship.has_propeller(),
+            n_rps: source.revolutions_rps.unwrap_or(0.0),
+            least_m_s,
+        }
+    }
+
+    /// The states that a trial recorded; nothing where it lacks velocities or the rudder.
+    fn recorded(&self, trial: &Trial) -> Vec<OperatingPoint> {
+        let need = [Channel::U, Channel::V, Channel::R, Channel::Delta];
+        if need.iter().any(|channel| trial.channel(*channel).is_none()) {
+            return Vec::new();
+        }
+        let columns: Vec<(usize, &[f64])> = RECORDED
+            .iter()
+            .chain(&[(Channel::Delta, at::DELTA)])
+            .filter_map(|&(channel, place)| Some((place, trial.channel(channel)?)))
+            .collect();
+        let one = |k: usize| {
+            let mut state = StateVector::zeros();
+            columns.iter().for_each(|(place, column)| state[*place] = column[k]);
+            (state, trial.channel(Channel::N).map_or(self.n_rps, |n| n[k]))
+        };
+        spread(trial.len()).map(one).collect()
+    }
+
+    fn sailed(&self, track: &Trajectory) -> Vec<OperatingPoint> {
+        spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
+    }
+
+    fn knows(&self, (state, n_rps): &OperatingPoint) -> bool {
+        state[at::U] > self.least_m_s && (!self.propeller || *n_rps > 0.0)
+    }
+
+    /// What the source says at the points that it knows, heading north; none where there is none.
+    fn group(&self, depth_m: Option<f64>, mut points: Vec<OperatingPoint>) -> Option<SampleGroup> {
+        points.retain(|point| self.knows(point));
+        points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
+        let rates = self.rates(&points, depth_m).filter(|_| !points.is_empty())?;
+        Some(SampleGroup { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
+    }
+
+    /// Its accelerations by axis; none where one is not finite.
+    fn rates(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Option<[Vec<f64>; 4]> {
+        let mut work = Work::default();
+        let rate = |point: &OperatingPoint| {
+            self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work)
+        };
+        let rates: Vec<StateVector> = points.iter().map(rate).collect();
+        let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
+        let rates = [at::U, at::V, at::P, at::R].map(of);
+        rates.iter().flatten().all(|rate| rate.is_finite()).then_some(rates)
+    }
+
+    fn inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> Inputs {
+        let (wind_m_s, wind_from) = calm(state);
+        let mut inputs = [0.0; MAX_INPUTS];
+        for (value, (name, default)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
+            *value = match name {
+                "delta" => state[at::DELTA],
+                "n" => *n_rps,
+                "wind_speed" => wind_m_s,
+                "wind_from" => wind_from,
+                "depth" => depth_m.or(default).unwrap_or(0.0),
+                _ => default.unwrap_or(0.0),
+            };
+        }
+        inputs
+    }
+
+    fn samples(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Trial {
+        let states = [
+            (Channel::U, at::U),
+            (Channel::V, at::V),
+            (Channel::R, at::R),
+            (Channel::P, at::P),
+            (Channel::Phi, at::PHI),
+        ];
+        let column =
+            |place: usize| points.iter().map(|(state, _)| state[place]).collect::<Vec<f64>>();
+        let columns = states.into_iter().chain([(Channel::Delta, at::DELTA)]);
+        let mut channels: BTreeMap<Channel, Vec<f64>> =
+            columns.map(|(channel, place)| (channel, column(place))).collect();
+        let n = points.iter().map(|(_, n_rps)| if self.propeller { *n_rps } else { self.n_rps });
+        channels.insert(Channel::N, n.collect());
+        let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm(state)).unzip();
+        channels.extend([(Channel::WindSpeed, wind_m_s), (Channel::WindFrom, wind_from)]);
+        Trial {
+            t_s: (0..points.len()).map(|k| k as f64).collect(),
+            channels,
+            depth_m,
+            ..Trial::default()
+        }
+    }
+}
+
+/// Speed and direction of a wind that the ship does not feel: of the air's forces the source is not
+/// asked. Heading is north.
+fn calm(state: &StateVector) -> (f64, f64) {
+    let (u, v) = (state[at::U], state[at::V]);
+    (u.hypot(v), (-v).atan2(-u))
+}
+
+/// At most as many places as samples are asked of a group, evenly spread.
+fn spread(count: usize) -> impl Iterator<Item = usize> {
+    (0..count).step_by(count.div_ceil(SOURCE.samples).max(1))
+}
+
+/// Regressors that are nothing but rounding become zero: the source says nothing of them.
+fn silence(regressors: &mut [Vec<f64>]) {
+    let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let least = SOURCE.rounding * regressors.iter().map(size).fold(0.0, f64::max);
+    regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
+}

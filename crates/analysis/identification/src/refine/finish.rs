@@ -1,0 +1,262 @@
+//! The end of a refinement: the best candidate whose model also sails the standard manoeuvres is
+//! taken.
+
+use sistership_model::Model;
+use sistership_model::posterior::Posterior;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
+
+use super::blocks::Blocks;
+use super::candidate::{CandidateFit, Solution, best};
+use super::family::Family;
+use super::gathered::{ChosenCandidate, refinement};
+use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
+use super::mixture;
+use super::outcome::{Manoeuvres, RefineError, Refinement};
+use super::problem::Problem;
+use super::progress::{Progress, step};
+use super::ridge::{Choices, Fit};
+use super::thresholds::SELECTION;
+use super::variant::Variant;
+use crate::constraints::LimitError;
+use sistership_assessment::uncertainty::{FoldQuantile, bands, fold_factor};
+use sistership_numerics::RidgeChoice;
+use sistership_propulsion::{Context, PropulsionFault};
+
+/// Why a candidate may not be taken.
+#[derive(Debug, thiserror::Error)]
+enum CandidateRefusal {
+    #[error(transparent)]
+    Constraints(LimitError),
+    #[error("fails a standard manoeuvre that the source sails: {0}")]
+    Manoeuvre(String),
+    #[error(transparent)]
+    Propulsion(#[from] PropulsionFault),
+}
+
+/// Why trials alone make a model or none.
+const NO_MODEL: &str = "a law without coefficients is no model";
+
+/// Whether a law's coefficients are all zero: what stands for the source where there is none.
+pub(super) fn is_empty(model: &Model) -> bool {
+    let mut values = model.coefficients.values().peekable();
+    values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
+}
+
+struct FittedCandidate {
+    fit: Option<Fit>,
+    model: Model,
+    manoeuvres: StandardManoeuvres,
+}
+
+type Accepted = Result<FittedCandidate, CandidateRefusal>;
+
+/// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres
+/// that the source sails.
+///
+/// # Errors
+/// No candidate's simulations go on to their end, or it was cancelled.
+pub(super) fn finish(
+    problem: &Problem<'_>,
+    mut candidates: Vec<CandidateFit>,
+    variants: &[Variant],
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
+    if is_empty(&problem.transferred) {
+        let source = &mut candidates[0].option;
+        (source.error, source.reason) = (None, Some(NO_MODEL.to_owned()));
+    }
+    step(progress, 0.9, "standard manoeuvres of the source, and of the best option")?;
+    let first = |place: usize| sailed(problem, candidates[place].solution.as_ref(), variants);
+    let (before, mut first) = rayon::join(
+        || standard_manoeuvres(&problem.transferred, problem.law),
+        || best(&candidates).map(first),
+    );
+    loop {
+        let Some(best) = best(&candidates) else {
+            let reasons = candidates.iter().filter_map(|one| one.option.reason.as_deref());
+            return Err(RefineError::diverged(reasons));
+        };
+        step(
+            progress,
+            0.9,
+            &format!("standard manoeuvres of option {}", candidates[best].option.step),
+        )?;
+        let sailed = match first.take() {
+            Some(sailed) => sailed,
+            None => sailed(problem, candidates[best].solution.as_ref(), variants),
+        };
+        match accepted(sailed?, &before) {
+            Ok(fitted) => {
+                return take(problem, (candidates, best), (fitted, variants), before, progress);
+            }
+            Err(refusal) => {
+                (candidates[best].option.reason, candidates[best].option.error) =
+                    (Some(refusal.to_string()), None)
+            }
+        }
+    }
+}
+
+/// The model of the best candidate, fitted on all trials.
+///
+/// # Errors
+/// No candidate's simulations go on to their end, or the constraints cannot be kept.
+pub(super) fn best_model(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    variants: &[Variant],
+) -> Result<Model, RefineError> {
+    let reasons = || candidates.iter().filter_map(|one| one.option.reason.as_deref());
+    let best = best(candidates).ok_or_else(|| RefineError::diverged(reasons()))?;
+    Ok(model_of(problem, candidates[best].solution.fit(variants)?.as_ref()))
+}
+
+/// What a candidate gives on all trials with its standard manoeuvres, where it keeps the
+/// constraints; else the reason.
+fn sailed(
+    problem: &Problem<'_>,
+    solution: &dyn Solution,
+    variants: &[Variant],
+) -> Result<Accepted, RefineError> {
+    let fitted = match solution.fit(variants) {
+        Err(RefineError::Constraints(reason)) => {
+            return Ok(Err(CandidateRefusal::Constraints(reason)));
+        }
+        fitted => fitted?,
+    };
+    let model = context(problem).with_propulsion(model_of(problem, fitted.as_ref()));
+    Ok(model.map_err(CandidateRefusal::from).map(|model| {
+        let manoeuvres = standard_manoeuvres(&model, problem.law);
+        FittedCandidate { fit: fitted, model, manoeuvres }
+    }))
+}
+
+/// What a candidate gives, where it sails what the source sails.
+fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
+    let fitted = sailed?;
+    let failures = &fitted.manoeuvres.failures;
+    let worse = failures.iter().find(|one| before.failures.is_empty() && !one.is_empty());
+    match worse {
+        Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
+        None => Ok(fitted),
+    }
+}
+
+fn context<'a>(problem: &'a Problem<'_>) -> Context<'a> {
+    let of_ship = |target| mixture::estimated(target, problem.transferred.speed_m_s).ok();
+    let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
+    Context { law: problem.law, trials: &problem.whole, estimate }
+}
+
+/// The refined model; the source where nothing was fitted.
+fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
+    fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients))
+}
+
+/// The refinement by a candidate, with its errors.
+fn take(
+    problem: &Problem<'_>,
+    (mut candidates, best): (Vec<CandidateFit>, usize),
+    (taken, variants): (FittedCandidate, &[Variant]),
+    before: StandardManoeuvres,
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
+    candidates[best].option.chosen = true;
+    let errors = candidates[best].solution.errors(problem, variants)?;
+    let mut fitted = taken.fit.map(|fit| fit.with_errors(errors));
+    let coefficients = model_of(problem, fitted.as_ref()).coefficients;
+    let mut model = Model { coefficients, ..taken.model };
+    model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
+    if problem.settings.posterior_by_folds {
+        let quantile = match problem.settings.folds_pooled {
+            true => FoldQuantile::Normal,
+            false => FoldQuantile::Student,
+        };
+        let how = (quantile, problem.settings.bands.figures_only);
+        let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
+        widen(&mut model, fitted.as_mut(), factor);
+    }
+    let model = context(problem).with_posterior(model);
+    let measured = measured_manoeuvres(problem, &model);
+    step(progress, 0.93, "confidence bands")?;
+    let bands =
+        bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
+    let manoeuvres = Manoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
+    refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
+}
+
+/// Makes every standard error so many times as large.
+fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
+    let of_fit = fitted.into_iter().flat_map(|fit| fit.coefficients.values_mut());
+    of_fit.for_each(|coefficient| coefficient.standard_error *= factor);
+    let own = model.coefficients.values_mut().filter_map(|one| one.standard_error.as_mut());
+    own.for_each(|error| *error *= factor);
+    let posterior = model.posterior.iter_mut().flat_map(|all| all.deviations.iter_mut());
+    posterior.for_each(|deviation| *deviation *= factor);
+}
+
+/// How far the model's coefficients may be from the truth. Those of a source that is kept are as
+/// far as the trials say that they are.
+fn posterior(
+    problem: &Problem<'_>,
+    model: &Model,
+    fitted: Option<&Fit>,
+    variants: &[Variant],
+) -> Result<Option<Posterior>, RefineError> {
+    let errors = match (fitted, variants.iter().find(|variant| variant.family == Family::Own)) {
+        (Some(fitted), _) => fitted.errors.clone(),
+        (None, Some(own)) => own.errors(&problem.training, &held(&own.blocks))?,
+        (None, None) => None,
+    };
+    Ok(errors.and_then(|errors| errors.posterior(model)))
+}
+
+/// Choices that keep the source.
+fn held(blocks: &Blocks) -> Choices {
+    blocks
+        .blocks
+        .iter()
+        .map(|block| vec![RidgeChoice { lambda: SELECTION.held, alpha: 0.0 }; block.axes.len()])
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::refine::request::Request;
+    use crate::refine::selection::refine;
+    use crate::refine::settings::{Method, Settings};
+    use crate::testing::{mariner, trials, with};
+    use sistership_model::trial::Trial;
+
+    /// What the strongest of priors leaves is no better than what it pulls to: what stands for the
+    /// source where there is none would be kept.
+    #[test]
+    fn a_law_without_coefficients_is_never_taken() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.001);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let settings = Settings {
+            method: Method::Weak,
+            strengths: vec![SELECTION.held],
+            ..Settings::default()
+        };
+        let zoo = sistership_model::Zoo::embedded().unwrap();
+        let kept = |source: &Model| {
+            let (target, settings) = (zoo.vessel("mariner").unwrap(), &settings);
+            let request = Request {
+                target,
+                source,
+                source_law: None,
+                law: &law,
+                trials: &trials,
+                population: &[],
+                settings,
+            };
+            refine(&request, &|_, _| true).map(|made| made.is_source_kept())
+        };
+        assert_eq!(kept(&model), Ok(true));
+        assert_ne!(kept(&with(&model, |_| 0.0)), Ok(true));
+    }
+}

@@ -1,0 +1,90 @@
+//! How much a candidate depends on single trials where none of them reaches.
+//!
+//! Errors on trials left out tell how a model does in manoeuvres like those that were sailed.
+//! Between and beyond them, what no trial holds is free: the models of folds, which each missed
+//! some of the trials and do as well on those, go apart there. Their scatter is the jackknife's
+//! estimate of the variance of what the candidate simulates, `(g - 1) / g sum (x_i - mean x)^2`
+//! over `g` folds (Efron and Tibshirani 1993, An introduction to the bootstrap, Eq. 11.5).
+
+use sistership_model::Model;
+use sistership_model::trial::Trial;
+use sistership_simulation::error::{SquaredError, standardised_mse};
+use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
+use sistership_simulation::state::{RECORDED, StateVector};
+
+use super::helm::{Helm, helms};
+use super::problem::Problem;
+use super::simulated::sisters;
+use super::thresholds::HELM;
+use sistership_priors::transfer::ready_for_sisters;
+
+/// The jackknife's variance of simulated states under rudders that no trial had ([`helms`]),
+/// standardised and summed over channels as errors on trials left out are. Infinite where a fold's
+/// model does not sail; none where fewer than two folds made models, or where a rudder does not
+/// tell all that the law takes.
+pub(super) fn fold_variance(problem: &Problem<'_>, folds: &[Model]) -> Option<f64> {
+    let first = folds.first().filter(|_| folds.len() > 1)?;
+    let asked = Helm::random(HELM.records);
+    let helms = helms(&problem.transferred, &problem.whole, (&asked, HELM.lengths))?;
+    let ship = ready_for_sisters(first, problem.law, &problem.whole).ok()?;
+    let coefficients = sisters(&ship, folds).ok()?;
+    let each = |trial| coefficients.iter().map(move |one| Recorded { trial, coefficients: one });
+    let all: Vec<Recorded<'_>> = helms.iter().flat_map(each).collect();
+    let step_s = problem.replayed.step_s;
+    let settings = ReplaySettings { step_s, ..ReplaySettings::default() };
+    let runs = replay_all(&ship, &all, &settings).ok()?;
+    if runs.iter().any(|run| run.stopped.is_some()) {
+        return Some(f64::INFINITY);
+    }
+    let mut about_mean = SquaredError::default();
+    for (helm, runs) in helms.iter().zip(runs.chunks(folds.len())) {
+        let mean = mean_of(helm, runs);
+        runs.iter().for_each(|run| about_mean.add(&SquaredError::of(&mean, run)));
+    }
+    Some((folds.len() - 1) as f64 * standardised_mse(&about_mean, &problem.deviations))
+}
+
+/// A record of the mean of the folds' states.
+fn mean_of(helm: &Trial, runs: &[Replay]) -> Trial {
+    let mean = |sample: usize| {
+        runs.iter().map(|run| run.track.states[sample]).sum::<StateVector>() / runs.len() as f64
+    };
+    let states: Vec<StateVector> = (0..helm.len()).map(mean).collect();
+    let column = |place: usize| states.iter().map(|state| state[place]).collect();
+    let channels = RECORDED.iter().map(|&(channel, place)| (channel, column(place)));
+    Trial { channels: channels.collect(), ..helm.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::refine::settings::Settings;
+    use crate::testing::{mariner, trials, with};
+
+    #[test]
+    fn folds_that_differ_by_twice_as_much_have_four_times_the_variance() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let problem = Problem::of_model(&model, &law, &trials, Settings::default());
+        let fold = |by: f64| with(&model, |name| if name == "N_delta" { 1.0 + by } else { 1.0 });
+        let variance =
+            |apart: f64| fold_variance(&problem, &[fold(-apart), fold(apart), fold(0.0)]);
+        assert!(variance(0.0).unwrap() < 1e-20);
+        let (once, twice) = (variance(0.005).unwrap(), variance(0.01).unwrap());
+        assert!(once > 0.0 && (twice / once - 4.0).abs() < 0.2, "{once} {twice}");
+        assert_eq!(fold_variance(&problem, &[fold(0.0)]), None);
+    }
+
+    #[test]
+    fn a_fold_that_does_not_sail_is_infinitely_far() {
+        let (model, law) = mariner();
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let problem = Problem::of_model(&model, &law, &trials, Settings::default());
+        let runs_away = with(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
+        let folds = [model.clone(), runs_away];
+        assert_eq!(fold_variance(&problem, &folds), Some(f64::INFINITY));
+    }
+}

@@ -1,0 +1,165 @@
+//! Everything of a refinement that its user must be able to defend.
+
+use sistership_model::Model;
+use sistership_model::estimated_particulars::estimated_words;
+use sistership_model::quantity::Quantity;
+
+use super::candidate::CandidateFit;
+use super::cma_es::SearchReport;
+use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement};
+use super::problem::Problem;
+use super::ridge::Fit;
+use super::settings::Settings;
+use super::simulated::simulate_all;
+use super::thresholds::SELECTION;
+use sistership_priors::rolling::roll_words;
+
+/// The candidate that was taken among all, its model and its fit; none where the source was kept.
+pub(super) struct ChosenCandidate {
+    pub candidates: Vec<CandidateFit>,
+    pub best: usize,
+    pub model: Model,
+    pub fitted: Option<Fit>,
+}
+
+/// The refinement by what was taken.
+///
+/// # Errors
+/// A trial lacks a channel.
+pub(super) fn refinement(
+    problem: &Problem<'_>,
+    taken: ChosenCandidate,
+    manoeuvres: Manoeuvres,
+) -> Result<Refinement, RefineError> {
+    let ChosenCandidate { candidates, best, model, fitted } = taken;
+    let held_out = held_out(problem, &candidates, best, &model)?;
+    let lambdas = candidates[best].option.lambda.clone();
+    let (condition_number, collinear_groups) = fitted
+        .as_ref()
+        .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
+    let mut remarks = remarks(problem, best, &lambdas);
+    remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::words));
+    if candidates[best].search.is_some() {
+        remarks.push(SEARCHED.to_owned());
+    }
+    let search = candidates[best]
+        .search
+        .clone()
+        .or_else(|| candidates.iter().find_map(|one| one.search.clone()));
+    Ok(Refinement {
+        ship: problem.transferred.ship.clone(),
+        source: problem.source.to_owned(),
+        method: problem.settings.method.name().to_owned(),
+        coefficients: changes(problem, &model, fitted.as_ref()),
+        model,
+        transferred: problem.transferred.clone(),
+        settings: recorded(&problem.settings, search.as_ref()),
+        search,
+        condition_number,
+        collinear_groups,
+        held_out,
+        options: candidates.into_iter().map(|one| one.option).collect(),
+        manoeuvres,
+        remarks,
+    })
+}
+
+/// The settings that give the same again: a search that time has ended has its evaluations for a
+/// budget.
+fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
+    let mut settings = settings.clone();
+    if let (Some(given), Some(search)) = (&mut settings.cma_es, search) {
+        (given.evaluations, given.wall_s, given.cpu_s) = (search.evaluations, None, None);
+    }
+    settings
+}
+
+fn held_out(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    best: usize,
+    model: &Model,
+) -> Result<HeldOut, RefineError> {
+    if problem.judged.is_empty() {
+        let how = if problem.training.len() == 1 {
+            "nothing could be left out of a single trial: these are errors on the trial that was \
+             fitted"
+                .to_owned()
+        } else {
+            let what = match problem.whole.len() {
+                whole if whole == problem.training.len() => format!("{whole} trials"),
+                whole => format!("{} parts of {whole} trials", problem.training.len()),
+            };
+            format!(
+                "each of {what} simulated by a model fitted without it, in {} folds",
+                problem.fold_count()
+            )
+        };
+        return Ok(HeldOut {
+            source: candidates[0].errors.rmse(),
+            refined: candidates[best].errors.rmse(),
+            how,
+        });
+    }
+    let source =
+        simulate_all(problem, &problem.judged, std::slice::from_ref(&problem.transferred), &|_| 0)?
+            .total;
+    let refined =
+        simulate_all(problem, &problem.judged, std::slice::from_ref(model), &|_| 0)?.total;
+    let names: Vec<&str> = problem.judged.iter().map(|trial| trial.name.as_str()).collect();
+    Ok(HeldOut {
+        source: source.rmse(),
+        refined: refined.rmse(),
+        how: format!("kept out of fit and choice: {}", names.join(", ")),
+    })
+}
+
+fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<CoefficientChange> {
+    let one = |(name, quantity): (&String, &Quantity)| {
+        let source = problem.transferred.coefficient(name);
+        let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
+        let prior = fitted.map_or(0.0, |f| f.prior_deviation);
+        let unit = problem
+            .law
+            .coefficient_dimension(name)
+            .map_or_else(|_| "?".to_owned(), |d| d.to_string());
+        CoefficientChange {
+            name: name.clone(),
+            unit,
+            source,
+            refined: quantity.value,
+            standard_error: fitted.map_or(0.0, |f| f.standard_error),
+            moved_sd: if prior > 0.0 { (quantity.value - source) / prior } else { 0.0 },
+        }
+    };
+    model.coefficients.iter().map(one).collect()
+}
+
+fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let strongest =
+        problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
+    if lambdas.iter().any(|lambda| *lambda > SELECTION.strongest_share * strongest) {
+        let what = "an acceleration took the strongest prior allowed: its coefficients are the \
+            source's, scaled as a whole by 1 - alpha";
+        remarks.push(format!("{what}, and their standard errors say nothing"));
+    }
+    remarks.extend(problem.measure.words(&problem.transferred, problem.law));
+    remarks.extend(roll_words(&problem.transferred));
+    if best == 0 {
+        remarks.push(
+            "no option beat the source on manoeuvres left out: the source is kept as it is"
+                .to_owned(),
+        );
+    }
+    if problem.training.len() == 1 {
+        remarks.push("a single trial: only the most conservative range was tried".to_owned());
+    }
+    remarks.extend(estimated_words(&problem.transferred.particulars));
+    remarks
+}
+
+/// What a search leaves out.
+const SEARCHED: &str = "a search gives no standard errors and no confidence bands; its fits with \
+     trials left out start at the optimum for all of them, so that errors on trials left out are \
+     somewhat too small unless the budget is large";

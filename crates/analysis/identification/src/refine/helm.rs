@@ -1,0 +1,168 @@
+//! Records of a rudder that no trial had: what models that agree on the trials are asked beside
+//! them, and what a choice asks of a model before it is taken.
+
+use std::collections::BTreeMap;
+
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::vessel::Steering;
+use sistership_model::{Model, particulars};
+
+use super::thresholds::HELM;
+use sistership_priors::transfer::approach_of;
+
+/// What a rudder is ordered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Helm {
+    /// Angles at random within the gear's limit, each held for some lengths: a record of so many.
+    Random(usize),
+    /// An angle throughout, by the gear's limit: a turn.
+    Held(f64),
+}
+
+impl Helm {
+    /// So many records at random.
+    pub fn random(records: usize) -> Vec<Self> {
+        (0..records).map(Self::Random).collect()
+    }
+
+    fn name(self, steering: &Steering) -> String {
+        match self {
+            Self::Random(record) => format!("rudder {} at random", record + 1),
+            Self::Held(share) => {
+                format!("a rudder of {:.1} deg throughout", share * steering.limit_deg)
+            }
+        }
+    }
+
+    /// Angles, rad, of a rudder that follows its orders at its gear's rate.
+    fn angles(
+        self,
+        steering: &Steering,
+        interval_s: f64,
+        (first_rad, count): (f64, usize),
+    ) -> Vec<f64> {
+        let limit = steering.limit_deg.to_radians();
+        let step = steering.rate_deg_s.to_radians() * interval_s;
+        let orders = match self {
+            Self::Random(record) => orders_at_random(count, record * count),
+            Self::Held(share) => vec![share; count],
+        };
+        let mut angle = first_rad;
+        let moved = |order: &f64| {
+            angle += (limit * order - angle).clamp(-step, step);
+            angle
+        };
+        orders.iter().map(moved).collect()
+    }
+}
+
+/// Where a record begins: what is held throughout or at first, and the rudder's angle, rad.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beginning {
+    /// Speeds (m/s, rad/s), heel (rad) and revolutions (1/s) at first; what drives is held.
+    pub channels: BTreeMap<Channel, f64>,
+    /// The rudder's angle, rad.
+    pub angle_rad: f64,
+}
+
+/// A record of so many lengths for each order, from straight ahead at the speed and revolutions of
+/// the trials' approach, in their depth and without wind; none where the approach or the length is
+/// not known.
+pub fn helms(
+    model: &Model,
+    trials: &[&Trial],
+    (helms, lengths): (&[Helm], f64),
+) -> Option<Vec<Trial>> {
+    let approach = approach_of(trials)?;
+    let motion = [
+        (Channel::U, Some(approach.speed_m_s)),
+        (Channel::V, Some(0.0)),
+        (Channel::R, Some(0.0)),
+        (Channel::N, approach.n_rps),
+    ];
+    let channels = motion.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
+    let ahead = Beginning { channels: channels.collect(), angle_rad: 0.0 };
+    helms.iter().map(|helm| record(model, trials, (*helm, lengths), &ahead)).collect()
+}
+
+/// A record of an order from a beginning, so many lengths long, in the depth of the trials and
+/// without wind; none where the approach or the length is not known.
+pub fn record(
+    model: &Model,
+    trials: &[&Trial],
+    (helm, lengths): (Helm, f64),
+    begun: &Beginning,
+) -> Option<Trial> {
+    let lpp_m = particulars::value(&model.particulars, "lpp_m")?;
+    let interval_s = lpp_m / approach_of(trials)?.speed_m_s / HELM.samples_a_length;
+    let count = (lengths * HELM.samples_a_length) as usize;
+    let calm = [(Channel::WindSpeed, 0.0), (Channel::WindFrom, 0.0)];
+    let constants = begun.channels.clone().into_iter().chain(calm);
+    let mut channels: BTreeMap<Channel, Vec<f64>> =
+        constants.map(|(channel, value)| (channel, vec![value; count])).collect();
+    let angles = helm.angles(&model.steering, interval_s, (begun.angle_rad, count));
+    channels.insert(Channel::Delta, angles);
+    Some(Trial {
+        name: helm.name(&model.steering),
+        t_s: (0..count).map(|sample| sample as f64 * interval_s).collect(),
+        channels,
+        depth_m: trials.first().and_then(|trial| trial.depth_m),
+        ..Trial::default()
+    })
+}
+
+/// Orders by the gear's limit, sample by sample: those of a sequence from a place on.
+fn orders_at_random(count: usize, mut place: usize) -> Vec<f64> {
+    let [shortest, longest] = HELM.held;
+    let (mut order, mut until) = (0.0, 0.0);
+    let sample = |sample: usize| {
+        if sample as f64 >= until {
+            place += 1;
+            order = 2.0 * radical_inverse(place, 2) - 1.0;
+            let lengths = shortest + (longest - shortest) * radical_inverse(place, 3);
+            until += HELM.samples_a_length * lengths;
+        }
+        order
+    };
+    (0..count).map(sample).collect()
+}
+
+/// The digits of a number in a base, in reverse order behind the point: over many numbers in a row
+/// they fill the unit interval evenly (Halton 1960, Numerische Mathematik 2, 84, section 2).
+fn radical_inverse(mut number: usize, base: usize) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0 / base as f64);
+    while number > 0 {
+        value += digit * (number % base) as f64;
+        number /= base;
+        digit /= base as f64;
+    }
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn digits_are_reversed() {
+        let eighths: Vec<f64> = (1..8).map(|k| 8.0 * radical_inverse(k, 2)).collect();
+        assert_eq!(eighths, [4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0]);
+        assert!((radical_inverse(5, 3) - 7.0 / 9.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rudder_moves_at_its_gears_rate_within_its_limit() {
+        let steering = Steering { limit_deg: 20.0, rate_deg_s: 3.0, ..Steering::default() };
+        let angles = Helm::Random(0).angles(&steering, 2.0, (0.0, 400));
+        let degrees = |angle: &f64| angle.to_degrees();
+        let most = angles.iter().map(degrees).fold(0.0, |most: f64, angle| most.max(angle.abs()));
+        assert!((10.0..20.0 + 1e-9).contains(&most), "{most}");
+        let moves = angles.windows(2).map(|pair| (pair[1] - pair[0]).abs().to_degrees());
+        assert!(moves.fold(0.0, f64::max) < 6.0 + 1e-9);
+        assert_ne!(angles, Helm::Random(1).angles(&steering, 2.0, (0.0, 400)));
+        let held = Helm::Held(-0.5).angles(&steering, 2.0, (0.0, 400));
+        assert!((held[0].to_degrees() + 6.0).abs() < 1e-9);
+        assert!((held[399].to_degrees() + 10.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,65 @@
+//! Standard manoeuvres by a model, and those among the trials.
+
+use sistership_model::Model;
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::metrics::{Recognised, recorded_track};
+use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
+
+use super::outcome::MeasuredManoeuvre;
+use super::problem::Problem;
+use sistership_priors::transfer::ready;
+
+/// The turning circles and zigzags among the trials, beside what both models make of the recorded
+/// rudder.
+pub(super) fn measured_manoeuvres(
+    problem: &Problem<'_>,
+    refined: &Model,
+) -> Vec<MeasuredManoeuvre> {
+    let trials = problem
+        .whole
+        .iter()
+        .map(|trial| (*trial, true))
+        .chain(problem.judged.iter().map(|trial| (*trial, false)));
+    let recognised: Vec<(&Trial, bool, Recognised)> = trials
+        .filter_map(|(trial, fitted)| Some((trial, fitted, Recognised::of(trial)?)))
+        .collect();
+    let trials: Vec<&Trial> = recognised.iter().map(|(trial, ..)| *trial).collect();
+    let [source, refined] =
+        [&problem.transferred, refined].map(|model| sailed(model, problem.law, &trials));
+    let one = |(k, (trial, fitted, recognised)): (usize, &(&Trial, bool, Recognised))| {
+        let samples: Vec<usize> = (0..trial.len()).collect();
+        let simulated = |runs: &[Replay]| {
+            let run = runs.get(k).filter(|run| run.stopped.is_none())?;
+            recognised.metrics(&run.track, &run.samples)
+        };
+        Some(MeasuredManoeuvre {
+            trial: trial.name.clone(),
+            fitted: *fitted,
+            measured: recognised.metrics(&recorded_track(trial)?, &samples)?,
+            source: simulated(&source),
+            refined: simulated(&refined),
+        })
+    };
+    recognised.iter().enumerate().filter_map(one).collect()
+}
+
+/// Trials from beginning to end by a model; nothing where it cannot sail them.
+fn sailed(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<Replay> {
+    let Ok(ship) = ready(model, law, trials) else { return Vec::new() };
+    let recorded: Vec<Recorded<'_>> =
+        trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
+    replay_all(&ship, &recorded, &ReplaySettings::default()).unwrap_or_default()
+}
+
+/// The standard manoeuvres by a model, or why it cannot sail them.
+pub(super) fn standard_manoeuvres(model: &Model, law: &Law) -> StandardManoeuvres {
+    match Ship::new(model, law) {
+        Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
+        Err(error) => {
+            StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() }
+        }
+    }
+}

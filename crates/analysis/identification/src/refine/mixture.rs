@@ -1,0 +1,252 @@
+//! The prior as a mixture: what the source says of the ship's accelerations and what the estimate
+//! from its particulars says, each a Gaussian whose covariance was learned by leaving ships out.
+
+use std::sync::LazyLock;
+
+use sistership_model::coefficient::Axis;
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_model::{FileError, Model, Vessel};
+use sistership_priors::estimates::{LAW, Library, estimate};
+
+use super::across::SourceRegression;
+use super::blocks::Blocks;
+use super::envelope::OperatingEnvelope;
+use super::measure::PriorMeasure;
+use super::outcome::RefineError;
+use super::thresholds::{MIXTURE, Misfit};
+
+/// What estimates are made of.
+struct Regressions {
+    library: Library,
+    law: Law,
+}
+
+static REGRESSIONS: LazyLock<Result<Regressions, FileError>> = LazyLock::new(|| {
+    let text = include_str!("../../../../../models/laws/mmg.yaml");
+    Ok(Regressions { library: Library::embedded()?, law: Law::parse(LAW, text)? })
+});
+
+fn regressions() -> Result<&'static Regressions, RefineError> {
+    REGRESSIONS.as_ref().map_err(|error| RefineError::Law(error.to_string()))
+}
+
+/// The regressions that a mixture is made with, so that a version records them.
+///
+/// # Errors
+/// Others are asked for than this program has.
+pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineError> {
+    let own = &regressions()?.library.sha256;
+    match asked {
+        Some(asked) if asked != own => Err(RefineError::Setting {
+            field: "regressions_sha256".into(),
+            message: format!("this program estimates by the regressions {own}"),
+        }),
+        _ => Ok(own.clone()),
+    }
+}
+
+/// Refuses a source that is the ship's own model: errors of other ships say nothing of it.
+///
+/// # Errors
+/// It is.
+pub(super) fn check(source: &Model, target: &Vessel) -> Result<(), RefineError> {
+    if source.ship != target.name() {
+        return Ok(());
+    }
+    let message = format!("`mixture` is of a source of another ship than {}", target.name());
+    Err(RefineError::Setting { field: "prior".into(), message })
+}
+
+/// A model carried over by the law that is fitted, moved towards the estimate, and what it says.
+///
+/// # Errors
+/// As [`mixed`]; the model cannot sail.
+pub(super) fn of_same_law(
+    mut model: Model,
+    law: &Law,
+    target: &Vessel,
+    (trials, position): (&[&Trial], f64),
+) -> Result<(Model, PriorMeasure), RefineError> {
+    let envelope = OperatingEnvelope::new(&model, law, trials)?;
+    let mixed = mixed(&envelope, target, model.speed_m_s, (trials, position))?;
+    moved(&mut model, law, &envelope, &mixed)?;
+    Ok((model, PriorMeasure::Mixture(mixed)))
+}
+
+/// What a source says, moved towards what the estimate says by its shares at a position
+/// ([`super::settings::Settings::mixture_positions`]).
+///
+/// # Errors
+/// The ship's particulars do not suffice for an estimate.
+pub(super) fn mixed(
+    envelope: &OperatingEnvelope,
+    target: &Vessel,
+    speed_m_s: Option<f64>,
+    (trials, position): (&[&Trial], f64),
+) -> Result<OperatingEnvelope, RefineError> {
+    let (estimated, law) = estimated(target, speed_m_s)?;
+    let shares = MIXTURE.misfit.map(|misfit| misfit.map_or(0.0, |misfit| at(position, misfit)));
+    let moved = envelope.moved_to((&estimated, law), &shares, trials)?;
+    Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
+}
+
+/// What the estimate says, named as such.
+pub(super) fn alone(envelope: OperatingEnvelope) -> OperatingEnvelope {
+    OperatingEnvelope { mixed: Some(words(&[1.0; 4])), ..envelope }
+}
+
+/// The estimate from the ship's particulars, and its law.
+///
+/// # Errors
+/// They do not suffice, or its speed is not known.
+pub(super) fn estimated(
+    target: &Vessel,
+    speed_m_s: Option<f64>,
+) -> Result<(Model, &'static Law), RefineError> {
+    let Regressions { library, law } = regressions()?;
+    let speed_m_s = speed_m_s.ok_or_else(|| {
+        RefineError::Data(format!("{}: the speed of the estimate is not known", target.name()))
+    })?;
+    let estimate = estimate(library, target, law, speed_m_s)
+        .map_err(|error| RefineError::Data(format!("no estimate for the mixture: {error}")))?;
+    Ok((estimate.model, law))
+}
+
+/// Lets an estimate make its approach speed at other revolutions. With `s` their ratio, `k_0/s^2`,
+/// `k_1/s` and `k_2` give the thrust `k_0 (nD)^2 + k_1 u_P nD + k_2 u_P^2` that they gave before, at
+/// every speed and at `s` times the revolutions: the pitch is estimated, the revolutions are read.
+pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
+    let Some(own) = estimate.revolutions_rps.replace(n_rps) else { return };
+    let ratio = n_rps / own;
+    for (name, by) in [("k_0", ratio.powi(2)), ("k_1", ratio)] {
+        if let Some(quantity) = estimate.parameters.get_mut(name) {
+            quantity.value /= by;
+            quantity.note = Some("for the revolutions of the trials".to_owned());
+        }
+    }
+}
+
+/// The estimate's share at a position: none at 0, that of the least variance at a half, all at 1.
+fn at(position: f64, misfit: Misfit) -> f64 {
+    let learned = share(misfit);
+    match position <= LEARNED {
+        true => learned * position / LEARNED,
+        false => learned + (1.0 - learned) * (position - LEARNED) / (1.0 - LEARNED),
+    }
+}
+
+/// The position of the learned shares, and of the estimate.
+pub(super) const LEARNED: f64 = 0.5;
+pub(super) const ESTIMATE: f64 = 1.0;
+
+/// The estimate's share in the mean of least variance: with `C` the covariance of both errors,
+/// `C^-1 1 / (1' C^-1 1)` (Bates and Granger 1969, Eq. 2).
+fn share(misfit: Misfit) -> f64 {
+    let Misfit { source, estimate, common } = misfit;
+    ((source - common) / (source + estimate - 2.0 * common)).clamp(0.0, 1.0)
+}
+
+/// Moves a model's coefficients by what the mixture says less what the source says, both regressed
+/// on the law's terms alike: where the estimate has no share the source stays as it is.
+fn moved(
+    model: &mut Model,
+    law: &Law,
+    own: &OperatingEnvelope,
+    mixed: &OperatingEnvelope,
+) -> Result<(), RefineError> {
+    let blocks = Blocks::new(model, law)?;
+    let towards = SourceRegression::new(mixed, &blocks, model)?;
+    let from = towards.of(own, &blocks)?;
+    let (mut before, mut after) = (model.clone(), model.clone());
+    from.fill(&blocks, &mut before);
+    towards.fill(&blocks, &mut after);
+    for (name, quantity) in &mut model.coefficients {
+        quantity.value += after.coefficient(name) - before.coefficient(name);
+        quantity.source = format!("{}, moved towards the estimate", quantity.source);
+    }
+    Ok(())
+}
+
+/// The shares for people.
+fn words(shares: &[f64; 4]) -> String {
+    if shares.iter().all(|share| *share == 1.0) {
+        return "the prior is the estimate from particulars in place of the source".to_owned();
+    }
+    let one = |axis: Axis| format!("{axis} {:.2}", shares[axis as usize]);
+    let shares = [Axis::X, Axis::Y, Axis::N].map(one).join(", ");
+    format!(
+        "the prior is a mixture of the source and of the estimate from particulars, whose shares \
+         in the accelerations are {shares}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+    use sistership_priors::transfer::transfer;
+    use sistership_simulation::Ship;
+    use sistership_simulation::plant::Work;
+    use sistership_simulation::state::{StateVector, at};
+
+    #[test]
+    fn shares_are_those_of_the_least_variance() {
+        let of = |source, estimate, common| share(Misfit { source, estimate, common });
+        assert_eq!(of(1.0, 1.0, 0.0), 0.5);
+        assert_eq!(of(4.0, 1.0, 0.0), 0.8);
+        assert_eq!(of(1.0, 9.0, 2.0), 0.0);
+        let misfit = Misfit { source: 4.0, estimate: 1.0, common: 0.0 };
+        assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0].map(|p| at(p, misfit)), [0.0, 0.4, 0.8, 0.9, 1.0]);
+        // The mean square of the mean by its share is least there.
+        let square = |w: f64| (1.0 - w).powi(2) * 2.0 + w * w * 3.0 + 2.0 * w * (1.0 - w) * 0.5;
+        let best = of(2.0, 3.0, 0.5);
+        assert!(square(best) < square(best + 0.05) && square(best) < square(best - 0.05));
+    }
+
+    #[test]
+    fn coefficients_say_what_the_mixture_says() {
+        let zoo = Zoo::embedded().unwrap();
+        let source = zoo.model("kvlcc2").unwrap();
+        let (target, law) = (zoo.vessel("kcs").unwrap(), zoo.law(&source.law).unwrap());
+        let carried = transfer(&source, law, target, None);
+        let own = OperatingEnvelope::new(&carried, law, &[]).unwrap();
+        let (model, measure) = of_same_law(carried.clone(), law, target, (&[], LEARNED)).unwrap();
+        let PriorMeasure::Mixture(mixed) = measure else { panic!("another measure") };
+        let said = own.moved_to((&model, law), &[1.0; 4], &[]).unwrap();
+        for axis in [Axis::X, Axis::Y, Axis::N] {
+            let before = own.distance(&mixed, axis);
+            assert!(before > 0.0, "{axis}: the estimate says the same");
+            assert!(said.distance(&mixed, axis) < 0.3 * before, "{axis}");
+        }
+    }
+
+    #[test]
+    fn an_estimate_makes_its_speed_at_the_revolutions_of_the_trials() {
+        let zoo = Zoo::embedded().unwrap();
+        let (mut model, law) = estimated(zoo.vessel("kcs").unwrap(), Some(12.0)).unwrap();
+        let gained = |model: &Model, n_rps: f64| {
+            let ship = Ship::new(model, law).unwrap();
+            let state = StateVector::from_fn(|place, _| if place == at::U { 12.0 } else { 0.0 });
+            ship.rate_with(&state, &ship.inputs(0.0, n_rps), &mut Work::default())[at::U]
+        };
+        let own = model.revolutions_rps.unwrap();
+        let before = gained(&model, 0.9 * own);
+        turn_at(&mut model, 1.3 * own);
+        assert_eq!(model.revolutions_rps, Some(1.3 * own));
+        assert!(gained(&model, 1.3 * own).abs() < 1e-6 && before < -1e-3);
+        assert!((gained(&model, 1.3 * 0.9 * own) - before).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_ships_own_model_and_other_regressions_are_refused() {
+        let zoo = Zoo::embedded().unwrap();
+        let target = zoo.vessel("kvlcc2").unwrap();
+        assert!(check(&zoo.model("kvlcc2").unwrap(), target).is_err());
+        assert!(check(&zoo.model("mariner").unwrap(), target).is_ok());
+        let own = regressions_sha256(None).unwrap();
+        assert_eq!(regressions_sha256(Some(&own)).unwrap(), own);
+        assert!(regressions_sha256(Some("0")).unwrap_err().to_string().contains(&own));
+    }
+}

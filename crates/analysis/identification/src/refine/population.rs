@@ -1,0 +1,176 @@
+//! The prior as a population: what other ships say of this one's accelerations, each carried over
+//! to its particulars and asked at the same states. Their mean is where the coefficients are held,
+//! and how they differ says what may differ: the covariance of a hierarchical model, from groups
+//! that are known (Gelman et al. 2013, Bayesian Data Analysis, section 5.4, the means of whose
+//! groups are given here).
+//!
+//! Directions of coefficients are measured as of a source of another law (docs/decisions/0015):
+//! with `R' R` the precision that this has earned and `z = R b` a ship's coefficients, the prior's
+//! covariance of `z` is `e 1 + (1 - e) p S`. `S` is the scatter of the ships about their mean, of
+//! trace 1, `p` the number of coefficients, and `e` ([`POPULATION`]`.outside`) what ships differ by
+//! that no ship shows.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel};
+use sistership_numerics::{Metric, Moments, RidgeChoice, RidgePath, Scatter};
+use sistership_priors::transfer::{Approach, transfer};
+
+use super::blocks::{Block, Blocks};
+use super::envelope::{MemberRates, OperatingEnvelope, Rates};
+use super::outcome::RefineError;
+use super::thresholds::POPULATION;
+
+/// A ship of the population.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// Its model, as published or as refined.
+    pub model: Model,
+    /// The model's law.
+    pub law: Arc<Law>,
+}
+
+/// What each member that knows every state of an envelope says there; one of the same ship is no
+/// other ship.
+///
+/// # Errors
+/// Fewer of them do than a scatter is taken of.
+pub(super) fn rates_of(
+    members: &[Member],
+    target: &Vessel,
+    approach: Option<Approach>,
+    (envelope, trials): (&OperatingEnvelope, &[&Trial]),
+) -> Result<Vec<MemberRates>, RefineError> {
+    let one = |Member { model, law }: &Member| {
+        let carried = transfer(model, law, target, approach);
+        let rates = envelope.asked_of((&carried, law), trials).ok()?;
+        Some(MemberRates { name: model.name.clone(), rates })
+    };
+    let others: Vec<&Member> =
+        members.iter().filter(|member| member.model.ship != target.name()).collect();
+    let known: Vec<MemberRates> = others.into_par_iter().filter_map(one).collect();
+    if known.len() < POPULATION.least {
+        let message = format!(
+            "{} ships of the population say what the prior `population` is made of, at least {} \
+             are needed",
+            known.len(),
+            POPULATION.least
+        );
+        return Err(RefineError::Data(message));
+    }
+    Ok(known)
+}
+
+/// Refuses laws that a population cannot hold: that of its source, and one with roll, of which few
+/// ships say anything.
+///
+/// # Errors
+/// It is one of them.
+pub(super) fn check(law: &Law, source_law: Option<&Law>) -> Result<(), RefineError> {
+    let is_across = source_law.is_some_and(|own| own.name != law.name);
+    if is_across && !law.has_roll() {
+        return Ok(());
+    }
+    let message = format!(
+        "`population` holds a law without roll, from a source of another law; not `{}`",
+        law.name
+    );
+    Err(RefineError::Setting { field: "prior".into(), message })
+}
+
+/// What the members say, as the regressions of a law see it.
+pub(super) struct PopulationRegression<'a> {
+    envelope: &'a OperatingEnvelope,
+    members: &'a [MemberRates],
+    ridge: f64,
+}
+
+impl<'a> PopulationRegression<'a> {
+    /// Regressed by the ridge that a source at the same states was.
+    pub fn new(envelope: &'a OperatingEnvelope, members: &'a [MemberRates], ridge: f64) -> Self {
+        Self { envelope, members, ridge }
+    }
+
+    /// Sets a model's coefficients to the members' mean, and replaces the precision that a source
+    /// has earned by theirs. Where nothing is known there is no precision, and the source's stay.
+    ///
+    /// # Errors
+    /// The law takes something that the states do not have.
+    pub fn hold(&self, blocks: &mut Blocks, model: &mut Model) -> Result<(), RefineError> {
+        let rates: Vec<&Rates> = self.members.iter().map(|member| &member.rates).collect();
+        let moments = self.envelope.moments_of(blocks, &rates)?;
+        for (block, moments) in blocks.blocks.iter_mut().zip(&moments) {
+            let Some(metric) = block.precision.as_ref().and_then(Metric::of_precision) else {
+                continue;
+            };
+            let members = self.coordinates(block, &metric, moments);
+            let scatter = Scatter::new(&members, POPULATION.rounds);
+            block.precision = scatter.precision(&metric, POPULATION.outside);
+            fill(block, &scatter.means, &metric, (model, self.members.len()));
+        }
+        Ok(())
+    }
+
+    /// The members' coefficients in the coordinates of a metric, by target.
+    fn coordinates(
+        &self,
+        block: &Block,
+        metric: &Metric,
+        moments: &Moments,
+    ) -> Vec<Vec<DVector<f64>>> {
+        let (p, q) = (block.regressors(), block.axes.len());
+        let zero = vec![0.0; p];
+        let own = Metric::of_regressors(moments, &block.shrinkage);
+        let path = RidgePath::measured(moments, &vec![zero.clone(); moments.targets()], own);
+        let choice = RidgeChoice { lambda: self.ridge, alpha: 0.0 };
+        let of = |target: usize, member: usize| {
+            metric.root() * DVector::from_vec(path.solve(member * q + target, choice, &zero))
+        };
+        let members = 0..self.members.len();
+        (0..q).map(|t| members.clone().map(|member| of(t, member)).collect()).collect()
+    }
+}
+
+/// Sets the coefficients of a regression to means by target.
+fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model, usize)) {
+    let (model, count) = of;
+    let solved: Vec<DVector<f64>> = means.iter().map(|mean| metric.back() * mean).collect();
+    for place in 0..block.regressors() {
+        let seen = DVector::from_iterator(means.len(), solved.iter().map(|one| one[place]));
+        let own = &block.unmixing * seen;
+        for (names, value) in block.names.iter().zip(&own) {
+            let source = format!("mean of what {count} ships say");
+            model.coefficients.insert(names[place].clone(), Quantity::new(*value, source));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_law_with_roll_or_of_the_source_itself_is_refused() {
+        let zoo = sistership_model::Zoo::embedded().unwrap();
+        let law = |name: &str| zoo.law(name).unwrap();
+        assert!(check(law("low-speed"), Some(law("mmg"))).is_ok());
+        for refused in ["abkowitz-roll", "mmg"] {
+            assert!(check(law(refused), Some(law("mmg"))).is_err(), "{refused}");
+        }
+    }
+
+    #[test]
+    fn too_few_ships_are_out_and_no_fault_of_the_settings() {
+        let (zoo, target) = (sistership_model::Zoo::embedded().unwrap(), "kcs");
+        let (model, law) = crate::testing::mariner();
+        let envelope = OperatingEnvelope::new(&model, &law, &[]).unwrap();
+        let none = rates_of(&[], zoo.vessel(target).unwrap(), None, (&envelope, &[]));
+        assert!(matches!(none, Err(RefineError::Data(_))), "a search goes on without it");
+    }
+}

@@ -1,0 +1,83 @@
+//! One target of one regression at its choice.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::rows::{RowSequence, SequencedRows};
+use super::thresholds::POSTERIOR;
+use sistership_numerics::{Metric, Moments, RidgeChoice};
+
+/// One target of one regression.
+pub(super) struct RidgeEquation<'a> {
+    pub block: usize,
+    pub target: usize,
+    pub choice: RidgeChoice,
+    /// What standardises its coefficients.
+    pub metric: &'a Metric,
+    /// `C`, standardised.
+    pub products: &'a DMatrix<f64>,
+    /// `F'y/n`, standardised.
+    pub data: DVector<f64>,
+    /// Mean square of the target.
+    pub square: f64,
+    /// The source's coefficients, standardised.
+    pub source: DVector<f64>,
+    /// `S^-1`.
+    pub inverse: DMatrix<f64>,
+    /// The same at a strength that holds nothing which the trials can tell, and the solution there,
+    /// standardised.
+    pub free: (DMatrix<f64>, DVector<f64>),
+}
+
+impl<'a> RidgeEquation<'a> {
+    pub fn new(
+        (block, target): (usize, usize),
+        moments: &Moments,
+        (metric, products): &'a (Metric, DMatrix<f64>),
+        source: &[f64],
+        choice: RidgeChoice,
+    ) -> Option<Self> {
+        let inverse = |lambda: f64| {
+            let mut sum = products.clone();
+            (0..metric.size()).for_each(|j| {
+                sum[(j, j)] += if metric.is_still(j) { 1.0 } else { lambda.max(1e-12) }
+            });
+            Some(sum.cholesky()?.inverse())
+        };
+        let data = metric.products_with_target(moments, target);
+        let source = metric.root() * DVector::from_column_slice(source);
+        let lambda = choice.lambda.min(POSTERIOR.residual_strength);
+        let free = inverse(lambda)?;
+        let solution = &free * (&data + &source * lambda);
+        let square = moments.target_variance(target);
+        let (inverse, free) = (inverse(choice.lambda)?, (free, solution));
+        Some(Self { block, target, choice, metric, products, data, square, source, inverse, free })
+    }
+
+    /// What the law leaves of its target, by sequence, where no source holds it: else the source's
+    /// error would seem noise.
+    pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
+        let coefficients = self.metric.back() * &self.free.1;
+        let of = |sequence: &RowSequence| {
+            sequence.target(self.target) - &sequence.regressors * &coefficients
+        };
+        rows.blocks[self.block].iter().map(of).collect()
+    }
+
+    /// Places of its coefficients that the trials moved.
+    pub fn size(&self) -> usize {
+        self.metric.size()
+    }
+}
+
+impl RidgeEquation<'_> {
+    /// By how much the residuals' variance is more than it seems, for the coefficients have taken
+    /// up a part of it: with the hat matrix `A` and correlations `R`, the sum of squares is
+    /// expected to be `tr (I - A) R (I - A)` of the variance.
+    pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
+        let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
+        let moved = &self.free.0 * unit;
+        let left =
+            1.0 - (2.0 * moved.trace() - (&moved * &self.free.0 * self.products).trace()) / count;
+        1.0 / left.clamp(POSTERIOR.least_left, 1.0)
+    }
+}

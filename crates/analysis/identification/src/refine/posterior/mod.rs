@@ -1,0 +1,202 @@
+//! How far a ridge's coefficients may be from the truth, jointly over the axes.
+//!
+//! With standardised regressors `F`, `C = F'F/n` and `S = C + lambda I`, the error of the ridge is
+//! `S^-1 (F'e/n + lambda d)`, where `e` is what the law leaves of the accelerations and `d` how far
+//! the pull's target is from the truth. Its covariance is `S^-1 (M + lambda^2 D) S^-1` whatever
+//! strength was chosen, and by whatever rule.
+//!
+//! `M` is the covariance of `F'e/n` for residuals that depend on each other (White 1980,
+//! Econometrica 48, 817-838; Newey and West 1987, Econometrica 55, 703-708):
+//! [`ResidualAutocovariance`] has their autocovariance, within and between the axes. `D` is not
+//! what `lambda` would make of it, for that was chosen by simulation: [`spread`] learns from the
+//! trials how far the source is off.
+
+mod autocovariance;
+mod equation;
+mod rows;
+mod spread;
+mod thresholds;
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+
+use super::blocks::{Block, Blocks};
+use super::errors::CoefficientErrors;
+use super::outcome::RefineError;
+use super::ridge::{Choices, mixed_source};
+use autocovariance::ResidualAutocovariance;
+use equation::RidgeEquation;
+pub(super) use rows::{SequencedRows, rows};
+use sistership_numerics::{Metric, Moments, RidgeChoice};
+use spread::spread;
+
+/// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the
+/// source.
+///
+/// # Errors
+/// Names the axis whose equations are not positive definite.
+pub(super) fn errors(
+    blocks: &Blocks,
+    moments: &[Moments],
+    rows: &SequencedRows,
+    model: &Model,
+    choices: &Choices,
+) -> Result<CoefficientErrors, RefineError> {
+    let standard: Vec<(Metric, DMatrix<f64>)> =
+        blocks.blocks.iter().zip(moments).map(standardised).collect();
+    let mut equations = Vec::new();
+    for (b, block) in blocks.blocks.iter().enumerate() {
+        let sources = mixed_source(block, model);
+        for (target, source) in sources.iter().enumerate() {
+            let equation = RidgeEquation::new(
+                (b, target),
+                &moments[b],
+                &standard[b],
+                source,
+                choices[b][target],
+            );
+            equations.push(equation.ok_or_else(|| not_positive(block.axes[target]))?);
+        }
+    }
+    let residuals: Vec<Vec<DVector<f64>>> =
+        equations.iter().map(|equation| equation.residuals(rows)).collect();
+    let memory = ResidualAutocovariance::of(&residuals);
+    let scatter = scatter(&equations, rows, &memory);
+    let of_equation = |(equation, own): (&RidgeEquation<'_>, &DMatrix<f64>)| {
+        let axis = blocks.blocks[equation.block].axes[equation.target];
+        spread(equation, own).ok_or_else(|| not_positive(axis))
+    };
+    let spreads: Vec<DVector<f64>> =
+        equations.iter().zip(&scatter.own).map(of_equation).collect::<Result<_, _>>()?;
+    Ok(gathered(blocks, &equations, &scatter.all, &spreads))
+}
+
+/// The refusal where a matrix of an axis has no root.
+fn not_positive(axis: Axis) -> RefineError {
+    RefineError::Data(format!(
+        "the standard errors of the {axis:?} axis cannot be computed: its normal equations are not \
+         positive definite; check the trials for values that are not finite"
+    ))
+}
+
+/// What standardises a block's coefficients, and the mean products of its regressors so
+/// standardised.
+fn standardised((block, moments): (&Block, &Moments)) -> (Metric, DMatrix<f64>) {
+    let metric = block.metric(moments);
+    let products = metric.products(moments);
+    (metric, products)
+}
+
+/// Covariances of `F'e/n`.
+struct ScoreCovariance {
+    /// Over all equations one after the other.
+    all: DMatrix<f64>,
+    /// Of each alone.
+    own: Vec<DMatrix<f64>>,
+}
+
+fn scatter(
+    equations: &[RidgeEquation<'_>],
+    rows: &SequencedRows,
+    memory: &ResidualAutocovariance,
+) -> ScoreCovariance {
+    let starts = starts(equations);
+    let total = starts.last().map_or(0, |start| start + equations[equations.len() - 1].size());
+    let mut all = DMatrix::zeros(total, total);
+    let mut factors = Vec::new();
+    for (i, one) in equations.iter().enumerate() {
+        for (j, other) in equations.iter().enumerate().take(i + 1) {
+            let part = rows.weighed(one.block, other.block, &memory.kernel(i, j));
+            let part = one.metric.back().transpose() * part * other.metric.back();
+            if i == j {
+                factors.push(one.taken_up(&part, memory.variance(i), rows.count()).sqrt());
+            }
+            all.view_mut((starts[i], starts[j]), part.shape()).copy_from(&part);
+            all.view_mut((starts[j], starts[i]), (part.ncols(), part.nrows()))
+                .copy_from(&part.transpose());
+        }
+    }
+    for (i, one) in equations.iter().enumerate() {
+        all.rows_mut(starts[i], one.size()).scale_mut(factors[i]);
+        all.columns_mut(starts[i], one.size()).scale_mut(factors[i]);
+    }
+    let own = equations
+        .iter()
+        .zip(&starts)
+        .map(|(e, &at)| all.view((at, at), (e.size(), e.size())).into_owned())
+        .collect();
+    ScoreCovariance { all, own }
+}
+
+fn starts(equations: &[RidgeEquation<'_>]) -> Vec<usize> {
+    let next = |at: &mut usize, equation: &RidgeEquation<'_>| {
+        let start = *at;
+        *at += equation.size();
+        Some(start)
+    };
+    equations.iter().scan(0, next).collect()
+}
+
+/// From errors of standardised equations to those of the coefficients of each axis.
+fn gathered(
+    blocks: &Blocks,
+    equations: &[RidgeEquation<'_>],
+    scatter: &DMatrix<f64>,
+    spreads: &[DVector<f64>],
+) -> CoefficientErrors {
+    let starts = starts(equations);
+    let total = scatter.nrows();
+    let (mut inverse, mut map) = (DMatrix::zeros(total, total), DMatrix::zeros(total, total));
+    let (mut source, mut pulled) = (DVector::zeros(total), DVector::zeros(total));
+    let mut strengths = DVector::zeros(total);
+    let mut names = Vec::new();
+    for ((equation, &at), spread) in equations.iter().zip(&starts).zip(spreads) {
+        let (size, RidgeChoice { lambda, alpha }) = (equation.size(), equation.choice);
+        inverse.view_mut((at, at), (size, size)).copy_from(&equation.inverse);
+        pulled.rows_mut(at, size).copy_from(&(&equation.source * (lambda * alpha)));
+        (0..size).filter(|j| !equation.metric.is_still(*j)).for_each(|j| {
+            source[at + j] = spread[j];
+            strengths[at + j] = lambda;
+        });
+    }
+    for (b, block) in blocks.blocks.iter().enumerate() {
+        let Some(first) = equations.iter().position(|equation| equation.block == b) else {
+            continue;
+        };
+        place(block, equations, &starts, first, &mut map);
+        names.extend(block.names.iter().flatten().cloned());
+    }
+    let held = DMatrix::from_diagonal(&source.component_mul(&strengths).component_mul(&strengths));
+    let covariance = &inverse * (scatter + held + &pulled * pulled.transpose()) * &inverse;
+    let cross = &inverse * DMatrix::from_diagonal(&source.component_mul(&strengths));
+    let mapped = |matrix: DMatrix<f64>| &map * matrix * map.transpose();
+    CoefficientErrors {
+        names,
+        covariance: mapped(covariance),
+        source: mapped(DMatrix::from_diagonal(&source)),
+        cross: mapped(cross),
+    }
+}
+
+/// Coefficients of a block's axes from its targets' standardised ones.
+fn place(
+    block: &Block,
+    equations: &[RidgeEquation<'_>],
+    starts: &[usize],
+    first: usize,
+    map: &mut DMatrix<f64>,
+) {
+    let q = block.axes.len();
+    for axis in 0..q {
+        for target in 0..q {
+            let part = equations[first + target].metric.back() * block.unmixing[(axis, target)];
+            let size = block.regressors();
+            map.view_mut((starts[first + axis], starts[first + target]), (size, size))
+                .copy_from(&part);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

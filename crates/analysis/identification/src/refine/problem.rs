@@ -1,0 +1,107 @@
+//! A refinement's problem: what does not change while candidates are compared.
+
+use std::collections::BTreeMap;
+
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::vessel::Status;
+use sistership_model::{Model, Vessel, particulars};
+use sistership_simulation::error::standard_deviations;
+
+use super::measure::PriorMeasure;
+use super::progress::{Iterate, Watch};
+use super::replayed_trials::ReplayedTrials;
+use super::ridge::Fitted;
+use super::settings::Settings;
+
+/// What does not change while candidates are compared.
+pub(super) struct Problem<'a> {
+    pub law: &'a Law,
+    pub target: Option<&'a Vessel>,
+    /// The source's name.
+    pub source: &'a str,
+    /// What is fitted and left out: the trials, or parts of them.
+    pub training: Vec<&'a Trial>,
+    /// The same as simulations of them are compared.
+    pub replayed: ReplayedTrials,
+    /// The trials of which that is.
+    pub whole: Vec<&'a Trial>,
+    pub judged: Vec<&'a Trial>,
+    /// By which errors are standardised: those of the channels over what is fitted and left out.
+    pub deviations: BTreeMap<Channel, f64>,
+    pub transferred: Model,
+    /// What the prior measures coefficients by.
+    pub measure: PriorMeasure,
+    pub settings: Settings,
+    pub watch: Option<Watch<'a>>,
+}
+
+impl<'a> Problem<'a> {
+    /// Of a model with itself as the source, on whole trials.
+    pub fn of_model(
+        model: &'a Model,
+        law: &'a Law,
+        trials: &[&'a Trial],
+        settings: Settings,
+    ) -> Self {
+        let training = trials.to_vec();
+        let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
+        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
+        let deviations = standard_deviations(&training);
+        Self {
+            law,
+            target: None,
+            source: &model.name,
+            training,
+            replayed,
+            whole,
+            judged,
+            deviations,
+            transferred,
+            measure: PriorMeasure::Trials,
+            settings,
+            watch: None,
+        }
+    }
+
+    /// Shows an iterate to whoever watches.
+    pub fn show(&self, iterate: &Iterate<'_>) {
+        self.watch.into_iter().for_each(|watch| watch(iterate));
+    }
+
+    /// Which fold a training trial is left out in.
+    pub fn fold_of(&self, trial: usize) -> usize {
+        trial % self.fold_count()
+    }
+
+    pub fn fold_count(&self) -> usize {
+        self.training.len().min(self.settings.folds)
+    }
+
+    /// Whether a trial is fitted in a fold; a single trial can only judge itself.
+    pub fn is_fitted(&self, trial: usize, fold: usize) -> bool {
+        self.training.len() == 1 || self.fold_of(trial) != fold
+    }
+
+    /// The shortest sampling interval, s.
+    pub fn interval_s(&self) -> f64 {
+        self.training.iter().map(|trial| trial.interval_s()).fold(f64::INFINITY, f64::min).max(1e-3)
+    }
+
+    /// The transferred model with these coefficients and no others.
+    pub fn model_with(&self, coefficients: &BTreeMap<String, Fitted>) -> Model {
+        let mut model = self.transferred.clone();
+        model.status = Status::Refined;
+        model.coefficients.clear();
+        for (name, fitted) in coefficients {
+            let quantity = Quantity {
+                standard_error: Some(fitted.standard_error),
+                ..Quantity::new(fitted.value, format!("refined from {}", self.source))
+            };
+            model.coefficients.insert(name.clone(), quantity);
+        }
+        model
+    }
+}

@@ -1,0 +1,206 @@
+//! Trials as simulations of them are compared: with fewer samples, where instruments record more
+//! often than a simulation needs, and without most of what single readings scatter by.
+
+use std::ops::Range;
+
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::recorded::ReplaySettings;
+
+use super::settings::Settings;
+use super::smoothed::{ReadingsAbout, is_motion};
+use super::steps::step_s;
+use sistership_priors::transfer::approach_of;
+
+/// Trials with no more samples than simulations need.
+pub struct ReplayedTrials {
+    /// The trials, in their order.
+    pub trials: Vec<Trial>,
+    /// Longest step of a simulation, s.
+    pub step_s: f64,
+}
+
+/// How trials are made into such.
+#[derive(Debug, Clone, Copy)]
+pub struct Thinning {
+    /// With as few samples as a search needs, means of what drives the ship between them.
+    pub economical: bool,
+    /// Window in which motions are smoothed, s; none leaves them as they are.
+    pub smoothing_s: Option<f64>,
+}
+
+impl From<&Settings> for Thinning {
+    fn from(settings: &Settings) -> Self {
+        Self { economical: settings.economical, smoothing_s: settings.smoothing_s }
+    }
+}
+
+impl ReplayedTrials {
+    /// Of trials.
+    pub fn new(law: &Law, lpp_m: Option<f64>, training: &[&Trial], by: Thinning) -> Self {
+        let economical = by.economical;
+        let step_s = lpp_m
+            .zip(approach_of(training))
+            .map(|(l, approach)| step_s(law, l / approach.speed_m_s, economical));
+        let usual_s = ReplaySettings::default().step_s;
+        Self {
+            trials: training.iter().map(|trial| thinned(trial, step_s, by)).collect(),
+            step_s: step_s.filter(|_| economical && !law.has_roll()).unwrap_or(usual_s),
+        }
+    }
+}
+
+/// Every so many samples of a trial, so that they are as far apart as a simulation may step and no
+/// further; none between gaps is joined to another. Every sample where that would leave gaps out,
+/// or nothing.
+fn thinned(trial: &Trial, step_s: Option<f64>, by: Thinning) -> Trial {
+    let every = every(trial, step_s);
+    if every == 1 && by.smoothing_s.is_none() {
+        return trial.clone();
+    }
+    let parts = trial.segments();
+    let kept = Kept::new(trial, &parts, every, by.smoothing_s);
+    let column = |channel: Channel, column: &[f64]| match channel {
+        _ if is_motion(channel) => kept.smoothed(channel, column),
+        _ if by.economical && drives(channel) => kept.means(column),
+        _ => kept.of(column),
+    };
+    let channels =
+        trial.channels.iter().map(|(&channel, values)| (channel, column(channel, values)));
+    Trial {
+        t_s: kept.of(&trial.t_s),
+        channels: channels.collect(),
+        warnings: Vec::new(),
+        ..trial.clone()
+    }
+}
+
+/// Of how many samples one is kept.
+fn every(trial: &Trial, step_s: Option<f64>) -> usize {
+    let interval_s = trial.interval_s();
+    let every = step_s
+        .filter(|_| interval_s > 0.0)
+        .map_or(1, |step_s| (step_s / interval_s + 1e-9).floor().max(1.0) as usize);
+    let parts = trial.segments();
+    let kept = Kept::new(trial, &parts, every, None);
+    let fewer = Trial { t_s: kept.of(&trial.t_s), ..Trial::default() };
+    if fewer.segments().len() == parts.len() { every } else { 1 }
+}
+
+/// The samples of a trial that are kept.
+struct Kept<'a> {
+    every: usize,
+    /// Each with its part.
+    samples: Vec<(usize, &'a Range<usize>)>,
+    /// The readings of which each is smoothed.
+    about: Vec<Option<ReadingsAbout>>,
+}
+
+impl<'a> Kept<'a> {
+    fn new(
+        trial: &Trial,
+        parts: &'a [Range<usize>],
+        every: usize,
+        smoothing_s: Option<f64>,
+    ) -> Self {
+        let stepped = |part: &'a Range<usize>| part.clone().step_by(every).map(move |k| (k, part));
+        let samples: Vec<_> = parts.iter().flat_map(stepped).collect();
+        let about = |&(k, part): &(usize, &Range<usize>)| {
+            ReadingsAbout::new(&trial.t_s, part, trial.t_s[k], smoothing_s?)
+        };
+        Self { every, about: samples.iter().map(about).collect(), samples }
+    }
+
+    fn of(&self, column: &[f64]) -> Vec<f64> {
+        self.samples.iter().map(|&(k, _)| column[k]).collect()
+    }
+
+    fn smoothed(&self, channel: Channel, column: &[f64]) -> Vec<f64> {
+        let one = |(&(k, _), about): (&(usize, _), &Option<ReadingsAbout>)| {
+            about.as_ref().map_or(column[k], |about| about.value(channel, column))
+        };
+        self.samples.iter().zip(&self.about).map(one).collect()
+    }
+
+    fn means(&self, column: &[f64]) -> Vec<f64> {
+        let one = |&(k, part): &(usize, &Range<usize>)| {
+            mean_around(&column[part.clone()], k - part.start, self.every)
+        };
+        self.samples.iter().map(one).collect()
+    }
+}
+
+/// What is put in between samples counts as much as at them: a rudder moves within one.
+fn drives(channel: Channel) -> bool {
+    matches!(channel, Channel::Delta | Channel::N | Channel::WindSpeed)
+}
+
+/// The mean of so many samples about one.
+fn mean_around(column: &[f64], place: usize, count: usize) -> f64 {
+    let before = place.saturating_sub(count / 2);
+    let near = &column[before..(place + count - count / 2).min(column.len())];
+    near.iter().sum::<f64>() / near.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const MEANS: Thinning = Thinning { economical: true, smoothing_s: None };
+
+    fn trial(gap_s: f64) -> Trial {
+        let t_s: Vec<f64> =
+            (0..100).map(|k| 0.1 * f64::from(k) + if k < 51 { 0.0 } else { gap_s }).collect();
+        Trial { channels: [(Channel::U, t_s.clone())].into(), t_s, ..Trial::default() }
+    }
+
+    #[test]
+    fn samples_are_as_far_apart_as_a_step_may_be() {
+        let fewer = thinned(&trial(30.0), Some(0.35), MEANS);
+        assert_eq!((fewer.len(), fewer.segments().len()), (17 + 17, 2));
+        assert!((fewer.interval_s() - 0.3).abs() < 1e-9);
+        assert_eq!(fewer.channel(Channel::U).unwrap(), fewer.t_s);
+        assert_eq!(fewer.t_s[17], trial(30.0).t_s[51], "each part from its start");
+    }
+
+    #[test]
+    fn a_rudder_moves_between_samples() {
+        let mut trial = trial(30.0);
+        let step = (0..100).map(|k| if (20..60).contains(&k) { 1.0 } else { 0.0 }).collect();
+        trial.channels.insert(Channel::Delta, step);
+        let fewer = thinned(&trial, Some(0.35), MEANS);
+        let impulse = 0.3 * fewer.channel(Channel::Delta).unwrap().iter().sum::<f64>();
+        assert!((impulse - 0.1 * 40.0).abs() < 0.1, "{impulse}");
+    }
+
+    #[test]
+    fn slow_records_and_gaps_that_would_vanish_are_left_as_they_are() {
+        assert_eq!(thinned(&trial(30.0), Some(0.15), MEANS), trial(30.0));
+        assert_eq!(
+            thinned(&trial(0.1), Some(0.35), MEANS),
+            trial(0.1),
+            "a gap of a fifth of a second"
+        );
+        assert_eq!(thinned(&trial(30.0), None, MEANS), trial(30.0));
+    }
+
+    #[test]
+    fn motions_are_smoothed_and_what_drives_them_is_not() {
+        let mut trial = trial(30.0);
+        let scatter = |k: usize| if k.is_multiple_of(2) { 0.1 } else { -0.1 };
+        let scattered: Vec<f64> = (0..100).map(|k| 1.0 + scatter(k)).collect();
+        trial.channels = [(Channel::U, scattered.clone()), (Channel::Delta, scattered)].into();
+        let by = Thinning { economical: false, smoothing_s: Some(2.0) };
+        let smooth = thinned(&trial, None, by);
+        assert_eq!(smooth.t_s, trial.t_s);
+        assert_eq!(smooth.channel(Channel::Delta), trial.channel(Channel::Delta));
+        let far = |u: &f64| (u - 1.0).abs();
+        assert!(smooth.channel(Channel::U).unwrap().iter().map(far).fold(0.0, f64::max) < 0.07);
+        let fewer = thinned(&trial, Some(0.35), by);
+        let place = |t: f64| smooth.t_s.iter().position(|s| *s == t).unwrap();
+        let same: Vec<f64> =
+            fewer.t_s.iter().map(|t| smooth.channel(Channel::U).unwrap()[place(*t)]).collect();
+        assert_eq!(fewer.channel(Channel::U).unwrap(), same, "of all readings, not of those kept");
+    }
+}

@@ -1,0 +1,319 @@
+//! The published estimator: every regression at its (lambda, alpha), and the way back to the law's
+//! coefficients.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+
+use super::blocks::{Block, Blocks};
+use super::errors::CoefficientErrors;
+use super::outcome::RefineError;
+use super::settings::Range;
+use super::thresholds::SELECTION;
+use sistership_numerics::{AlphaError, Moments, RidgeChoice, RidgePath, Validation};
+
+/// A coefficient as fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fitted {
+    /// Its value.
+    pub value: f64,
+    /// Posterior standard error.
+    pub standard_error: f64,
+    /// How far the prior lets the coefficient be from the source: the root of its variance and of
+    /// the square of the share that alpha pulls towards zero.
+    pub prior_deviation: f64,
+}
+
+/// Coefficients fitted on some samples at a choice for each target of each regression.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// By name, in the law's units.
+    pub coefficients: BTreeMap<String, Fitted>,
+    /// Largest condition number of the regressions.
+    pub condition_number: f64,
+    /// Coefficients that the samples cannot tell apart.
+    pub collinear_groups: Vec<Vec<String>>,
+    /// Joint errors of the coefficients, where they were asked for.
+    pub(super) errors: Option<CoefficientErrors>,
+}
+
+/// The choices of a whole law: by regression, by target.
+pub type Choices = Vec<Vec<RidgeChoice>>;
+
+/// One regression with its decomposition.
+struct PreparedRegression<'a> {
+    block: &'a Block,
+    source: Vec<Vec<f64>>,
+    path: RidgePath,
+}
+
+impl<'a> PreparedRegression<'a> {
+    fn new(block: &'a Block, moments: &Moments, model: &Model) -> Self {
+        let source = mixed_source(block, model);
+        Self { block, path: RidgePath::measured(moments, &source, block.metric(moments)), source }
+    }
+
+    fn solve(&self, choices: &[RidgeChoice]) -> Vec<Vec<f64>> {
+        let one = |(target, choice): (usize, &RidgeChoice)| {
+            self.path.solve(target, *choice, &self.source[target])
+        };
+        choices.iter().enumerate().map(one).collect()
+    }
+
+    /// The error on held-out samples as a function of alpha.
+    fn error_by_alpha(&self, target: usize, lambda: f64, held_out: &Validation) -> AlphaError {
+        self.path.error_by_alpha(target, lambda, &self.source[target], held_out)
+    }
+}
+
+/// A training set's regressions with the left-out samples that judge them.
+pub struct Fold<'a> {
+    prepared: Vec<PreparedRegression<'a>>,
+    validations: Vec<Validation>,
+}
+
+impl<'a> Fold<'a> {
+    /// Decomposes the training statistics (one set per regression) and prepares the left-out ones.
+    pub fn new(
+        blocks: &'a Blocks,
+        model: &Model,
+        training: &[Moments],
+        left_out: &[Moments],
+    ) -> Self {
+        let prepared = blocks
+            .blocks
+            .iter()
+            .zip(training)
+            .map(|(block, moments)| PreparedRegression::new(block, moments, model))
+            .collect();
+        Self { prepared, validations: left_out.iter().map(Validation::new).collect() }
+    }
+
+    /// The coefficients fitted on the training samples.
+    pub fn solve(&self, choices: &Choices) -> BTreeMap<String, Fitted> {
+        let mut coefficients = BTreeMap::new();
+        self.prepared
+            .iter()
+            .zip(choices)
+            .for_each(|(prepared, choices)| unmix(prepared, choices, &mut coefficients));
+        coefficients
+    }
+}
+
+impl Fold<'_> {
+    /// Names of the coefficients, and half the second derivative by them of what [`Fold::solve`]
+    /// makes least, each acceleration by its residual variance.
+    pub(super) fn curvature(&self, choices: &Choices) -> (Vec<String>, DMatrix<f64>) {
+        let sizes = self.prepared.iter().map(|p| p.block.axes.len() * p.block.regressors()).sum();
+        let (mut names, mut all) = (Vec::new(), DMatrix::zeros(sizes, sizes));
+        for (prepared, choices) in self.prepared.iter().zip(choices) {
+            let start = names.len();
+            names.extend(prepared.block.names.iter().flatten().cloned());
+            prepared.add_curvature(choices, start, &mut all);
+        }
+        (names, all)
+    }
+}
+
+impl Fold<'_> {
+    /// The share of the mean square of each acceleration that a strength about the source leaves on
+    /// the left-out samples.
+    pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
+        let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
+            let one = |(target, axis): (usize, &Axis)| {
+                let error = prepared.error_by_alpha(target, lambda, validation).at(0.0);
+                (*axis, error / prepared.path.target_variance(target).max(f64::MIN_POSITIVE))
+            };
+            prepared.block.axes.iter().enumerate().map(one).collect::<Vec<_>>()
+        };
+        self.prepared.iter().zip(&self.validations).flat_map(of_block).collect()
+    }
+}
+
+impl PreparedRegression<'_> {
+    fn add_curvature(&self, choices: &[RidgeChoice], start: usize, all: &mut DMatrix<f64>) {
+        let (q, p) = (self.block.axes.len(), self.block.regressors());
+        for (target, choice) in choices.iter().enumerate() {
+            let variance = self.path.residual_variance(target, *choice).max(f64::MIN_POSITIVE);
+            let own = self.path.curvature(choice.lambda) / variance;
+            for (a, b) in (0..q).flat_map(|a| (0..q).map(move |b| (a, b))) {
+                let shared = self.block.mixing[(target, a)] * self.block.mixing[(target, b)];
+                let mut part = all.view_mut((start + a * p, start + b * p), (p, p));
+                part += &own * shared;
+            }
+        }
+    }
+}
+
+/// The best choices of a range by one-step error on held-out samples, for each target of each
+/// regression.
+///
+/// # Errors
+/// Names the axis whose error is not finite at any strength of the range.
+pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Result<Choices, RefineError> {
+    let Some(first) = folds.first() else { return Ok(Choices::new()) };
+    let of_block = |b: usize| {
+        let pairs: Vec<(&PreparedRegression<'_>, &Validation)> =
+            folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
+        let axes = first.prepared[b].block.axes.iter().enumerate();
+        let of_axis = |(target, axis): (usize, &Axis)| {
+            tune_target(target, &pairs, range, count).ok_or_else(|| {
+                RefineError::Data(format!(
+                    "the error on held-out samples of the {axis:?} axis is not finite at any \
+                     strength of the prior: check the trials for values that are not finite"
+                ))
+            })
+        };
+        axes.map(of_axis).collect()
+    };
+    (0..first.prepared.len()).map(of_block).collect()
+}
+
+/// The lambda and alpha with the least error, each pair scored by the sum over the folds. None
+/// where no error is finite.
+fn tune_target(
+    target: usize,
+    folds: &[(&PreparedRegression<'_>, &Validation)],
+    range: &Range,
+    count: usize,
+) -> Option<RidgeChoice> {
+    let scored = |lambda: f64| {
+        let of_fold = |(prepared, held_out): &(&PreparedRegression<'_>, &Validation)| {
+            prepared.error_by_alpha(target, lambda, held_out)
+        };
+        let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least(range.alpha_max);
+        (error, RidgeChoice { lambda, alpha })
+    };
+    let all = log_spaced(range.lambda_min, range.lambda_max, count).map(scored);
+    let finite = all.filter(|(error, _)| error.is_finite());
+    finite.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, choice)| choice)
+}
+
+/// The strengths with the greatest marginal likelihood, for each target of each regression, on the
+/// given statistics.
+pub(super) fn most_likely(
+    blocks: &Blocks,
+    moments: &[Moments],
+    model: &Model,
+    range: &Range,
+    count: usize,
+) -> Choices {
+    let of_block = |(block, moments): (&Block, &Moments)| {
+        let prepared = PreparedRegression::new(block, moments, model);
+        let of_target = |target: usize| {
+            let misfit = |lambda: f64| (prepared.path.misfit(target, lambda), lambda);
+            let all = log_spaced(range.lambda_min, range.lambda_max, count).map(misfit);
+            let best = all
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .map_or(range.lambda_max, |(_, lambda)| lambda);
+            RidgeChoice { lambda: best, alpha: 0.0 }
+        };
+        (0..prepared.source.len()).map(of_target).collect()
+    };
+    blocks.blocks.iter().zip(moments).map(of_block).collect()
+}
+
+/// Values evenly spaced in their logarithm.
+fn log_spaced(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
+    let (low, high) = (low.ln(), high.ln());
+    (0..count).map(move |k| (low + (high - low) * k as f64 / (count - 1) as f64).exp())
+}
+
+/// The source's coefficients as the regression sees them.
+pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
+    let q = block.axes.len();
+    let mut mixed = vec![vec![0.0; block.regressors()]; q];
+    for i in 0..block.regressors() {
+        let own =
+            DVector::from_iterator(q, block.names.iter().map(|names| model.coefficient(&names[i])));
+        let seen = &block.mixing * own;
+        (0..q).for_each(|target| mixed[target][i] = seen[target]);
+    }
+    mixed
+}
+
+impl Fit {
+    /// With joint errors, from which each coefficient's own is taken.
+    pub(super) fn with_errors(mut self, errors: Option<CoefficientErrors>) -> Self {
+        if let Some(errors) = &errors {
+            for (k, name) in errors.names.iter().enumerate() {
+                let fitted = self.coefficients.get_mut(name).into_iter();
+                fitted.for_each(|fitted| {
+                    fitted.standard_error = errors.covariance[(k, k)].max(0.0).sqrt()
+                });
+            }
+        }
+        self.errors = errors;
+        self
+    }
+}
+
+/// Fits every regression at its choices on the given statistics (one set per regression).
+pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choices) -> Fit {
+    let mut result = Fit {
+        coefficients: BTreeMap::new(),
+        condition_number: 1.0,
+        collinear_groups: Vec::new(),
+        errors: None,
+    };
+    for ((block, moments), choices) in blocks.blocks.iter().zip(moments).zip(choices) {
+        let prepared = PreparedRegression::new(block, moments, model);
+        unmix(&prepared, choices, &mut result.coefficients);
+        result.condition_number = result.condition_number.max(prepared.path.condition_number());
+        for group in prepared.path.collinear_groups(SELECTION.collinear) {
+            result.collinear_groups.push(group.iter().map(|&i| joined(block, i)).collect());
+        }
+    }
+    result
+}
+
+/// `Y_v, N_v`: the coefficients that share a regressor.
+fn joined(block: &Block, i: usize) -> String {
+    block.names.iter().map(|names| names[i].as_str()).collect::<Vec<_>>().join("/")
+}
+
+/// From what the regression solved for back to the coefficients of each axis.
+fn unmix(
+    prepared: &PreparedRegression<'_>,
+    choices: &[RidgeChoice],
+    into: &mut BTreeMap<String, Fitted>,
+) {
+    let block = prepared.block;
+    let q = block.axes.len();
+    let solutions = prepared.solve(choices);
+    let scatter: Vec<f64> = choices
+        .iter()
+        .enumerate()
+        .map(|(t, choice)| prepared.path.residual_variance(t, *choice).sqrt())
+        .collect();
+    let deviations: Vec<Vec<(f64, f64)>> =
+        choices.iter().map(|choice| prepared.path.deviations(choice.lambda)).collect();
+    let unmixing = &block.unmixing;
+    for i in 0..block.regressors() {
+        let solved = DVector::from_iterator(q, solutions.iter().map(|solution| solution[i]));
+        let own = unmixing * solved;
+        for axis in 0..q {
+            let spread = |of: &dyn Fn(usize) -> f64| {
+                (0..q)
+                    .map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2))
+                    .sum::<f64>()
+                    .sqrt()
+            };
+            let pulled = (0..q)
+                .map(|t| unmixing[(axis, t)] * choices[t].alpha * prepared.source[t][i])
+                .sum::<f64>();
+            let fitted = Fitted {
+                value: own[axis],
+                standard_error: spread(&|t| deviations[t][i].0),
+                prior_deviation: spread(&|t| deviations[t][i].1).hypot(pulled),
+            };
+            into.insert(block.names[axis][i].clone(), fitted);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "ridge_tests.rs"]
+mod tests;

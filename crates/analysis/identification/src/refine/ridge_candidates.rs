@@ -1,0 +1,127 @@
+//! Candidates that are ridges, from the source outwards.
+
+use rayon::prelude::*;
+use sistership_model::Model;
+
+use super::candidate::{CandidateFit, Solution, UnchangedSource};
+use super::errors::CoefficientErrors;
+use super::outcome::{RefineError, SOURCE_STEP};
+use super::problem::Problem;
+use super::progress::{PartProgress, Progress, step};
+use super::ridge::{Choices, Fit, Fold, fit};
+use super::simulated::{Simulated, simulate_training};
+use super::variant::Variant;
+use crate::constraints::LimitError;
+
+/// A ridge of a variant at its choices.
+struct RidgeSolution {
+    variant: usize,
+    choices: Choices,
+}
+
+impl Solution for RidgeSolution {
+    fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
+        let variant = &variants[self.variant];
+        let all = variant.together(|_| true)?;
+        let mut fitted = fit(&variant.blocks, &all, &variant.model, &self.choices);
+        if variant.limits.is_some() {
+            let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
+            fitted.coefficients = variant.solve(&fold, &self.choices)?;
+        }
+        Ok(Some(fitted))
+    }
+
+    fn errors(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
+        variants[self.variant].errors(&problem.training, &self.choices)
+    }
+
+    fn ridge(&self) -> Option<(usize, &Choices)> {
+        Some((self.variant, &self.choices))
+    }
+}
+
+/// The source as it is, where it keeps what the settings ask of a model.
+///
+/// # Errors
+/// A trial lacks a channel.
+pub(super) fn source_candidate(
+    problem: &Problem<'_>,
+    variants: &[Variant],
+) -> Result<CandidateFit, RefineError> {
+    let limits = variants.iter().find_map(|variant| variant.limits.as_ref());
+    let simulated = match limits.map(|limits| limits.check(&problem.transferred)) {
+        Some(Err(reason)) => Simulated::refused(reason.to_string()),
+        _ => simulate_training(problem, std::slice::from_ref(&problem.transferred), &|_| 0)?,
+    };
+    Ok(CandidateFit::new(problem, (SOURCE_STEP.into(), None), UnchangedSource, 0, simulated))
+}
+
+/// A ridge of a variant at its choices, each trial left out simulated by the model of its fold.
+///
+/// # Errors
+/// A trial lacks a channel.
+pub(super) fn ridge_candidate(
+    problem: &Problem<'_>,
+    (name, lambda_min): (String, f64),
+    (index, variant): (usize, &Variant),
+    choices: Choices,
+    folds: &[Fold<'_>],
+) -> Result<CandidateFit, RefineError> {
+    let step = (name, Some(lambda_min));
+    let model = |fold: &Fold<'_>| Ok(problem.model_with(&variant.solve(fold, &choices)?));
+    let models: Vec<Model> = match folds.par_iter().map(model).collect::<Result<_, LimitError>>() {
+        Ok(models) => models,
+        Err(reason) => {
+            let ridge = RidgeSolution { variant: index, choices };
+            return Ok(CandidateFit::new(
+                problem,
+                step,
+                ridge,
+                0,
+                Simulated::refused(reason.to_string()),
+            ));
+        }
+    };
+    let simulated = simulate_training(problem, &models, &|trial| problem.fold_of(trial))?;
+    let size = models.first().map_or(0, |model| model.coefficients.len());
+    let candidate = CandidateFit::new(
+        problem,
+        step,
+        RidgeSolution { variant: index, choices },
+        size,
+        simulated,
+    );
+    Ok(CandidateFit { left_out: models, ..candidate })
+}
+
+/// What is done with a variant: its place, itself, its folds, and whom to tell how far it is.
+pub(super) type WithFolds<'a> =
+    &'a mut dyn FnMut((usize, &Variant), &[Fold<'_>], PartProgress<'_>) -> Result<(), RefineError>;
+
+/// Takes the variants one after the other, each with its folds.
+///
+/// # Errors
+/// A fold has no sample, or as `work` says.
+pub(super) fn each_variant(
+    problem: &Problem<'_>,
+    variants: &[Variant],
+    progress: Progress<'_>,
+    work: WithFolds<'_>,
+) -> Result<(), RefineError> {
+    for (index, variant) in variants.iter().enumerate() {
+        let folds = variant.folds(problem)?;
+        let told = |done: f64, what: &str| step(progress, share(index, done, variants.len()), what);
+        work((index, variant), &folds, &told)?;
+    }
+    Ok(())
+}
+
+/// How far a refinement is where so much of a variant is done: candidates are seven tenths of the
+/// work.
+pub(super) fn share(index: usize, done: f64, variants: usize) -> f64 {
+    0.1 + 0.7 / variants as f64 * (index as f64 + done)
+}

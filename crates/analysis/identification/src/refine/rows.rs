@@ -1,0 +1,226 @@
+//! From a trial to the sufficient statistics of each regression: one-step differences against
+//! regressors.
+
+use sistership_model::coefficient::Axis;
+use sistership_model::effect::input_channel;
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::tape::{Lanes, Slots};
+
+use super::blocks::{Block, Blocks};
+use super::outcome::RefineError;
+use sistership_numerics::Moments;
+
+/// Samples evaluated at a time.
+pub(super) const LANES: usize = 8;
+
+/// The statistics of one trial, one set for each regression. Accelerations are forward differences
+/// over `difference_s` (one sampling interval where absent); no difference reaches over a gap.
+///
+/// # Errors
+/// Names the channel that the trial lacks.
+pub fn trial_moments(
+    blocks: &Blocks,
+    trial: &Trial,
+    difference_s: Option<f64>,
+) -> Result<Vec<Moments>, RefineError> {
+    let tables = trial_tables(blocks, trial, difference_s, &|_, _| 0.0)?;
+    let pairs = blocks.blocks.iter().zip(&tables);
+    Ok(pairs.map(|(block, table)| Moments::of_columns(table, block.regressors())).collect())
+}
+
+/// The columns of each regression over the samples of a trial: regressors, then targets.
+pub type Table = Vec<Vec<f64>>;
+
+/// The samples behind [`trial_moments`], less accelerations that something beside the law gives:
+/// `known` has those of an axis at a sample, m/s2 (rad/s2).
+///
+/// # Errors
+/// As [`trial_moments`].
+pub fn trial_tables(
+    blocks: &Blocks,
+    trial: &Trial,
+    difference_s: Option<f64>,
+    known: &dyn Fn(Axis, usize) -> f64,
+) -> Result<Vec<Table>, RefineError> {
+    let record = RegressionRecord::new(blocks, trial)?;
+    let left =
+        |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair) - known(axis, pair.0);
+    Ok(tables(blocks, &record, &pairs(trial, difference_s), &left))
+}
+
+/// The columns of each regression over the samples of a trial where the accelerations are known;
+/// `known` has those of an axis.
+///
+/// # Errors
+/// As [`trial_moments`].
+pub(super) fn known_tables<'k>(
+    blocks: &Blocks,
+    trial: &Trial,
+    known: &dyn Fn(Axis) -> &'k [f64],
+) -> Result<Vec<Table>, RefineError> {
+    let record = RegressionRecord::new(blocks, trial)?;
+    let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
+    Ok(tables(blocks, &record, &samples, &|axis, (k, _)| known(axis)[k]))
+}
+
+/// The acceleration of an axis at a pair of samples.
+type Acceleration<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
+
+fn tables(
+    blocks: &Blocks,
+    record: &RegressionRecord<'_>,
+    pairs: &[(usize, usize)],
+    acceleration: Acceleration<'_>,
+) -> Vec<Table> {
+    let mut tables: Vec<Table> =
+        blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
+    let mut work = Slots::default();
+    let mut lanes = vec![[0.0; LANES]; record.columns.len()];
+    for chunk in pairs.chunks(LANES) {
+        record.load(chunk, &mut lanes);
+        blocks.tape.run(&lanes, &mut work);
+        for (block, table) in blocks.blocks.iter().zip(&mut tables) {
+            append(blocks, block, acceleration, chunk, &work, table);
+        }
+    }
+    tables
+}
+
+/// Samples and the later samples to which they are differenced.
+fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
+    let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);
+    let within = |segment: std::ops::Range<usize>| {
+        (segment.start..segment.end.saturating_sub(stride)).map(move |k| (k, k + stride))
+    };
+    trial.segments().into_iter().flat_map(within).collect()
+}
+
+/// The channels of a trial that regressions read.
+pub(super) struct RegressionRecord<'a> {
+    t_s: &'a [f64],
+    /// What the tape takes: a recorded column or a constant.
+    pub(super) columns: Vec<Result<&'a [f64], f64>>,
+    /// Velocities by axis.
+    velocities: [Option<&'a [f64]>; 4],
+}
+
+impl<'a> RegressionRecord<'a> {
+    pub(super) fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
+        let missing =
+            |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
+        let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));
+        let or_zero = |channel: Channel| trial.channel(channel).ok_or(0.0);
+        let mut columns = vec![Ok(need(Channel::U)?), Ok(need(Channel::V)?), Ok(need(Channel::R)?)];
+        columns.extend([Channel::P, Channel::Phi, Channel::Psi].map(or_zero));
+        for (name, default) in &blocks.inputs {
+            let channel = input_channel(name);
+            let recorded = channel.and_then(|channel| trial.channel(channel));
+            let constant =
+                if channel == Some(Channel::Depth) { trial.depth_m.or(*default) } else { *default };
+            columns.push(match (recorded, constant, channel) {
+                (Some(column), ..) => Ok(column),
+                (None, Some(value), _) => Err(value),
+                (None, None, Some(channel)) => return Err(missing(channel)),
+                (None, None, None) => {
+                    return Err(RefineError::Law(format!(
+                        "no trial can record the input `{name}`"
+                    )));
+                }
+            });
+        }
+        let roll = blocks.blocks.iter().any(|block| block.columns.contains(&Axis::K));
+        if roll {
+            need(Channel::P)?;
+            need(Channel::Phi)?;
+        }
+        let velocities =
+            [Channel::U, Channel::V, Channel::P, Channel::R].map(|channel| trial.channel(channel));
+        Ok(Self { t_s: &trial.t_s, columns, velocities })
+    }
+
+    pub(super) fn load(&self, chunk: &[(usize, usize)], lanes: &mut [Lanes<LANES>]) {
+        for (lane, column) in lanes.iter_mut().zip(&self.columns) {
+            *lane = std::array::from_fn(|i| {
+                let (k, _) = chunk[i.min(chunk.len() - 1)];
+                column.as_ref().map_or_else(|constant| *constant, |column| column[k])
+            });
+        }
+    }
+
+    /// The velocity of an axis; none where it is not recorded.
+    pub(super) fn velocity(&self, axis: Axis) -> &'a [f64] {
+        self.velocities[axis as usize].unwrap_or_default()
+    }
+
+    /// The acceleration of an axis between two samples.
+    fn acceleration(&self, axis: Axis, (k, later): (usize, usize)) -> f64 {
+        let velocity = self.velocities[axis as usize].unwrap_or_default();
+        match (velocity.get(later), velocity.get(k)) {
+            (Some(after), Some(before)) => (after - before) / (self.t_s[later] - self.t_s[k]),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Adds the rows of a chunk to a block's table.
+fn append(
+    blocks: &Blocks,
+    block: &Block,
+    acceleration: Acceleration<'_>,
+    chunk: &[(usize, usize)],
+    work: &[Lanes<LANES>],
+    table: &mut [Vec<f64>],
+) {
+    let read = |output: usize| blocks.tape.read(output, work);
+    let own_mass =
+        if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
+    let scale = read(block.scales[0]);
+    let divided = |value: f64, lane: usize| own_mass.map_or(value, |mass| value / mass[lane]);
+    for (column, &term) in table.iter_mut().zip(&block.terms) {
+        let term = read(term);
+        column.extend((0..chunk.len()).map(|lane| divided(scale[lane] * term[lane], lane)));
+    }
+    let targets = &mut table[block.terms.len()..];
+    for (lane, &pair) in chunk.iter().enumerate() {
+        let values = target(blocks, block, acceleration, pair, work, lane);
+        for (column, value) in targets.iter_mut().zip(values.iter()) {
+            column.push(divided(*value, lane));
+        }
+    }
+}
+
+/// What the regressors must explain at a sample: mass times acceleration less the rest, for coupled
+/// axes solved for the accelerations.
+fn target(
+    blocks: &Blocks,
+    block: &Block,
+    acceleration: Acceleration<'_>,
+    pair: (usize, usize),
+    work: &[Lanes<LANES>],
+    lane: usize,
+) -> nalgebra::DVector<f64> {
+    let read = |output: usize| blocks.tape.read(output, work)[lane];
+    let q = block.axes.len();
+    let added = |place: usize| block.additions[place].map_or(0.0, read);
+    let moved = |place: usize| acceleration(block.columns[place], pair) - added(place);
+    let rests = nalgebra::DVector::from_iterator(q, block.rests.iter().map(|&rest| read(rest)));
+    if q == 1 {
+        let inertia: f64 = block.mass[0]
+            .iter()
+            .enumerate()
+            .filter_map(|(place, mass)| Some(read((*mass)?) * moved(place)))
+            .sum();
+        return nalgebra::DVector::from_element(1, inertia - rests[0]);
+    }
+    let accelerations = nalgebra::DVector::from_iterator(q, (0..q).map(moved));
+    if rests.iter().all(|rest| *rest == 0.0) {
+        return accelerations;
+    }
+    let ratios: Vec<f64> =
+        block.scales.iter().map(|&scale| read(scale) / read(block.scales[0])).collect();
+    let unscaled = nalgebra::DVector::from_iterator(
+        q,
+        rests.iter().zip(&ratios).map(|(rest, ratio)| rest / ratio),
+    );
+    accelerations - &block.mixing * unscaled
+}

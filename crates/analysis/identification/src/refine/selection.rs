@@ -1,0 +1,224 @@
+//! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
+//! simulations of manoeuvres left out are best is taken.
+
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel};
+use sistership_simulation::error::standard_deviations;
+
+use super::across::SourceEnvelopes;
+use super::candidate::CandidateFit;
+use super::estimators::estimator;
+use super::finish::{best_model, finish, is_empty};
+use super::longer::compare_longer;
+use super::mixture;
+use super::mixture_position::chosen;
+use super::outcome::{RefineError, Refinement};
+use super::parts::parts;
+use super::problem::Problem;
+use super::progress::{MonotoneProgress, Progress, Watch, step};
+use super::replayed_trials::ReplayedTrials;
+use super::request::Request;
+use super::ridge_candidates::source_candidate;
+use super::settings::{Prior, Settings};
+use super::settings_check::refused;
+use super::starting::Starting;
+use super::thresholds::SELECTION;
+use super::variant::{Variant, variants};
+use super::weighed::{Extent, Weighed, weighed};
+use sistership_priors::steering::{RateWindow, measured_rate};
+use sistership_priors::transfer::approach_of;
+
+/// Refines a source model against trials.
+///
+/// # Errors
+/// Says which setting, trial or channel is at fault; never leaves a model half refined.
+pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
+    refine_watched(request, progress, &|_| ())
+}
+
+/// As [`refine`], and shows what `trajectory` and `cma-es` pass by.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_watched(
+    request: &Request<'_>,
+    progress: Progress<'_>,
+    watch: Watch<'_>,
+) -> Result<Refinement, RefineError> {
+    let known = SourceEnvelopes::default();
+    let weighed = |settings: &Settings| {
+        let request = Request { settings, ..*request };
+        let goes_on = |_, _: &str| progress(0.02, "where between source and estimate");
+        weigh((&request, &known), Extent::Estimator, &goes_on)
+    };
+    let Some(position) = chosen(request.settings, weighed)? else {
+        return with_candidates((request, &known), Extent::Estimator, progress, watch, finish);
+    };
+    let settings = &Settings { mixture_positions: vec![position], ..request.settings.clone() };
+    let request = Request { settings, ..*request };
+    with_candidates((&request, &known), Extent::Estimator, progress, watch, finish)
+}
+
+/// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out.
+/// No model is made. What sources say is `known` where it has been asked for the same trials.
+///
+/// # Errors
+/// As [`refine`].
+pub fn weigh(
+    (request, known): (&Request<'_>, &SourceEnvelopes),
+    extent: Extent,
+    progress: Progress<'_>,
+) -> Result<Vec<Weighed>, RefineError> {
+    let weigh = |problem: &Problem<'_>,
+                 fits: Vec<CandidateFit>,
+                 variants: &[Variant],
+                 _: Progress<'_>| Ok(weighed(problem, &fits, variants));
+    with_candidates((request, known), extent, progress, &|_| (), weigh)
+}
+
+/// As [`weigh`], and as [`refine`] where what it tells is wanted.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_wanted(
+    (request, known): (&Request<'_>, &SourceEnvelopes),
+    wanted: impl FnOnce(&[Weighed]) -> Result<bool, RefineError>,
+    progress: Progress<'_>,
+) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
+    let both = |problem: &Problem<'_>,
+                fits: Vec<CandidateFit>,
+                variants: &[Variant],
+                progress: Progress<'_>| {
+        let weighed = weighed(problem, &fits, variants);
+        let refinement = match wanted(&weighed)? {
+            true => Some(finish(problem, fits, variants, progress)?),
+            false => None,
+        };
+        Ok((weighed, refinement))
+    };
+    with_candidates((request, known), Extent::Estimator, progress, &|_| (), both)
+}
+
+/// The model that a refinement gives, without standard manoeuvres, bands and what they refuse.
+///
+/// # Errors
+/// As [`refine`].
+pub fn fit_model(request: &Request<'_>) -> Result<Model, RefineError> {
+    let known = SourceEnvelopes::default();
+    let fitted = |problem: &Problem<'_>,
+                  fits: Vec<CandidateFit>,
+                  variants: &[Variant],
+                  _: Progress<'_>| best_model(problem, &fits, variants);
+    with_candidates((request, &known), Extent::Estimator, &|_, _| true, &|_| (), fitted)
+}
+
+/// Sets the problem up, gives its candidates to the extent asked for, and does with them what
+/// `then` does.
+fn with_candidates<T>(
+    (request, known): (&Request<'_>, &SourceEnvelopes),
+    extent: Extent,
+    progress: Progress<'_>,
+    watch: Watch<'_>,
+    then: impl FnOnce(
+        &Problem<'_>,
+        Vec<CandidateFit>,
+        &[Variant],
+        Progress<'_>,
+    ) -> Result<T, RefineError>,
+) -> Result<T, RefineError> {
+    request.settings.check().map_err(refused)?;
+    let (judged, whole) = divided(request)?;
+    let progress = MonotoneProgress::new(progress);
+    let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
+    let lpp_m = request.target.particular("lpp_m");
+    let mut settings = resolved(request.settings, request.law, lpp_m, &whole);
+    if settings.prior == Prior::Mixture {
+        let asked = settings.regressions_sha256.as_deref();
+        settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
+    }
+    let estimator = estimator(settings.method);
+    let equations = estimator.equations(&settings);
+    let parts = parts(&whole, request.law, equations, &settings);
+    let started = Starting { request, known, whole: &whole, approach: approach_of(&whole) };
+    let (mut transferred, measure) = started.prior(!parts.is_empty())?;
+    if settings.steering_from_trials {
+        let window = match settings.steering_above_noise {
+            true => RateWindow::AboveNoise,
+            false => RateWindow::OfLength,
+        };
+        steer_as_recorded(&mut transferred, request.target, &whole, window);
+    }
+    let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
+    let named = Some(&*request.source.name).filter(|_| !is_empty(request.source));
+    let source = settings.origin(named).to_owned();
+    let (law, watch) = (request.law, Some(watch));
+    let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
+    let deviations = standard_deviations(&training);
+    let problem = Problem {
+        law,
+        target: Some(request.target),
+        source: &source,
+        training,
+        replayed,
+        whole,
+        judged,
+        deviations,
+        transferred,
+        measure,
+        settings,
+        watch,
+    };
+    step(progress, 0.05, "sufficient statistics of each trial")?;
+    let variants = variants(&problem, equations)?;
+    let mut candidates = vec![source_candidate(&problem, &variants)?];
+    if extent == Extent::Estimator {
+        estimator.candidates(&problem, &variants, &mut candidates, progress)?;
+    }
+    compare_longer(&problem, &mut candidates)?;
+    step(progress, 0.8, "fitting all trials")?;
+    then(&problem, candidates, &variants, progress)
+}
+
+/// Gives a model the gear that the trials' rudders show.
+fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], window: RateWindow) {
+    let length_s = target.particular("lpp_m").zip(approach_of(trials));
+    let rate =
+        length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s, window));
+    if let Some(rate) = rate {
+        model.steering.rate_deg_s = rate.to_degrees();
+        model.steering.source = Some("the rudder's movements in the trials".to_owned());
+    }
+}
+
+/// The trials that are kept out of fit and choice, and the others.
+fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
+    let names = &request.settings.held_out;
+    if let Some(unknown) =
+        names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name))
+    {
+        let message = format!("no trial is called `{unknown}`");
+        return Err(RefineError::Setting { field: "held_out".into(), message });
+    }
+    let (judged, whole): (Vec<&Trial>, Vec<&Trial>) =
+        request.trials.iter().partition(|trial| names.contains(&trial.name));
+    if whole.is_empty() {
+        return Err(RefineError::Data("there is no trial to fit on".into()));
+    }
+    Ok((judged, whole))
+}
+
+/// The settings with the times that depend on the ship filled in, so that a version records what
+/// was used.
+pub(super) fn resolved(
+    settings: &Settings,
+    law: &Law,
+    lpp_m: Option<f64>,
+    training: &[&Trial],
+) -> Settings {
+    let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
+    let mut settings = settings.clone();
+    estimator(settings.method).resolve(&mut settings, law, length_s);
+    settings.restart_s = settings.restart_s.or(length_s.map(|s| SELECTION.restart * s));
+    settings
+}

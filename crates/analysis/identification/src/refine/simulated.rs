@@ -1,0 +1,156 @@
+//! Trials as simulated by models that did not see them.
+
+use rayon::prelude::*;
+use sistership_model::Model;
+use sistership_model::trial::Trial;
+use sistership_simulation::Ship;
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::horizons::HorizonErrors;
+use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
+
+use super::outcome::RefineError;
+use super::problem::Problem;
+use sistership_priors::transfer::ready_for_sisters;
+
+/// Trials that are simulated in lockstep.
+const TOGETHER: usize = 8;
+
+/// The errors of simulated trials.
+#[derive(Default)]
+pub(super) struct Simulated {
+    /// Squared errors over all trials.
+    pub total: SquaredError,
+    /// Standardised errors at that interval; none of what cannot be simulated at all.
+    pub horizons: Vec<HorizonErrors>,
+    /// The first divergence.
+    pub reason: Option<String>,
+}
+
+impl Simulated {
+    /// Of an option that is out of the question.
+    pub fn refused(reason: String) -> Self {
+        Self { reason: Some(reason), ..Self::default() }
+    }
+
+    fn new(problem: &Problem<'_>, trials: &[&Trial], runs: &[Replay]) -> Self {
+        let mut total = SquaredError::default();
+        let each: Vec<SquaredError> =
+            trials.iter().zip(runs).map(|(trial, run)| SquaredError::of(trial, run)).collect();
+        each.iter().for_each(|error| total.add(error));
+        let stopped = |(trial, run): (&&Trial, &Replay)| {
+            Some(format!("{} {}", trial.name, run.stopped.as_ref()?))
+        };
+        let reason = trials.iter().zip(runs).find_map(stopped);
+        let horizons = vec![HorizonErrors::new(&total, &each, &problem.deviations)];
+        Self { total, horizons, reason }
+    }
+}
+
+/// Simulates what is fitted and left out, each with its model, at no finer steps than it takes and
+/// at the shortest restart interval; the first divergence is the reason against the candidate.
+///
+/// # Errors
+/// A trial lacks a channel, or the models differ in more than their coefficients.
+pub(super) fn simulate_training(
+    problem: &Problem<'_>,
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Simulated, RefineError> {
+    let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
+    let how = (problem.settings.restart_s, problem.replayed.step_s);
+    simulate(problem, (&trials, how), models, model_of)
+}
+
+/// Simulates the same at the longer restart intervals, where a simulation that stops counts.
+///
+/// # Errors
+/// As [`simulate_training`], and the models cannot be simulated.
+pub(super) fn simulate_longer(
+    problem: &Problem<'_>,
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Vec<HorizonErrors>, RefineError> {
+    let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
+    let one = |&restart_s: &f64| {
+        let how = (Some(restart_s), problem.replayed.step_s);
+        let runs = match runs(problem, (&trials, how), models, model_of)? {
+            Ok(runs) => runs,
+            Err(reason) => return Err(RefineError::Diverged(reason)),
+        };
+        Ok(HorizonErrors::with_stops(&trials, &runs, &problem.deviations))
+    };
+    problem.settings.longer_restarts_s.iter().map(one).collect()
+}
+
+/// Simulates trials, each with its model, at the shortest restart interval; the first divergence is
+/// the reason against the candidate.
+///
+/// # Errors
+/// As [`simulate_training`].
+pub(super) fn simulate_all(
+    problem: &Problem<'_>,
+    trials: &[&Trial],
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Simulated, RefineError> {
+    let how = (problem.settings.restart_s, ReplaySettings::default().step_s);
+    simulate(problem, (trials, how), models, model_of)
+}
+
+/// Trials with the restart interval and the longest step, s.
+type Simulation<'a> = (&'a [&'a Trial], (Option<f64>, f64));
+
+fn simulate(
+    problem: &Problem<'_>,
+    simulation: Simulation<'_>,
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Simulated, RefineError> {
+    Ok(match runs(problem, simulation, models, model_of)? {
+        Ok(runs) => Simulated::new(problem, simulation.0, &runs),
+        Err(reason) => Simulated::refused(reason),
+    })
+}
+
+/// The simulations, or why the models cannot be simulated at all.
+fn runs(
+    problem: &Problem<'_>,
+    (trials, (restart_s, step_s)): Simulation<'_>,
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Result<Vec<Replay>, String>, RefineError> {
+    let Some(first) = models.first().filter(|_| !trials.is_empty()) else {
+        return Ok(Ok(Vec::new()));
+    };
+    let ship = match ready_for_sisters(first, problem.law, trials) {
+        Ok(ship) => ship,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let coefficients = sisters(&ship, models)?;
+    let numbered = trials.iter().enumerate();
+    let all: Vec<_> = numbered
+        .map(|(k, trial)| Recorded { trial, coefficients: &coefficients[model_of(k)] })
+        .collect();
+    let settings = ReplaySettings { restart_s, step_s, ..ReplaySettings::default() };
+    let together = |some: &[Recorded<'_>]| {
+        replay_all(&ship, some, &settings)
+            .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })
+    };
+    let runs: Vec<Vec<Replay>> =
+        all.par_chunks(TOGETHER).map(together).collect::<Result<_, _>>()?;
+    Ok(Ok(runs.concat()))
+}
+
+/// The coefficients of models, as a ship with their law takes them.
+///
+/// # Errors
+/// They differ in more than their coefficients.
+pub(super) fn sisters(ship: &Ship, models: &[Model]) -> Result<Vec<Vec<f64>>, RefineError> {
+    let one = |model: &Model| {
+        let differ = || {
+            RefineError::Law(format!("`{}` has not the coefficients of its sisters", model.name))
+        };
+        ship.sister(model).ok_or_else(differ)
+    };
+    models.iter().map(one).collect()
+}

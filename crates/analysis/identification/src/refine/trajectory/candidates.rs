@@ -1,0 +1,329 @@
+//! The trajectory form as candidates of a refinement.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+use sistership_model::Model;
+use sistership_simulation::sensitivity::SensitiveSystem;
+
+use super::super::candidate::{CandidateFit, best};
+use super::super::outcome::RefineError;
+use super::super::problem::Problem;
+use super::super::progress::{Iterate, Progress, step};
+use super::super::ridge::{Choices, Fold};
+use super::super::simulated::simulate_training;
+use super::super::variant::Variant;
+use super::fit::TrajectoryFit;
+use super::normal::{NormalEquations, SegmentPass, SegmentSums};
+use super::prior::WeakFormPrior;
+use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
+use super::solve::PenalisedEquations;
+use super::thresholds::TRAJECTORY;
+use sistership_numerics::{Moments, merged};
+use sistership_priors::transfer::ready;
+
+/// What the trajectory form makes of one variant.
+struct TrajectoryDescent<'a> {
+    problem: &'a Problem<'a>,
+    variant: &'a Variant,
+    /// Its place among all.
+    index: usize,
+    choices: &'a Choices,
+    passing: SegmentPass<'a>,
+    names: Vec<String>,
+}
+
+/// Coefficients with the pass at them.
+struct Linearisation {
+    at: DVector<f64>,
+    pass: SegmentSums,
+}
+
+/// Adds candidates of the trajectory form, started from the best of the weak form; where every one
+/// stops while manoeuvres are simulated, from the first, which the source holds most.
+///
+/// # Errors
+/// A trial lacks a channel, or it was cancelled.
+pub(super) fn from_weak_form(
+    problem: &Problem<'_>,
+    variants: &[Variant],
+    candidates: &mut Vec<CandidateFit>,
+    progress: Progress<'_>,
+) -> Result<(), RefineError> {
+    let first = || candidates.iter().position(|candidate| candidate.solution.ridge().is_some());
+    let Some(start) = best(candidates).or_else(first).map(|start| &candidates[start]) else {
+        return Ok(());
+    };
+    let Some((index, choices)) = start.solution.ridge() else { return Ok(()) };
+    let (index, choices, error) = (index, choices.clone(), start.option.error);
+    let variant = &variants[index];
+    step(progress, 0.6, "trajectories from the weak form")?;
+    let cutting = cutting(problem);
+    let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
+    let system = SensitiveSystem::new(&model, problem.law)?;
+    let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
+    let compared = compared(system.states(), &problem.deviations);
+    let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
+    let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
+    if segments.is_empty() {
+        return Ok(());
+    }
+    let ship = ready(&model, problem.law, &problem.training)?;
+    let thresholds = vec![f64::INFINITY; plan.compared.len()];
+    let trials = problem.training.len();
+    let passing = SegmentPass {
+        segments: &segments,
+        plan: &plan,
+        envelope: *ship.envelope(),
+        thresholds,
+        trials,
+    };
+    let names = system.names().to_vec();
+    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }
+        .candidates(error, candidates, progress)
+}
+
+fn cutting(problem: &Problem<'_>) -> SegmentLengths {
+    let given = &problem.settings;
+    let interval = problem.interval_s();
+    let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
+    let segment_s = given.segment_s.unwrap_or(TRAJECTORY.fallback_steps * step_s);
+    SegmentLengths {
+        segment_s,
+        residual_s: given.residual_s.unwrap_or(TRAJECTORY.fallback_stride * step_s).max(step_s),
+        step_s,
+    }
+}
+
+/// The statistics of some trials, and the weak form's coefficients on them.
+fn weak_form(
+    variant: &Variant,
+    choices: &Choices,
+    keep: &dyn Fn(usize) -> bool,
+) -> Result<(Vec<Moments>, BTreeMap<String, f64>), RefineError> {
+    let moments = merged(&variant.moments, keep)
+        .ok_or_else(|| RefineError::Data("a fold has no sample".into()))?;
+    let solved = Fold::new(&variant.blocks, &variant.model, &moments, &[]).solve(choices);
+    Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
+}
+
+impl TrajectoryDescent<'_> {
+    /// Candidates after the weak form's, which has an error.
+    fn candidates(
+        mut self,
+        weak: Option<f64>,
+        candidates: &mut Vec<CandidateFit>,
+        progress: Progress<'_>,
+    ) -> Result<(), RefineError> {
+        let prior = self.prior(&|_| true)?;
+        self.passing.thresholds = self.thresholds(&prior.weak)?;
+        let priors: Vec<WeakFormPrior> = (0..self.problem.fold_count())
+            .into_par_iter()
+            .map(|fold| self.prior(&|t| self.problem.is_fitted(t, fold)))
+            .collect::<Result<_, _>>()?;
+        let mut reached = self.reached(prior.weak.clone())?;
+        let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
+        for pull in TRAJECTORY.pulls {
+            let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
+            step(progress, 0.7, &label)?;
+            reached = self.descend(&prior, pull, reached)?;
+            step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
+            let models: Vec<Model> = priors
+                .par_iter()
+                .enumerate()
+                .map(|(fold, prior)| self.left_out(fold, prior, pull, &reached))
+                .collect();
+            let simulated =
+                simulate_training(self.problem, &models, &|trial| self.problem.fold_of(trial))?;
+            let fit = self.fit(&prior, pull, &reached);
+            let candidate = CandidateFit::new(
+                self.problem,
+                (label, Some(pull)),
+                fit,
+                self.names.len(),
+                simulated,
+            );
+            errors.push(candidate.option.error.unwrap_or(f64::INFINITY));
+            candidates.push(CandidateFit { left_out: models, ..candidate });
+            if is_past_best(&errors) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Huber's thresholds from some of the segments.
+    fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
+        let model = self.variant.model_at(&self.values(at));
+        let system = SensitiveSystem::new(&model, self.problem.law)?;
+        Ok(self
+            .passing
+            .sizes(&system, TRAJECTORY.median_stride)
+            .into_iter()
+            .map(threshold)
+            .collect())
+    }
+
+    /// What the weak form says on some trials.
+    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
+        let (moments, values) = weak_form(self.variant, self.choices, keep)?;
+        let values = |name: &str| {
+            (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name))
+        };
+        let lambda = self
+            .choices
+            .iter()
+            .flatten()
+            .map(|choice| choice.lambda)
+            .fold(0.0, f64::max)
+            .min(TRAJECTORY.source_share);
+        Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
+    }
+
+    fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
+        self.names.iter().cloned().zip(at.iter().copied()).collect()
+    }
+
+    fn pass(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
+        let model = self.variant.model_at(&self.values(at));
+        let system = SensitiveSystem::new(&model, self.problem.law)?;
+        Ok(self.passing.pass(&system))
+    }
+
+    fn reached(&self, at: DVector<f64>) -> Result<Linearisation, RefineError> {
+        Ok(Linearisation { pass: self.pass(&at)?, at })
+    }
+
+    /// From coefficients to the least cost nearby.
+    fn descend(
+        &self,
+        prior: &WeakFormPrior,
+        pull: f64,
+        mut here: Linearisation,
+    ) -> Result<Linearisation, RefineError> {
+        let mut damping = TRAJECTORY.damping;
+        let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
+        for _ in 0..TRAJECTORY.steps {
+            let model = || self.variant.model_at(&self.values(&here.at));
+            self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
+            let Some(step) =
+                held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain)
+            else {
+                break;
+            };
+            let there = self.reached(&here.at + step)?;
+            let next =
+                PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
+            if next.cost.is_finite() && next.cost < held.cost {
+                let gained = 1.0 - next.cost / held.cost;
+                (here, held) = (there, next);
+                damping *= TRAJECTORY.damping_falls;
+                if gained < TRAJECTORY.least_gain {
+                    break;
+                }
+            } else {
+                damping = (damping * TRAJECTORY.damping_grows).max(TRAJECTORY.damping_least);
+                if damping > TRAJECTORY.damping_most {
+                    break;
+                }
+            }
+        }
+        Ok(here)
+    }
+
+    /// The model of a fold: one step from where all trials are fitted, on the trials inside it and
+    /// their weak form.
+    fn left_out(
+        &self,
+        fold: usize,
+        prior: &WeakFormPrior,
+        pull: f64,
+        reached: &Linearisation,
+    ) -> Model {
+        let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
+        let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
+        let at = held
+            .step(TRAJECTORY.fold_damping)
+            .map_or_else(|| reached.at.clone(), |step| &reached.at + step);
+        self.variant.model_at(&self.values(&at))
+    }
+
+    /// The fit at coefficients.
+    fn fit(
+        &self,
+        prior: &WeakFormPrior,
+        pull: f64,
+        Linearisation { at, pass }: &Linearisation,
+    ) -> TrajectoryFit {
+        let normal = total(pass, |_| true);
+        TrajectoryFit {
+            variant: self.index,
+            choices: self.choices.clone(),
+            names: self.names.clone(),
+            at: at.clone(),
+            held: PenalisedEquations::new(&normal, prior, pull, at),
+            gradients: pass.gradients.clone(),
+            cost: normal.cost,
+            count: normal.count,
+            prior: prior.clone(),
+            pull,
+        }
+    }
+}
+
+/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the
+/// last two were no better than one before them, or the last is clearly worse than another pull.
+fn is_past_best(errors: &[f64]) -> bool {
+    let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let [weak, .., before, last] = *errors else { return false };
+    let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
+    let none_better = best_before.is_finite() && before.min(last) >= best_before;
+    none_better || (best < weak && last > TRAJECTORY.clearly_worse * best)
+}
+
+/// Sums over some trials.
+fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
+    let mut all =
+        NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
+    pass.trials
+        .iter()
+        .enumerate()
+        .filter(|(trial, _)| keep(*trial))
+        .for_each(|(_, normal)| all.add(normal));
+    all
+}
+
+/// Huber's threshold from absolute residuals: their median, as that of a normal distribution.
+fn threshold(mut sizes: Vec<f64>) -> f64 {
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() {
+        return f64::INFINITY;
+    }
+    let (_, &mut median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    if median > 0.0 { TRAJECTORY.huber * 1.4826 * median } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_past_best;
+
+    #[test]
+    fn weaker_pulls_are_tried_until_they_are_worse() {
+        // Of the weak form, then of pulls.
+        assert!(!is_past_best(&[1.0]));
+        assert!(
+            !is_past_best(&[1.0, 1.2]),
+            "one that is worse than the weak form may be followed by better ones"
+        );
+        assert!(is_past_best(&[1.0, 1.2, 1.1]));
+        assert!(!is_past_best(&[1.0, 0.9, 0.91]), "hardly worse");
+        assert!(is_past_best(&[1.0, 0.9, 0.91, 0.905]));
+        assert!(is_past_best(&[1.0, 0.9, 0.95]));
+        assert!(
+            !is_past_best(&[f64::INFINITY, f64::INFINITY, f64::INFINITY]),
+            "nothing has sailed yet"
+        );
+        assert!(is_past_best(&[f64::INFINITY, 0.9, f64::INFINITY]));
+    }
+}

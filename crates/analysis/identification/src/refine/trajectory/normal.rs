@@ -1,0 +1,230 @@
+//! One pass over all segments: residuals, and the normal equations of the coefficients.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use sistership_simulation::sensitivity::{SensitiveRun, SensitiveSystem};
+use sistership_simulation::{Envelope, Method};
+
+use super::segments::{ComparisonPlan, Segment, difference};
+use super::thresholds::TRAJECTORY;
+
+/// Segments in lockstep.
+const LANES: usize = 8;
+/// Rows of residuals gathered before they are multiplied.
+const ROWS: usize = 96;
+/// Columns of the Hessian that are multiplied together.
+const COLUMNS: usize = 48;
+/// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until
+/// then. More threads than this have nothing to do; it is not their number, so that the memory of a
+/// fit does not depend on the machine.
+const BLOCKS: usize = 16;
+
+/// Sums over the residuals of some segments.
+#[derive(Debug, Clone)]
+pub(super) struct NormalEquations {
+    /// Of squared sensitivities by Huber's weights.
+    pub hessian: DMatrix<f64>,
+    /// Of sensitivities times residuals.
+    pub gradient: DVector<f64>,
+    /// Of Huber's function (twice: squares near zero).
+    pub cost: f64,
+    /// Of residual times.
+    pub count: f64,
+}
+
+/// A pass: sums by trial, and gradients by segment for the standard errors.
+pub(super) struct SegmentSums {
+    pub trials: Vec<NormalEquations>,
+    pub gradients: Vec<DVector<f64>>,
+}
+
+impl NormalEquations {
+    pub fn zeros(size: usize) -> Self {
+        Self {
+            hessian: DMatrix::zeros(size, size),
+            gradient: DVector::zeros(size),
+            cost: 0.0,
+            count: 0.0,
+        }
+    }
+
+    pub fn add(&mut self, other: &Self) {
+        self.hessian += &other.hessian;
+        self.gradient += &other.gradient;
+        self.cost += other.cost;
+        self.count += other.count;
+    }
+}
+
+/// What a pass needs besides the system.
+pub(super) struct SegmentPass<'a> {
+    pub segments: &'a [Segment],
+    pub plan: &'a ComparisonPlan,
+    pub envelope: Envelope,
+    /// Huber's thresholds by compared state, in standard deviations.
+    pub thresholds: Vec<f64>,
+    pub trials: usize,
+}
+
+impl SegmentPass<'_> {
+    /// Simulates every segment. Sums are added in the segments' order, so that batches change
+    /// nothing but the memory taken.
+    pub fn pass(&self, system: &SensitiveSystem) -> SegmentSums {
+        let size = system.names().len();
+        let mut pass = SegmentSums {
+            trials: vec![NormalEquations::zeros(size); self.trials],
+            gradients: Vec::new(),
+        };
+        for batch in self.segments.chunks(LANES * BLOCKS) {
+            let blocks: Vec<Vec<LaneSums>> =
+                batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
+            for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
+                pass.trials[segment.trial].add(&lane.normal);
+                pass.gradients.push(lane.normal.gradient);
+            }
+        }
+        pass.trials
+            .iter_mut()
+            .for_each(|normal| normal.hessian.fill_upper_triangle_with_lower_triangle());
+        pass
+    }
+
+    /// Absolute residuals by compared state, of every `some`th block of segments.
+    pub fn sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
+        let blocks: Vec<&[Segment]> = self.segments.chunks(LANES).step_by(some).collect();
+        let of_block = |block: &[Segment]| {
+            self.block(system, block).into_iter().map(|lane| lane.sizes).collect()
+        };
+        let lanes: Vec<Vec<Vec<Vec<f64>>>> = blocks.into_par_iter().map(of_block).collect();
+        let mut sizes = vec![Vec::new(); self.plan.compared.len()];
+        for lane in lanes.into_iter().flatten() {
+            sizes.iter_mut().zip(lane).for_each(|(all, own)| all.extend(own));
+        }
+        sizes
+    }
+
+    fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<LaneSums> {
+        let size = system.names().len();
+        let mut run = SensitiveRun::<LANES>::new(system);
+        let mut lanes: Vec<LaneSums> =
+            block.iter().map(|_| LaneSums::new(size, self.plan.compared.len())).collect();
+        block.iter().enumerate().for_each(|(lane, segment)| run.start(lane, &segment.start));
+        // Lanes without a segment repeat the first.
+        (block.len()..LANES).for_each(|lane| run.start(lane, &block[0].start));
+        let width = system.input_names().len();
+        let mut inputs =
+            [vec![[0.0; LANES]; width], vec![[0.0; LANES]; width], vec![[0.0; LANES]; width]];
+        for k in 0..block[0].steps {
+            for (half, given) in inputs.iter_mut().enumerate() {
+                load(block, 2 * k + half, width, given);
+            }
+            run.step(Method::Rk4, self.plan.step_s, [&inputs[0], &inputs[1], &inputs[2]]);
+            if (k + 1) % self.plan.stride == 0 {
+                let due = lanes
+                    .iter_mut()
+                    .zip(block)
+                    .enumerate()
+                    .filter(|(_, (_, segment))| k < segment.steps);
+                due.for_each(|(lane, (own, segment))| {
+                    self.compare(&run, lane, own, segment, (k + 1) / self.plan.stride - 1)
+                });
+            }
+        }
+        lanes.iter_mut().for_each(LaneSums::flush);
+        lanes
+    }
+
+    /// Adds a lane's residuals at a time.
+    fn compare(
+        &self,
+        run: &SensitiveRun<'_, LANES>,
+        lane: usize,
+        own: &mut LaneSums,
+        segment: &Segment,
+        residual: usize,
+    ) {
+        let state = run.state(lane);
+        own.normal.count += 1.0;
+        own.lost = own.lost || self.envelope.check(0.0, &state).is_err();
+        let width = self.plan.compared.len();
+        let measured = &segment.measured[residual * width..(residual + 1) * width];
+        for (index, (&(row, place, deviation), measured)) in
+            self.plan.compared.iter().zip(measured).enumerate()
+        {
+            if !measured.is_finite() {
+                continue;
+            }
+            if own.lost {
+                own.normal.cost += TRAJECTORY.lost * TRAJECTORY.lost;
+                continue;
+            }
+            let value = difference(place, state[place], *measured) / deviation;
+            own.sizes[index].push(value.abs());
+            own.add(
+                &run.sensitivity(lane, row)[..own.normal.gradient.len()],
+                value,
+                deviation,
+                self.thresholds[index],
+            );
+        }
+    }
+}
+
+/// The inputs of each lane at a half step; a lane that is done keeps its last.
+fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LANES]]) {
+    for lane in 0..LANES {
+        let segment = block.get(lane).unwrap_or(&block[0]);
+        let at = half_step.min(2 * segment.steps) * width;
+        into.iter_mut()
+            .zip(&segment.inputs[at..at + width])
+            .for_each(|(lanes, value)| lanes[lane] = *value);
+    }
+}
+
+/// Sums of one lane, with rows that wait to be multiplied.
+struct LaneSums {
+    normal: NormalEquations,
+    rows: DMatrix<f64>,
+    waiting: usize,
+    lost: bool,
+    sizes: Vec<Vec<f64>>,
+}
+
+impl LaneSums {
+    fn new(size: usize, compared: usize) -> Self {
+        let sizes = vec![Vec::new(); compared];
+        Self {
+            normal: NormalEquations::zeros(size),
+            rows: DMatrix::zeros(size, ROWS),
+            waiting: 0,
+            lost: false,
+            sizes,
+        }
+    }
+
+    fn add(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
+        let size = value.abs();
+        let weight = if size <= threshold { 1.0 } else { threshold / size };
+        self.normal.cost +=
+            if size <= threshold { size * size } else { threshold * (2.0 * size - threshold) };
+        let factor = weight.sqrt() / deviation;
+        let mut row = self.rows.column_mut(self.waiting);
+        row.iter_mut().zip(sensitivity).for_each(|(out, s)| *out = factor * s);
+        self.normal.gradient.axpy(weight.sqrt() * value, &row, 1.0);
+        self.waiting += 1;
+        if self.waiting == ROWS {
+            self.flush();
+        }
+    }
+
+    /// Below the diagonal, and as much above it as comes with columns done together.
+    fn flush(&mut self) {
+        let (rows, size) = (self.rows.columns(0, self.waiting), self.rows.nrows());
+        for from in (0..size).step_by(COLUMNS) {
+            let width = COLUMNS.min(size - from);
+            let mut part = self.normal.hessian.view_mut((from, from), (size - from, width));
+            part.gemm(1.0, &rows.rows(from, size - from), &rows.rows(from, width).transpose(), 1.0);
+        }
+        self.waiting = 0;
+    }
+}

@@ -1,0 +1,80 @@
+//! Terms of what no trial records.
+//!
+//! A law may take the wind, or another input, at a default where nobody records it. What its terms
+//! then say of the ship is what other terms say, too: in still air the apparent wind is the ship's
+//! own speed. Fitted all the same, they would take over a part of the hull's forces, and give
+//! nonsense in the first trial that records the input. So a model that knows nothing of them yet is
+//! fitted without them.
+
+use std::collections::BTreeSet;
+
+use sistership_formula::Expr;
+use sistership_model::effect::input_channel;
+use sistership_model::law::Law;
+use sistership_model::{Model, Trial};
+
+/// Takes the coefficients out of a model that are zero and whose terms depend on an input that no
+/// trial records.
+pub(super) fn forget(model: &mut Model, law: &Law, trials: &[&Trial]) {
+    let unrecorded = unrecorded(law, trials);
+    if unrecorded.is_empty() {
+        return;
+    }
+    let depends =
+        |name: &str| law.term(name).is_ok_and(|(_, term)| mentions(&term, law, &unrecorded));
+    model.coefficients.retain(|name, quantity| quantity.value != 0.0 || !depends(name));
+}
+
+/// Inputs with a default whose channel no trial has.
+fn unrecorded<'a>(law: &'a Law, trials: &[&Trial]) -> BTreeSet<&'a str> {
+    let nowhere = |name: &str| {
+        input_channel(name)
+            .is_some_and(|channel| trials.iter().all(|trial| trial.channel(channel).is_none()))
+    };
+    let inputs = law.inputs.iter().filter(|(name, input)| input.default.is_some() && nowhere(name));
+    inputs.map(|(name, _)| name.as_str()).collect()
+}
+
+/// Whether a formula depends on any of some inputs, by the law's values too.
+fn mentions(formula: &Expr, law: &Law, inputs: &BTreeSet<&str>) -> bool {
+    formula.names().into_iter().any(|name| {
+        inputs.contains(name)
+            || law.values.get(name).is_some_and(|value| mentions(value, law, inputs))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+    use sistership_model::trial::Channel;
+    use sistership_priors::transfer::blank;
+
+    #[test]
+    fn wind_terms_need_a_recorded_wind() {
+        let zoo = Zoo::embedded().unwrap();
+        let law = zoo.law("low-speed").unwrap();
+        let all = blank(law, zoo.vessel("esso-osaka-3m").unwrap(), None).unwrap();
+        let (mut calm, mut trial) = (all.clone(), Trial::default());
+        forget(&mut calm, law, &[&trial]);
+        let forgotten = |name: &str| !calm.coefficients.contains_key(name);
+        assert!(forgotten("X_ahead") && forgotten("Y_beam") && !forgotten("Y_v"));
+        for channel in [Channel::WindSpeed, Channel::WindFrom] {
+            trial.channels.insert(channel, vec![0.0]);
+        }
+        let mut windy = all.clone();
+        forget(&mut windy, law, &[&trial]);
+        assert_eq!(windy, all);
+    }
+
+    #[test]
+    fn what_a_source_knows_stays() {
+        let zoo = Zoo::embedded().unwrap();
+        let law = zoo.law("low-speed").unwrap();
+        let mut model = blank(law, zoo.vessel("esso-osaka-3m").unwrap(), None).unwrap();
+        model.coefficients.get_mut("Y_beam").unwrap().value = -0.001;
+        forget(&mut model, law, &[&Trial::default()]);
+        assert!(model.coefficients.contains_key("Y_beam"));
+    }
+}

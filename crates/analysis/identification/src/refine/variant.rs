@@ -1,0 +1,233 @@
+//! The term families of a refinement, each with its regressions, statistics and training sets.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::{Channel, Trial};
+
+use super::blocks::Blocks;
+use super::equations::Equations;
+use super::errors::CoefficientErrors;
+use super::family::Family;
+use super::outcome::RefineError;
+use super::parts::slice;
+use super::posterior::{SequencedRows, errors, rows};
+use super::problem::Problem;
+use super::ridge::{Choices, Fitted, Fold, most_likely};
+use super::rows::Table;
+use super::settings::Range;
+use super::thresholds::SELECTION;
+use crate::constraints::{CoefficientLimits, LimitError};
+use sistership_numerics::{Moments, RidgeChoice, merged};
+
+/// One family of terms.
+pub(super) struct Variant {
+    /// Which.
+    pub family: Family,
+    /// The source carried over, with these terms.
+    pub model: Model,
+    /// Its regressions.
+    pub blocks: Blocks,
+    /// How its rows were made.
+    pub equations: Equations,
+    /// Its statistics, by trial and regression.
+    pub moments: Vec<Vec<Moments>>,
+    /// What its coefficients must keep to, if anything.
+    pub limits: Option<CoefficientLimits>,
+}
+
+impl Variant {
+    /// A family's, for a model with its terms.
+    ///
+    /// # Errors
+    /// The trials lack a channel or have too few samples, or the constraints name what the model
+    /// lacks.
+    fn new(
+        problem: &Problem<'_>,
+        equations: Equations,
+        family: Family,
+        mut model: Model,
+    ) -> Result<Self, RefineError> {
+        let mut blocks = Blocks::new(&model, problem.law)?;
+        let moments = moments(problem, equations, &blocks)?;
+        if let Some(all) = merged(&moments, |_| true) {
+            problem.measure.hold(&mut blocks, &mut model, &all)?;
+        }
+        let limits = limits(problem, &model)?;
+        Ok(Self { family, model, blocks, equations, moments, limits })
+    }
+
+    /// Coefficients fitted by a training set, within the limits.
+    ///
+    /// # Errors
+    /// Names the limits that cannot be kept together.
+    pub fn solve(
+        &self,
+        fold: &Fold<'_>,
+        choices: &Choices,
+    ) -> Result<BTreeMap<String, Fitted>, LimitError> {
+        let mut fitted = fold.solve(choices);
+        let Some(limits) = &self.limits else { return Ok(fitted) };
+        let (names, curvature) = fold.curvature(choices);
+        let solution = fitted.iter().map(|(name, fitted)| (name.clone(), fitted.value)).collect();
+        let prior = |name: &str| fitted.get(name).map_or(0.0, |fitted| fitted.prior_deviation);
+        let nearest = limits.nearest(&solution, &names, &curvature, &prior)?;
+        nearest.into_iter().for_each(|(name, value)| {
+            fitted.get_mut(&name).into_iter().for_each(|fitted| fitted.value = value);
+        });
+        Ok(fitted)
+    }
+
+    /// The statistics of some trials together, one set for each regression.
+    ///
+    /// # Errors
+    /// They have no sample.
+    pub fn together(&self, keep: impl Fn(usize) -> bool) -> Result<Vec<Moments>, RefineError> {
+        merged(&self.moments, keep)
+            .ok_or_else(|| RefineError::Data("the trials have no sample".into()))
+    }
+
+    /// The model with other values of some coefficients.
+    pub fn model_at(&self, values: &BTreeMap<String, f64>) -> Model {
+        let mut model = self.model.clone();
+        let all =
+            values.iter().map(|(name, value)| (name.clone(), Quantity::new(*value, "refined")));
+        model.coefficients.extend(all);
+        model
+    }
+
+    /// How far a ridge's coefficients on all trials may be from the truth.
+    pub fn errors(
+        &self,
+        training: &[&Trial],
+        choices: &Choices,
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
+        let Some(all) = merged(&self.moments, |_| true) else { return Ok(None) };
+        errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices).map(Some)
+    }
+
+    /// The rows behind the statistics. Differences of neighbouring samples share most of what they
+    /// say: they are merged over the time of a difference.
+    fn rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
+        let parts = |trial: &&Trial| {
+            trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>()
+        };
+        let parts: Vec<Trial> =
+            training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
+        let one = |part: &Trial| self.equations.tables(&self.blocks, part);
+        let tables: Vec<Vec<Table>> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
+        let dependent = self.equations.dependent_rows(parts.first().map_or(1.0, Trial::interval_s));
+        Ok(rows(&self.blocks, &tables, dependent, self.equations.are_differences()))
+    }
+
+    /// Training sets with whole manoeuvres left out; a single trial can only judge itself.
+    ///
+    /// # Errors
+    /// A fold has no sample.
+    pub fn folds(&self, problem: &Problem<'_>) -> Result<Vec<Fold<'_>>, RefineError> {
+        let nothing = || RefineError::Data("a fold has no sample".into());
+        let one = |fold: usize| {
+            let training = merged(&self.moments, |trial| problem.is_fitted(trial, fold))
+                .ok_or_else(nothing)?;
+            let left_out = merged(&self.moments, |trial| problem.fold_of(trial) == fold)
+                .ok_or_else(nothing)?;
+            Ok(Fold::new(&self.blocks, &self.model, &training, &left_out))
+        };
+        (0..problem.fold_count()).into_par_iter().map(one).collect()
+    }
+
+    /// The same strength for every acceleration but roll's: of roll a source of the plane says
+    /// nothing, so that its strength is the one with the greatest marginal likelihood on all
+    /// training samples. Windows left out would do only where every fold keeps something that
+    /// excites roll. `roll` is by how much stronger than that.
+    pub fn common_choices(&self, lambda: f64, roll: f64) -> Result<Choices, RefineError> {
+        let blocks = &self.blocks.blocks;
+        let [lambda_min, lambda_max] = SELECTION.roll_strengths;
+        let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
+        let tuned = if blocks.iter().any(|block| block.axes.contains(&Axis::K)) {
+            most_likely(
+                &self.blocks,
+                &self.together(|_| true)?,
+                &self.model,
+                &free,
+                SELECTION.roll_strength_count,
+            )
+        } else {
+            Choices::new()
+        };
+        let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
+            Axis::K => RidgeChoice { lambda: roll * tuned[b][target].lambda, alpha: 0.0 },
+            _ => RidgeChoice { lambda, alpha: 0.0 },
+        };
+        let of_block =
+            |b: usize| blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();
+        Ok((0..blocks.len()).map(of_block).collect())
+    }
+}
+
+/// The families that the settings name and that differ from each other; one that has too few
+/// samples, or of a blank law no coefficient, is left out.
+///
+/// # Errors
+/// As of the first family, where none is left.
+pub(super) fn variants(
+    problem: &Problem<'_>,
+    equations: Equations,
+) -> Result<Vec<Variant>, RefineError> {
+    let families = &problem.settings.families;
+    let families = if families.is_empty() { &[Family::Own][..] } else { families };
+    let (mut variants, mut lacking) = (Vec::new(), None);
+    for &family in families {
+        let Some(model) = family.of(&problem.transferred, problem.law) else { continue };
+        match Variant::new(problem, equations, family, model) {
+            Ok(variant) => variants.push(variant),
+            Err(error @ RefineError::Data(_)) => drop(lacking.get_or_insert(error)),
+            Err(error) => return Err(error),
+        }
+    }
+    lacking.filter(|_| variants.is_empty()).map_or(Ok(variants), Err)
+}
+
+/// What the settings ask of a model's coefficients.
+fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimits>, RefineError> {
+    let asked = &problem.settings.constraints;
+    if asked.is_empty() {
+        return Ok(None);
+    }
+    let speeds =
+        problem.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+    let speeds = speeds
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
+    let limits = CoefficientLimits::new(asked, model, problem.law, speeds);
+    limits.map(Some).map_err(|error| RefineError::Setting {
+        field: "constraints".into(),
+        message: error.to_string(),
+    })
+}
+
+/// Statistics by trial and regression.
+fn moments(
+    problem: &Problem<'_>,
+    equations: Equations,
+    blocks: &Blocks,
+) -> Result<Vec<Vec<Moments>>, RefineError> {
+    let one = |trial: &&Trial| equations.moments(blocks, trial);
+    let moments: Vec<Vec<Moments>> =
+        problem.training.par_iter().map(one).collect::<Result<_, _>>()?;
+    let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
+    let widest = blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
+    // A prior as strong as a source's lets rows be fewer than coefficients.
+    let least = if problem.measure.is_source() { 1.0 } else { equations.least_samples(widest) };
+    if samples < least {
+        let message = format!(
+            "the trials give {samples:.0} {} for {widest} coefficients an axis, at least {least} \
+             are needed: give more or longer trials",
+            equations.rows()
+        );
+        return Err(RefineError::Data(message));
+    }
+    Ok(moments)
+}

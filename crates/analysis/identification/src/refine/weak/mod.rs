@@ -1,0 +1,83 @@
+//! The weak form: the equations of motion multiplied by a smooth bump and integrated by parts, so
+//! that no error of a measurement is ever differentiated (Messenger and Bortz 2021, Multiscale
+//! Model Simul 19, 1474-1497, Eqs. 2.4-2.6).
+//!
+//! With a bump `b(t)` that vanishes with its slope at both ends of a window, `M dv/dt = sum c_i
+//! phi_i + rest` becomes `-int v d(b M)/dt dt = sum c_i int b phi_i dt + int b rest dt`: a linear
+//! regression with one row a window.
+
+mod averaged;
+mod bump;
+mod estimator;
+mod samples;
+mod thresholds;
+
+use sistership_model::trial::Trial;
+
+pub use bump::Windows;
+pub(super) use estimator::{WeakForm, equations, resolve};
+
+use super::blocks::{Block, Blocks};
+use super::outcome::RefineError;
+use super::rows::Table;
+use averaged::averaged;
+use bump::BumpFunction;
+use samples::{SampledRegression, columns};
+use sistership_numerics::Moments;
+
+/// The statistics of one trial in weak form about zero, one set for each regression; no window
+/// reaches over a gap. Windows overlap, so that each counts as the share of time that is its own.
+///
+/// # Errors
+/// Names the channel that the trial lacks.
+pub fn weak_moments(
+    blocks: &Blocks,
+    trial: &Trial,
+    windows: Windows,
+) -> Result<Vec<Moments>, RefineError> {
+    let tables = weak_tables(blocks, trial, windows)?;
+    let share = windows.share(trial.interval_s());
+    let of =
+        |(block, table): (&Block, &Table)| Moments::about_zero(table, block.regressors(), share);
+    Ok(blocks.blocks.iter().zip(&tables).map(of).collect())
+}
+
+/// The rows behind [`weak_moments`]: for each regression its columns over the windows, regressors
+/// then targets, in the mean over the bump.
+///
+/// # Errors
+/// As [`weak_moments`].
+pub fn weak_tables(
+    blocks: &Blocks,
+    trial: &Trial,
+    windows: Windows,
+) -> Result<Vec<Table>, RefineError> {
+    let averaged = windows.in_means.then(|| averaged(trial, windows.length_s)).flatten();
+    let trial = averaged.as_ref().unwrap_or(trial);
+    let sampled = columns(blocks, trial)?;
+    let mut tables: Vec<Table> =
+        blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();
+    for bump in windows.over(trial) {
+        sampled.iter().zip(&mut tables).for_each(|(columns, table)| append(columns, &bump, table));
+    }
+    Ok(tables)
+}
+
+/// One window's row.
+fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Table) {
+    let (regressors, targets) = table.split_at_mut(columns.regressors.len());
+    for (out, column) in regressors.iter_mut().zip(&columns.regressors) {
+        out.push(bump.mean(column));
+    }
+    for (out, target) in targets.iter_mut().zip(&columns.targets) {
+        let momentum: f64 = target
+            .inertia
+            .iter()
+            .map(|(mass, velocity)| bump.rate(mass.as_deref(), velocity))
+            .sum();
+        out.push(momentum - bump.mean(&target.rest));
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+//! What a regression is made of at every sample of a trial: regressors, masses with the velocities
+//! they multiply, rests.
+
+use std::borrow::Cow;
+
+use nalgebra::DVector;
+use sistership_model::trial::Trial;
+use sistership_simulation::tape::{Lanes, Slots};
+
+use super::super::blocks::{Block, Blocks};
+use super::super::outcome::RefineError;
+use super::super::rows::{LANES, RegressionRecord};
+
+/// One regression's columns over the samples of a trial.
+pub(super) struct SampledRegression<'a> {
+    /// Regressors with scale.
+    pub regressors: Vec<Vec<f64>>,
+    /// Targets.
+    pub targets: Vec<RegressionTarget<'a>>,
+}
+
+/// A mass, 1 where absent, with the velocity it multiplies.
+pub(super) type InertialTerm<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
+
+/// What a target is made of.
+pub(super) struct RegressionTarget<'a> {
+    /// Masses, 1 where absent, and velocities whose rate of change they multiply.
+    pub inertia: Vec<InertialTerm<'a>>,
+    /// What is known of the right-hand side.
+    pub rest: Vec<f64>,
+}
+
+/// The columns of every regression of a law over a trial.
+pub(super) fn columns<'a>(
+    blocks: &Blocks,
+    trial: &'a Trial,
+) -> Result<Vec<SampledRegression<'a>>, RefineError> {
+    let record = RegressionRecord::new(blocks, trial)?;
+    let mut all: Vec<SampledRegression<'a>> = blocks
+        .blocks
+        .iter()
+        .map(|block| SampledRegression::new(block, &record, trial.len()))
+        .collect();
+    let mut lanes = vec![[0.0; LANES]; record.columns.len()];
+    let mut work = Slots::default();
+    let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
+    for chunk in samples.chunks(LANES) {
+        record.load(chunk, &mut lanes);
+        blocks.tape.run(&lanes, &mut work);
+        for (block, columns) in blocks.blocks.iter().zip(&mut all) {
+            columns.append(blocks, block, &work);
+        }
+    }
+    all.iter_mut().for_each(|columns| columns.truncate(trial.len()));
+    Ok(all)
+}
+
+impl<'a> SampledRegression<'a> {
+    fn new(block: &Block, record: &RegressionRecord<'a>, samples: usize) -> Self {
+        let velocity = |axis| Cow::Borrowed(record.velocity(axis));
+        let room = || Vec::with_capacity(samples + LANES);
+        let target = |own| RegressionTarget {
+            inertia: match block.axes.len() {
+                1 => {
+                    let with_mass =
+                        block.mass[0].iter().zip(&block.columns).filter(|(mass, _)| mass.is_some());
+                    with_mass.map(|(_, &axis)| (Some(room()), velocity(axis))).collect()
+                }
+                _ => vec![(None, velocity(own))],
+            },
+            rest: room(),
+        };
+        let targets = block.axes.iter().map(|&axis| target(axis)).collect();
+        Self { regressors: vec![room(); block.regressors()], targets }
+    }
+
+    /// Every lane, also of a chunk that has fewer samples.
+    fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>]) {
+        let read = |output: usize| blocks.tape.read(output, work);
+        let own_mass = if block.is_force() || block.axes.len() > 1 {
+            None
+        } else {
+            block.mass[0][0].map(read)
+        };
+        let divided = |value: Lanes<LANES>| -> Lanes<LANES> {
+            own_mass.map_or(value, |mass| std::array::from_fn(|lane| value[lane] / mass[lane]))
+        };
+        let scale = read(block.scales[0]);
+        for (column, &term) in self.regressors.iter_mut().zip(&block.terms) {
+            let term = read(term);
+            column.extend(divided(std::array::from_fn(|lane| scale[lane] * term[lane])));
+        }
+        if let [target] = self.targets.as_mut_slice() {
+            let masses = block.mass[0].iter().flatten();
+            for ((column, _), &mass) in target.inertia.iter_mut().zip(masses) {
+                column.get_or_insert_default().extend(divided(read(mass)));
+            }
+            target.rest.extend(divided(read(block.rests[0])));
+            return;
+        }
+        self.append_rests(block, &read);
+    }
+
+    /// Back to as many samples as there are.
+    fn truncate(&mut self, samples: usize) {
+        self.regressors.iter_mut().for_each(|column| column.truncate(samples));
+        for target in &mut self.targets {
+            target.rest.truncate(samples);
+            target
+                .inertia
+                .iter_mut()
+                .filter_map(|(mass, _)| mass.as_mut())
+                .for_each(|mass| mass.truncate(samples));
+        }
+    }
+
+    /// The accelerations that the rests of coupled axes cause.
+    fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>) {
+        let (scales, rests): (Vec<_>, Vec<_>) =
+            block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();
+        for lane in 0..LANES {
+            let unscaled = rests.iter().zip(&scales).map(|(rest, scale)| match rest[lane] {
+                0.0 => 0.0,
+                rest => rest * scales[0][lane] / scale[lane],
+            });
+            let caused = &block.mixing * DVector::from_iterator(rests.len(), unscaled);
+            self.targets
+                .iter_mut()
+                .zip(caused.iter())
+                .for_each(|(target, value)| target.rest.push(*value));
+        }
+    }
+}

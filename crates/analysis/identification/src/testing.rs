@@ -1,0 +1,59 @@
+//! Trials for tests: what a model sails, with noise that differs from trial to trial.
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, zigzag};
+use sistership_simulation::state::{RECORDED, Trajectory, at};
+
+/// The Mariner and its law.
+pub fn mariner() -> (Model, Arc<Law>) {
+    let zoo = Zoo::embedded().unwrap();
+    let model = zoo.model("mariner").unwrap();
+    let law = zoo.law(&model.law).unwrap().clone();
+    (model, law)
+}
+
+/// A model whose coefficients are these times its own, by name.
+pub fn with(model: &Model, factor: impl Fn(&str) -> f64) -> Model {
+    let mut model = model.clone();
+    model.coefficients.iter_mut().for_each(|(name, quantity)| quantity.value *= factor(name));
+    model
+}
+
+/// Zigzags 10/10, 20/20 and 30/30 to both sides at 1 Hz, as a model sails them.
+pub fn trials(model: &Model, law: &Law, noise: f64) -> Vec<Trial> {
+    let ship = Ship::new(model, law).unwrap();
+    let settings = ManoeuvreSettings {
+        step_s: Some(0.5),
+        duration_s: Some(600.0),
+        ..ManoeuvreSettings::default()
+    };
+    let sailed = |angle: f64| zigzag(&ship, angle, angle.abs(), &settings).unwrap().track;
+    let recorded = |(index, angle): (usize, f64)| recorded(&sailed(angle), index, noise);
+    [10.0, 20.0, -30.0, -20.0].into_iter().enumerate().map(recorded).collect()
+}
+
+fn recorded(track: &Trajectory, index: usize, noise: f64) -> Trial {
+    let kept: Vec<usize> = (0..track.t_s.len()).step_by(2).collect();
+    let column = |at: usize| {
+        let shaken = |&k: &usize| {
+            let shake = (12.9898 * (k + 977 * at + 31 * index) as f64).sin()
+                + (78.233 * (k + 13 * at) as f64).cos();
+            track.states[k][at] * (1.0 + noise * shake)
+        };
+        kept.iter().map(shaken).collect::<Vec<f64>>()
+    };
+    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
+        RECORDED.iter().map(|&(c, at)| (c, column(at))).collect();
+    channels.insert(Channel::Delta, kept.iter().map(|&k| track.states[k][at::DELTA]).collect());
+    Trial {
+        name: format!("trial-{index}"),
+        t_s: kept.iter().map(|&k| track.t_s[k]).collect(),
+        channels,
+        ..Trial::default()
+    }
+}

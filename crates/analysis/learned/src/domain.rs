@@ -1,0 +1,174 @@
+//! How much a branch counts: wholly where its training was, and smoothly less beyond, to nothing.
+//!
+//! That bounds it. Let D be the region in which its share is above nothing. Outside D the
+//! foundation alone acts, so that a run with a branch can leave the physical range only where
+//! one of the foundation alone would, started from some motion in D; and D lies in the physical
+//! range ([`FadedDomain::is_within`]). What is added within D is bounded by what the training held.
+//! Decision 20 has the argument in full.
+
+use sistership_formula::{Comparison, Expr, Function};
+use sistership_model::validity::{Face, Region};
+use sistership_simulation::Envelope;
+use sistership_simulation::branch::Instant;
+
+use crate::expressions::{added, divided, subtracted};
+
+/// The channels of a region, as an instant has them.
+const CHANNELS: [&str; 5] = ["u", "v", "r", "delta", "n"];
+
+/// A region with how far beyond it a branch fades.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FadedDomain {
+    faces: Vec<Bounded>,
+    fade: f64,
+    /// Greatest |u|, |v|, |r| at which the share is above nothing.
+    reach: [f64; 3],
+}
+
+/// A direction: two places among the channels, what they are multiplied by and less by what.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bounded {
+    terms: [(usize, f64, f64); 2],
+    bounds: [f64; 2],
+}
+
+impl FadedDomain {
+    /// Of a region that bounds u, v and r; none where it bounds what no branch sees.
+    pub fn of(region: &Region, fade: f64) -> Option<Self> {
+        let faces = region.faces().iter().map(bounded).collect::<Option<Vec<_>>>()?;
+        let reach = |place: usize| {
+            let alone = |face: &&Bounded| face.terms[0].0 == place && face.terms[1].1 == 0.0;
+            let (_, factor, centre) = faces.iter().find(alone)?.terms[0];
+            Some(centre.abs() + (1.0 + fade) / factor)
+        };
+        let reach = [reach(0)?, reach(1)?, reach(2)?];
+        Some(Self { faces, fade, reach })
+    }
+
+    /// What a branch counts for at an instant, 0 to 1.
+    pub fn share(&self, instant: &Instant) -> f64 {
+        let [u, v, r] = instant.velocities;
+        let channels = [u, v, r, instant.delta_rad, instant.n_rps];
+        let excess = self.faces.iter().map(|face| face.excess(&channels)).fold(0.0, f64::max);
+        let out = excess / self.fade;
+        // A cubic step: no jump of the value, and none of the slope.
+        if out < 1.0 { 1.0 - out * out * (3.0 - 2.0 * out) } else { 0.0 }
+    }
+
+    /// Derivatives of the share with u, v, r, delta and n.
+    pub fn gradient(&self, instant: &Instant) -> [f64; 5] {
+        let mut slopes = [0.0; 5];
+        let [u, v, r] = instant.velocities;
+        let channels = [u, v, r, instant.delta_rad, instant.n_rps];
+        let furthest = self
+            .faces
+            .iter()
+            .map(|face| (face, face.excess(&channels)))
+            .max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let Some((face, excess)) = furthest else { return slopes };
+        let out = excess / self.fade;
+        if out > 0.0 && out < 1.0 {
+            let by_excess = -6.0 * out * (1.0 - out) / self.fade;
+            let side = by_excess * face.side(&channels);
+            face.terms.iter().for_each(|(k, factor, _)| slopes[*k] += side * factor);
+        }
+        slopes
+    }
+
+    /// The share as a formula over the channels; `value` takes what is used more than once.
+    pub fn formula(&self, value: &mut dyn FnMut(Expr) -> Expr) -> Expr {
+        let largest = |a: Expr, b: Expr| Expr::Call(Function::Max, vec![a, b]);
+        let excess = self.faces.iter().map(Bounded::formula).fold(Expr::Number(0.0), largest);
+        let out = value(divided(excess, self.fade));
+        let step = subtracted(Expr::Number(3.0), Expr::Number(2.0).times(out.clone()));
+        let faded = subtracted(Expr::Number(1.0), out.clone().times(out.clone()).times(step));
+        let parts = [out, Expr::Number(1.0), faded, Expr::Number(0.0)];
+        Expr::If(Comparison::Less, Box::new(parts))
+    }
+
+    /// Whether the share is nothing before the motion leaves the physical range.
+    pub fn is_within(&self, envelope: &Envelope) -> bool {
+        let [u, v, r] = self.reach;
+        u.hypot(v) < envelope.speed_m_s() && r < envelope.yaw_rate_rad_s()
+    }
+}
+
+fn bounded(face: &Face<'_>) -> Option<Bounded> {
+    let mut terms = [(0, 0.0, 0.0); 2];
+    for (place, term) in terms.iter_mut().zip(&face.terms) {
+        *place = (CHANNELS.iter().position(|c| *c == term.channel)?, term.factor, term.centre);
+    }
+    Some(Bounded { terms, bounds: face.bounds })
+}
+
+impl Bounded {
+    /// How far beyond, by half ranges.
+    #[inline]
+    fn excess(&self, channels: &[f64; 5]) -> f64 {
+        let at: f64 = self.terms.iter().map(|(k, factor, c)| factor * (channels[*k] - c)).sum();
+        (self.bounds[0] - at).max(at - self.bounds[1])
+    }
+
+    /// The sign of the change of the excess with the direction.
+    fn side(&self, channels: &[f64; 5]) -> f64 {
+        let at: f64 = self.terms.iter().map(|(k, factor, c)| factor * (channels[*k] - c)).sum();
+        if at - self.bounds[1] > self.bounds[0] - at { 1.0 } else { -1.0 }
+    }
+
+    fn formula(&self) -> Expr {
+        let term = |&(k, factor, centre): &(usize, f64, f64)| {
+            subtracted(Expr::Name(CHANNELS[k].to_owned()), Expr::Number(centre))
+                .times(Expr::Number(factor))
+        };
+        let terms = self.terms.iter().filter(|(_, factor, _)| *factor != 0.0).map(term);
+        let at = terms.reduce(added).unwrap_or(Expr::Number(0.0));
+        let [low, high] = self.bounds.map(Expr::Number);
+        let sides = vec![subtracted(low, at.clone()), subtracted(at, high)];
+        Expr::Call(Function::Max, sides)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Of the corners of a box.
+    fn domain() -> FadedDomain {
+        let column = |bit: u8, low: f64, high: f64| {
+            (0..8_u8).map(|corner| if corner >> bit & 1 == 1 { high } else { low }).collect()
+        };
+        let columns = [
+            ("u".to_owned(), column(0, 4.0, 6.0)),
+            ("v".to_owned(), column(1, -1.0, 1.0)),
+            ("r".to_owned(), column(2, -0.01, 0.01)),
+        ];
+        FadedDomain::of(&Region::of(&columns.into()).unwrap(), 0.5).unwrap()
+    }
+
+    fn share(u: f64, r: f64) -> f64 {
+        let accelerations = [0.0; 3];
+        let velocities = [u, 0.0, r];
+        domain().share(&Instant { velocities, delta_rad: 9.0, n_rps: 9.0, accelerations })
+    }
+
+    #[test]
+    fn the_share_is_whole_inside_and_fades_to_nothing() {
+        assert_eq!((share(5.0, 0.0), share(6.0, 0.0)), (1.0, 1.0));
+        assert!((share(6.25, 0.0) - 0.5).abs() < 1e-12);
+        assert_eq!((share(6.5, 0.0), share(5.0, -0.02), share(f64::MAX, 0.0)), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn it_has_no_step() {
+        let fine: Vec<f64> = (0..=2000).map(|k| share(5.9 + 0.0005 * f64::from(k), 0.0)).collect();
+        assert!(fine.windows(2).all(|pair| (pair[0] - pair[1]).abs() < 0.002));
+    }
+
+    #[test]
+    fn its_reach_is_compared_with_the_physical_range() {
+        // Up to 6.5 and 1.5 m/s, 0.015 rad/s; the range is three times the approach speed.
+        assert!(domain().is_within(&Envelope::new(100.0, 2.3)));
+        assert!(!domain().is_within(&Envelope::new(1.0, 2.1)));
+    }
+}

@@ -1,0 +1,52 @@
+//! The ship's axes at the instant of a prediction: Kanazawa 2023, Eq. 4.1.
+
+use sistership_simulation::state::{StateVector, at};
+
+/// Axes ahead and to starboard from where the ship is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axes {
+    origin: [f64; 2],
+    psi_rad: f64,
+}
+
+impl Axes {
+    /// Those of a ship at a state.
+    pub fn of(state: &StateVector) -> Self {
+        Self { origin: [state[at::X], state[at::Y]], psi_rad: state[at::PSI] }
+    }
+
+    /// How far ahead and to starboard a position is, m.
+    pub fn seen(&self, north_m: f64, east_m: f64) -> [f64; 2] {
+        let (sin, cos) = self.psi_rad.sin_cos();
+        let (north, east) = (north_m - self.origin[0], east_m - self.origin[1]);
+        [cos * north + sin * east, cos * east - sin * north]
+    }
+
+    /// Where that is, north and east, m.
+    pub fn there(&self, [ahead, aside]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.psi_rad.sin_cos();
+        [self.origin[0] + cos * ahead - sin * aside, self.origin[1] + sin * ahead + cos * aside]
+    }
+
+    /// How far a heading is from the ship's own, rad.
+    pub fn turned(&self, psi_rad: f64) -> f64 {
+        psi_rad - self.psi_rad
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ship_heading_east_sees_east_ahead_and_south_to_starboard() {
+        let mut state = StateVector::zeros();
+        (state[at::X], state[at::Y]) = (10.0, -5.0);
+        state[at::PSI] = std::f64::consts::FRAC_PI_2;
+        let axes = Axes::of(&state);
+        let [ahead, aside] = axes.seen(7.0, -1.0);
+        assert!((ahead - 4.0).abs() < 1e-12 && (aside - 3.0).abs() < 1e-12, "{ahead} {aside}");
+        let [north, east] = axes.there([ahead, aside]);
+        assert!((north - 7.0).abs() < 1e-12 && (east + 1.0).abs() < 1e-12, "{north} {east}");
+    }
+}

@@ -1,0 +1,226 @@
+//! What may be asked of a training, and what is taken where nothing is.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sistership_model::branch::{BranchError, BranchMode, BranchRecipe, Learner, MOST_FADE, Signal};
+use sistership_model::coefficient::Axis;
+use sistership_model::trial::Trial;
+use sistership_model::{Law, Model};
+use sistership_simulation::{PlantError, Ship};
+
+use crate::train::Training;
+
+/// A kind of learner, with settings that restrain it as small data need.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BranchKind {
+    /// A random forest.
+    Forest,
+    /// Boosted trees.
+    Boosted,
+    /// Kernel ridge, the mean of a Gaussian process.
+    Kernels,
+    /// A multilayer perceptron.
+    Perceptron,
+}
+
+/// What a branch is to be; what is absent is settled by the foundation and the trials.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BranchSettings {
+    /// What learns; where absent, every kind is tried, and one is taken where trials left out of
+    /// its training say that it wins by more than its uncertainty.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kind: Option<BranchKind>,
+    /// How it is joined to the foundation; `parallel` where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mode: Option<BranchMode>,
+    /// Every setting of what learns, in place of `kind`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub learner: Option<Learner>,
+    /// Of every random number drawn; 1 where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Time over which accelerations are taken; where absent, half of that in which the ship sails
+    /// its length at its approach speed, and four sampling intervals at least.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub window_s: Option<f64>,
+    /// From one sample of the training to the next; an eighth of the window where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub hop_s: Option<f64>,
+    /// How far beyond what the trials covered nothing of it is left, by half ranges; 1 where
+    /// absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 3), extend("exclusiveMinimum" = 0))]
+    pub fade: Option<f64>,
+}
+
+/// Window by the time in which a ship sails its length (docs/evidence/branches.md, RM-RF).
+const WINDOW: f64 = 0.5;
+/// Fewest sampling intervals in a window.
+const INTERVALS: f64 = 4.0;
+/// Samples of the training to a window.
+const HOPS: f64 = 8.0;
+
+impl BranchKind {
+    /// Every kind.
+    pub const ALL: [Self; 4] = [Self::Forest, Self::Boosted, Self::Kernels, Self::Perceptron];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forest => "forest",
+            Self::Boosted => "boosted",
+            Self::Kernels => "kernels",
+            Self::Perceptron => "perceptron",
+        }
+    }
+
+    /// Its settings where none are given: those that docs/evidence/branches.md was measured with.
+    pub fn learner(self) -> Learner {
+        match self {
+            Self::Forest => Learner::RandomForest { trees: 50, tried: 2, leaf: 20, depth: 12 },
+            Self::Boosted => {
+                Learner::BoostedTrees { trees: 100, leaf: 40, depth: 4, rate: 0.05, sampled: 0.5 }
+            }
+            Self::Kernels => Learner::KernelRidge { centres: 200, length: 3.0, ridge: 1.0 },
+            Self::Perceptron => Learner::Perceptron {
+                hidden: vec![16, 16],
+                epochs: 30,
+                batch: 64,
+                rate: 0.005,
+                decay: 0.01,
+            },
+        }
+    }
+}
+
+impl BranchSettings {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// Names the field and what it may be.
+    pub fn check(&self) -> Result<(), (String, String)> {
+        let recipe = BranchRecipe {
+            learner: self.learner(),
+            seed: self.seed(),
+            window_s: self.window_s.unwrap_or(1.0),
+            hop_s: self.hop_s.unwrap_or(1.0),
+            trials: Vec::new(),
+        };
+        match recipe.check() {
+            Err(BranchError::Recipe { field, reason }) => {
+                return Err((field.to_owned(), reason.to_owned()));
+            }
+            other => other.map_err(|error| ("recipe".to_owned(), error.to_string()))?,
+        }
+        if self.kind.is_some() && self.learner.is_some() {
+            return Err(("learner".to_owned(), "give it in place of `kind`".to_owned()));
+        }
+        match self.fade {
+            Some(fade) if !(fade > 0.0 && fade <= MOST_FADE) => {
+                Err(("fade".to_owned(), format!("should be above 0 and at most {MOST_FADE}")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether it is left open what learns.
+    pub fn is_open(&self) -> bool {
+        self.kind.is_none() && self.learner.is_none()
+    }
+
+    /// The same with a kind named.
+    pub fn of(&self, kind: BranchKind) -> Self {
+        Self { kind: Some(kind), ..self.clone() }
+    }
+
+    /// What learns; the baseline of small data where it is left open.
+    fn learner(&self) -> Learner {
+        let kind = self.kind.unwrap_or(BranchKind::Kernels);
+        self.learner.clone().unwrap_or_else(|| kind.learner())
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed.unwrap_or(1)
+    }
+
+    /// Everything that a training needs, settled for a foundation and its trials.
+    ///
+    /// # Errors
+    /// The foundation cannot be sailed.
+    pub fn training(
+        &self,
+        model: &Model,
+        law: &Law,
+        trials: &[&Trial],
+    ) -> Result<Training, PlantError> {
+        let ship = Ship::new(&model.foundation(), law)?;
+        let mode = self.mode.unwrap_or(BranchMode::Parallel);
+        let coarsest_s = trials.iter().map(|trial| trial.interval_s()).fold(0.0, f64::max);
+        let length_s = ship.lpp_m() / ship.approach_speed_m_s();
+        let window_s =
+            self.window_s.unwrap_or_else(|| (WINDOW * length_s).max(INTERVALS * coarsest_s));
+        Ok(Training {
+            mode,
+            inputs: inputs(&ship, mode),
+            learner: self.learner(),
+            seed: self.seed(),
+            window_s,
+            hop_s: self.hop_s.unwrap_or(window_s / HOPS),
+            fade: self.fade.unwrap_or(1.0),
+        })
+    }
+}
+
+/// All that a branch can be told from, for each of the three accelerations.
+fn inputs(ship: &Ship, mode: BranchMode) -> Vec<(Axis, Vec<Signal>)> {
+    let mut signals = vec![Signal::U, Signal::V, Signal::R];
+    signals.extend(ship.has_rudder().then_some(Signal::Delta));
+    signals.extend(ship.has_propeller().then_some(Signal::N));
+    if mode == BranchMode::Serial {
+        signals.extend([Signal::UDot, Signal::VDot, Signal::RDot]);
+    }
+    [Axis::X, Axis::Y, Axis::N].map(|axis| (axis, signals.clone())).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn what_is_not_asked_is_settled_by_ship_and_trials() {
+        let zoo = Zoo::embedded().unwrap();
+        let model = zoo.model("mariner").unwrap();
+        let trial = Trial { t_s: vec![0.0, 5.0, 10.0], ..Trial::default() };
+        let of = |settings: BranchSettings, trials: &[&Trial]| {
+            settings.training(&model, zoo.law("abkowitz").unwrap(), trials).unwrap()
+        };
+        let settled = of(BranchSettings::default(), &[]);
+        // 160.93 m at 7.72 m/s.
+        assert!((settled.window_s - 10.4).abs() < 0.1, "{settled:?}");
+        assert_eq!(settled.window_s / settled.hop_s, 8.0);
+        assert_eq!(settled.inputs[2].1, [Signal::U, Signal::V, Signal::R, Signal::Delta]);
+        assert_eq!(of(BranchSettings::default(), &[&trial]).window_s, 20.0);
+        let serial = BranchSettings { mode: Some(BranchMode::Serial), ..Default::default() };
+        assert!(of(serial, &[]).inputs[0].1.contains(&Signal::RDot));
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused_by_field() {
+        let field = |settings: BranchSettings| settings.check().unwrap_err().0;
+        let default = BranchSettings::default;
+        assert_eq!(field(BranchSettings { fade: Some(9.0), ..default() }), "fade");
+        assert_eq!(field(BranchSettings { window_s: Some(0.0), ..default() }), "window_s");
+        assert_eq!(field(BranchSettings { hop_s: Some(f64::NAN), ..default() }), "hop_s");
+        let learner = Some(Learner::KernelRidge { centres: 0, length: 1.0, ridge: 1.0 });
+        assert_eq!(field(BranchSettings { learner, ..default() }), "learner.centres");
+        for kind in BranchKind::ALL {
+            assert_eq!(default().of(kind).check(), Ok(()));
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Training: from a foundation, trials and a recipe to a branch and its weights.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use sistership_model::branch::{
+    Branch, BranchError, BranchInput, BranchMode, BranchOutput, BranchRecipe, Learner, Signal,
+};
+use sistership_model::coefficient::Axis;
+use sistership_model::learned::Attached;
+use sistership_model::trial::Trial;
+use sistership_model::validity::Region;
+use sistership_model::version::sha256;
+use sistership_model::{Law, Model};
+use sistership_simulation::{Envelope, PlantError, Ship};
+
+use crate::domain::FadedDomain;
+use crate::joined::JoinError;
+use crate::regressor::Regressor;
+use crate::rows::{Row, RowsError, rows};
+use crate::sample::{Sample, centre_and_scale, scaled, value};
+use crate::weights::{Weights, WeightsError};
+
+/// What is to be trained, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Training {
+    /// How it is joined to the foundation.
+    pub mode: BranchMode,
+    /// What each acceleration is told from; axes that are absent are the foundation's.
+    pub inputs: Vec<(Axis, Vec<Signal>)>,
+    /// What learns.
+    pub learner: Learner,
+    /// Of every random number drawn.
+    pub seed: u64,
+    /// Time over which accelerations are taken, s.
+    pub window_s: f64,
+    /// From one sample to the next, s.
+    pub hop_s: f64,
+    /// How far beyond the domain nothing is left, by half ranges; less is taken where it would
+    /// reach beyond the physical range.
+    pub fade: f64,
+}
+
+/// Why nothing was trained.
+#[derive(Debug, thiserror::Error)]
+pub enum TrainError {
+    /// The foundation cannot be sailed.
+    #[error(transparent)]
+    Foundation(#[from] PlantError),
+    /// A trial cannot be learned from.
+    #[error(transparent)]
+    Rows(#[from] RowsError),
+    /// A setting is out of range.
+    #[error("{0}")]
+    Setting(#[from] BranchError),
+    /// There are too few samples.
+    #[error("{found} samples are too few to learn from: give trials of {wanted} at least")]
+    Few {
+        /// How many.
+        found: usize,
+        /// The fewest.
+        wanted: usize,
+    },
+    /// The equations cannot be solved.
+    #[error("outputs.{0}: the equations are singular; give more ridge or fewer centres")]
+    Singular(Axis),
+    /// What the trials covered fills the physical range.
+    #[error("what the trials covered reaches the physical range of `{0}`: is a reading wrong?")]
+    Reach(String),
+    /// What was trained does not go with its foundation.
+    #[error(transparent)]
+    Joined(#[from] Box<JoinError>),
+    /// The weights cannot be written.
+    #[error(transparent)]
+    Weights(#[from] WeightsError),
+}
+
+/// Fewest samples: as many as one leaf and its neighbour take, with twenty each.
+const FEWEST: usize = 40;
+
+/// Trains a branch on what the foundation, `model` under `law`, leaves of the trials. The bytes of
+/// branch and weights depend on the arguments alone.
+///
+/// # Errors
+/// Names the trial or the setting that is at fault.
+pub fn train(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+    training: &Training,
+) -> Result<(Branch, Weights), TrainError> {
+    let recipe = BranchRecipe {
+        learner: training.learner.clone(),
+        seed: training.seed,
+        window_s: training.window_s,
+        hop_s: training.hop_s,
+        trials: trials.iter().map(|trial| trial.name.clone()).collect(),
+    };
+    recipe.check()?;
+    let ship = Ship::new(&model.foundation(), law)?;
+    let mut all = Vec::new();
+    for trial in trials {
+        all.extend(rows(&ship, trial, training.window_s, training.hop_s)?);
+    }
+    if all.len() < FEWEST {
+        return Err(TrainError::Few { found: all.len(), wanted: FEWEST });
+    }
+    let reached = || TrainError::Reach(model.name.clone());
+    let domain = covered(&all, ship.has_propeller()).ok_or_else(reached)?;
+    let fade = fade_within(&domain, training.fade, ship.envelope()).ok_or_else(reached)?;
+    let (outputs, weights) = learn(&all, training)?;
+    let weights_sha256 = sha256(&weights.bytes()?);
+    let branch = Branch {
+        mode: training.mode,
+        outputs,
+        weights_sha256,
+        domain,
+        fade,
+        recipe,
+        learned: Attached::default(),
+    };
+    branch.check()?;
+    Ok((branch, weights))
+}
+
+/// Trains a model's branch again, as its document says.
+///
+/// # Errors
+/// As [`train`].
+pub fn retrain(
+    model: &Model,
+    branch: &Branch,
+    law: &Law,
+    trials: &[&Trial],
+) -> Result<(Branch, Weights), TrainError> {
+    let signals = |output: &BranchOutput| {
+        (output.axis, output.inputs.iter().map(|input| input.signal).collect())
+    };
+    let training = Training {
+        mode: branch.mode,
+        inputs: branch.outputs.iter().map(signals).collect(),
+        learner: branch.recipe.learner.clone(),
+        seed: branch.recipe.seed,
+        window_s: branch.recipe.window_s,
+        hop_s: branch.recipe.hop_s,
+        fade: branch.fade,
+    };
+    train(model, law, trials, &training)
+}
+
+/// The region that the samples covered, without what stands out of a single reading.
+fn covered(rows: &[Row], has_propeller: bool) -> Option<Region> {
+    let column = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
+    let mut columns: BTreeMap<String, Vec<f64>> = ["u", "v", "r"]
+        .into_iter()
+        .enumerate()
+        .map(|(axis, name)| (name.to_owned(), column(&|row| row.instant.velocities[axis])))
+        .collect();
+    columns.insert("delta".into(), column(&|row| row.instant.delta_rad));
+    if has_propeller {
+        columns.insert("n".into(), column(&|row| row.instant.n_rps));
+    }
+    Region::of(&columns)
+}
+
+/// The fade asked for, or nine tenths of it and so on until it keeps to the physical range.
+fn fade_within(domain: &Region, fade: f64, envelope: &Envelope) -> Option<f64> {
+    std::iter::successors(Some(fade), |fade| Some(0.9 * fade))
+        .take_while(|tried| *tried > 0.01 * fade)
+        .find(|fade| FadedDomain::of(domain, *fade).is_some_and(|d| d.is_within(envelope)))
+}
+
+fn learn(rows: &[Row], training: &Training) -> Result<(Vec<BranchOutput>, Weights), TrainError> {
+    let (mut outputs, mut regressors) = (Vec::new(), Vec::new());
+    for (place, (axis, signals)) in training.inputs.iter().enumerate() {
+        let output = output(rows, *axis, signals, &targets(rows, *axis, training.mode));
+        let sample = sample_of(rows, &output, training.mode);
+        let learned = Regressor::train(&training.learner, &sample, training.seed, place);
+        regressors.push(learned.ok_or(TrainError::Singular(*axis))?);
+        outputs.push(output);
+    }
+    Ok((outputs, Weights { outputs: regressors }))
+}
+
+/// Inputs and targets of an output, in deviations.
+pub(crate) fn sample_of(rows: &[Row], output: &BranchOutput, mode: BranchMode) -> Sample {
+    let column = |input: &BranchInput| rows.iter().map(|r| scaled(input, &r.instant)).collect();
+    let targets = targets(rows, output.axis, mode);
+    Sample {
+        columns: output.inputs.iter().map(column).collect(),
+        targets: targets.iter().map(|target| target / output.scale).collect(),
+    }
+}
+
+/// What a branch is to answer.
+fn targets(rows: &[Row], axis: Axis, mode: BranchMode) -> Vec<f64> {
+    let place = [Axis::X, Axis::Y, Axis::N].iter().position(|a| *a == axis).unwrap_or_default();
+    let target = |row: &Row| match mode {
+        BranchMode::Parallel => row.measured[place] - row.instant.accelerations[place],
+        BranchMode::Convert | BranchMode::Serial => row.measured[place],
+    };
+    rows.iter().map(target).collect()
+}
+
+fn output(rows: &[Row], axis: Axis, signals: &[Signal], targets: &[f64]) -> BranchOutput {
+    let input = |signal: &Signal| {
+        let values: Vec<f64> = rows.iter().map(|row| value(*signal, &row.instant)).collect();
+        let (centre, scale) = centre_and_scale(&values);
+        BranchInput { signal: *signal, centre, scale }
+    };
+    let range =
+        targets.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+    let scale = centre_and_scale(targets).1;
+    BranchOutput { axis, inputs: signals.iter().map(input).collect(), scale, range }
+}

@@ -1,0 +1,161 @@
+//! The choice among what was tried, by errors on the same trials left out.
+//!
+//! What is compared is the logarithm of the mean error, whose differences are ratios of errors. Its
+//! scatter over the trials is told by the jackknife (Efron and Tibshirani 1993, An introduction to
+//! the bootstrap, Eq. 11.5).
+
+use std::collections::BTreeMap;
+
+use sistership_identification::refine::Weighed;
+
+use crate::thresholds::SEARCH;
+use sistership_assessment::uncertainty::student;
+
+/// Below this an error is no error: the logarithm of less would decide alone.
+const LEAST: f64 = 1e-9;
+
+/// The logarithm of a mean error, and the same with each trial left out.
+struct LogError {
+    all: f64,
+    without: Vec<f64>,
+}
+
+impl LogError {
+    fn of(each: &BTreeMap<String, f64>) -> Self {
+        let (sum, count) = (each.values().sum::<f64>(), each.len() as f64);
+        let without = |error: &f64| ((sum - error).max(0.0) / (count - 1.0)).max(LEAST).ln();
+        Self { all: (sum / count).max(LEAST).ln(), without: each.values().map(without).collect() }
+    }
+
+    /// Standard error of the difference to another; none where a single trial tells nothing of it.
+    fn standard_error(&self, other: &[f64]) -> Option<f64> {
+        let differences: Vec<f64> =
+            self.without.iter().zip(other).map(|(one, other)| one - other).collect();
+        let count = differences.len() as f64;
+        let mean = differences.iter().sum::<f64>() / count;
+        let squares = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
+        (differences.len() > 1).then(|| ((count - 1.0) / count * squares).sqrt())
+    }
+}
+
+/// Standard error of a mean error over its trials; none below two.
+pub fn standard_error(weighed: &Weighed) -> Option<f64> {
+    let zeros = vec![0.0; weighed.each.len()];
+    let relative = LogError::of(&weighed.each).standard_error(&zeros)?;
+    Some(relative * weighed.error?)
+}
+
+/// The place of what is taken: of all that is within one standard error of the least error, that
+/// with the least sum of its error and so many times ([`SEARCH`]`.elsewhere`) its variance where no
+/// trial reaches ([`Weighed`]`.variance`). A law with more coefficients than the trials hold, and a
+/// strength of the prior that does not hold them, are as good on trials like those that were
+/// sailed; elsewhere they scatter. The rule of one standard error (Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3) counts coefficients in this place, which
+/// says less where a prior holds them. What a population holds (`true`) is taken before all else
+/// unless the least error is less at a level of 95 %: what trials do not tell apart other ships do
+/// (docs/evidence/population.md). What is alike only because its own error scatters gives way to
+/// what is less in both, error and sum. `None` where every simulation diverged.
+pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
+    let (tried, held): (Vec<&Weighed>, Vec<bool>) = all.iter().copied().unzip();
+    let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
+    let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();
+    let logs: Vec<LogError> = tried.iter().map(|one| LogError::of(&one.each)).collect();
+    let least = |a: &usize, b: &usize| logs[*a].all.total_cmp(&logs[*b].all);
+    let best = sailed.iter().copied().min_by(least)?;
+    let alike = |place: &usize| {
+        let within = if held[*place] { student(logs[best].without.len().max(2) - 1) } else { 1.0 };
+        let scatter = logs[*place].standard_error(&logs[best].without);
+        let apart = logs[*place].all - logs[best].all;
+        *place == best || scatter.is_some_and(|scatter| apart < within * scatter)
+    };
+    let anywhere = |place: &usize| {
+        let variance = tried[*place].variance.unwrap_or(f64::INFINITY);
+        logs[*place].all.exp() + SEARCH.elsewhere * variance
+    };
+    let by_population_first = |a: &usize, b: &usize| held[*b].cmp(&held[*a]);
+    let first = |a: &usize, b: &usize| {
+        by_population_first(a, b).then(anywhere(a).total_cmp(&anywhere(b))).then(least(a, b))
+    };
+    let taken = sailed.iter().copied().filter(alike).min_by(first)?;
+    let is_less_in_both = |place: &usize| {
+        !held[taken] && least(place, &taken).is_lt() && anywhere(place) < anywhere(&taken)
+    };
+    sailed.into_iter().filter(is_less_in_both).min_by(first).or(Some(taken))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn entry(coefficients: usize, errors: &[f64]) -> Weighed {
+        let each = errors.iter().enumerate().map(|(k, error)| (k.to_string(), *error)).collect();
+        let error = Some(errors.iter().sum::<f64>() / errors.len() as f64);
+        let variance = Some(0.01 * coefficients as f64);
+        Weighed {
+            step: String::new(),
+            error,
+            shortest: error,
+            each,
+            variance,
+            coefficients,
+            ridge: None,
+            folds: Vec::new(),
+            reason: None,
+        }
+    }
+
+    fn choice(tried: &[Weighed]) -> Option<usize> {
+        chosen(&tried.iter().map(|one| (one, false)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn of_what_is_not_told_apart_a_population_is_taken_first() {
+        let steady = entry(0, &[1.0, 1.2, 0.9, 1.1]);
+        let alike = entry(20, &[0.5, 1.5, 0.6, 1.4]);
+        let better = entry(0, &[0.5, 0.7, 0.4, 0.6]);
+        assert_eq!(chosen(&[(&steady, false), (&alike, true)]), Some(1));
+        assert_eq!(chosen(&[(&better, false), (&steady, true)]), Some(0));
+    }
+
+    #[test]
+    fn a_population_is_told_apart_by_more_than_one_standard_error() {
+        let best = entry(0, &[1.0, 1.2, 0.9, 1.1]);
+        let apart = entry(0, &[1.3, 1.2, 0.8, 1.5]);
+        let differ = LogError::of(&apart.each).all - LogError::of(&best.each).all;
+        let scatter = LogError::of(&apart.each).standard_error(&LogError::of(&best.each).without);
+        let times = differ / scatter.unwrap();
+        assert!(times > 1.0 && times < student(3), "{times}");
+        assert_eq!(chosen(&[(&best, false), (&apart, false)]), Some(0));
+        assert_eq!(chosen(&[(&best, false), (&apart, true)]), Some(1));
+        let far = entry(0, &[2.2, 2.4, 1.8, 2.1]);
+        assert_eq!(chosen(&[(&best, false), (&far, true)]), Some(0));
+    }
+
+    #[test]
+    fn of_what_is_not_told_apart_the_steadiest_is_taken() {
+        let simple = entry(0, &[1.0, 1.2, 0.9, 1.1]);
+        let alike = entry(20, &[0.5, 1.5, 0.6, 1.4]);
+        let better = entry(20, &[0.5, 0.7, 0.4, 0.6]);
+        assert_eq!(choice(&[simple.clone(), alike]), Some(0));
+        assert_eq!(choice(&[simple, better]), Some(1));
+        assert_eq!(choice(&[Weighed { error: None, ..entry(0, &[1.0]) }]), None);
+    }
+
+    #[test]
+    fn what_scatters_is_not_taken_before_what_is_less_in_error_and_variance() {
+        let least = Weighed { variance: None, ..entry(0, &[0.018, 0.021, 0.02]) };
+        let scattered = entry(200, &[0.9, 0.001, 0.014]);
+        let steady = entry(1, &[0.03, 0.033, 0.031]);
+        assert_eq!(choice(&[least.clone(), scattered.clone()]), Some(1));
+        assert_eq!(choice(&[least, scattered, steady]), Some(2));
+    }
+
+    #[test]
+    fn standard_error_of_a_mean_of_like_errors_is_the_usual_one() {
+        let errors = [1.00, 1.02, 0.97, 1.01, 1.00, 0.99];
+        let mean = errors.iter().sum::<f64>() / 6.0;
+        let usual = (errors.iter().map(|e: &f64| (e - mean).powi(2)).sum::<f64>() / 30.0).sqrt();
+        assert!((standard_error(&entry(0, &errors)).unwrap() / usual - 1.0).abs() < 0.01);
+    }
+}

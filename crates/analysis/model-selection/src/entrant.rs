@@ -1,0 +1,162 @@
+//! What enters the search: sources with the laws that can be fitted to what was measured.
+
+use std::sync::Arc;
+
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::{Law, Model, Vessel, Zoo};
+
+use sistership_identification::refine::{Prior, Settings};
+use sistership_priors::transfer::{approach_of, blank};
+
+/// Laws that belong to no ship.
+const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
+
+/// The law that a population holds: the one that says most, without roll, of which few ships say
+/// anything.
+pub(super) const POPULATION_LAW: &str = "low-speed";
+
+/// A source, or none, with the law to be fitted.
+#[derive(Debug, Clone)]
+pub struct Entrant {
+    /// Where the fit starts; without coefficients where there is no source.
+    pub source: Model,
+    /// The law of the source; none where there is no source.
+    pub source_law: Option<Arc<Law>>,
+    /// The law to be fitted.
+    pub law: Arc<Law>,
+    /// What holds the coefficients.
+    pub held_by: HeldBy,
+}
+
+/// What holds the coefficients of an entrant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeldBy {
+    /// The source.
+    Source,
+    /// The estimate from the ship's particulars in its place ([`Prior::Mixture`] at its end).
+    Estimate,
+    /// What other ships say ([`Prior::Population`]).
+    Population,
+}
+
+impl Entrant {
+    /// What it is, for people.
+    pub fn name(&self) -> String {
+        let source = self.source_name().unwrap_or("no source");
+        format!("{source}, {}", self.law.name)
+    }
+
+    /// The source's name; none where the trials alone make the model.
+    pub fn source_name(&self) -> Option<&str> {
+        let name = match self.held_by {
+            HeldBy::Source => &self.source.name,
+            HeldBy::Estimate => "estimate",
+            HeldBy::Population => "population",
+        };
+        self.source_law.as_ref().map(|_| name)
+    }
+
+    /// Settings by which it is fitted.
+    pub fn settings(&self, settings: &Settings) -> Settings {
+        match self.held_by {
+            HeldBy::Source => settings.clone(),
+            HeldBy::Estimate => {
+                Settings { prior: Prior::Mixture, mixture_positions: vec![1.0], ..settings.clone() }
+            }
+            HeldBy::Population => Settings { prior: Prior::Population, ..settings.clone() },
+        }
+    }
+}
+
+/// What may hold coefficients beside a source.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside<'a> {
+    /// The estimate from the ship's particulars.
+    pub estimate: bool,
+    /// A population, at the states of this model's manoeuvres.
+    pub population: Option<&'a Model>,
+}
+
+/// Each source with its own law and the general ones, estimate and population with the general ones
+/// where they are asked for, and each general law without a source.
+pub fn entrants(
+    zoo: &Zoo,
+    target: &Vessel,
+    (sources, beside): (&[Model], Beside<'_>),
+    trials: &[&Trial],
+) -> Vec<Entrant> {
+    let general: Vec<Arc<Law>> = GENERAL
+        .iter()
+        .filter_map(|name| zoo.law(name).cloned())
+        .filter(|law| is_measured(law, trials))
+        .collect();
+    let with_source = sources.iter().flat_map(|source| of_source(zoo, source, &general, trials));
+    let approach = approach_of(trials);
+    let alone = general.iter().filter_map(|law| {
+        let source = blank(law, target, approach).ok()?;
+        let held_by = HeldBy::Source;
+        Some(Entrant { source, source_law: None, law: law.clone(), held_by })
+    });
+    // What an order names beside either is a source of another ship.
+    let others = || sources.iter().filter(|source| source.ship != target.name());
+    let estimated = others().take(usize::from(beside.estimate)).flat_map(|source| {
+        let entrants = of_source(zoo, source, &general, trials).into_iter();
+        let is_general = |one: &Entrant| GENERAL.contains(&one.law.name.as_str());
+        entrants.filter(is_general).map(|one| Entrant { held_by: HeldBy::Estimate, ..one })
+    });
+    let population = beside.population.into_iter().flat_map(|source| {
+        let entrants = of_source(zoo, source, &general, trials).into_iter();
+        let is_theirs = |one: &Entrant| one.law.name == POPULATION_LAW;
+        entrants.filter(is_theirs).map(|one| Entrant { held_by: HeldBy::Population, ..one })
+    });
+    with_source.chain(estimated).chain(population).chain(alone).collect()
+}
+
+fn of_source(zoo: &Zoo, source: &Model, general: &[Arc<Law>], trials: &[&Trial]) -> Vec<Entrant> {
+    let Some(own) = zoo.law(&source.law) else { return Vec::new() };
+    let others = general.iter().filter(|law| law.name != own.name);
+    let laws = std::iter::once(own).filter(|law| is_measured(law, trials)).chain(others);
+    let one = |law: &Arc<Law>| Entrant {
+        source: source.clone(),
+        source_law: Some(own.clone()),
+        law: law.clone(),
+        held_by: HeldBy::Source,
+    };
+    laws.map(one).collect()
+}
+
+/// Whether roll was recorded throughout where a law has it.
+fn is_measured(law: &Law, trials: &[&Trial]) -> bool {
+    !law.has_roll() || trials.iter().all(|trial| trial.channel(Channel::Phi).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn estimate_and_population_enter_beside_a_source_of_another_ship() {
+        let zoo = Zoo::embedded().unwrap();
+        let target = zoo.vessel("kcs").unwrap();
+        let models = ["kcs", "mariner"].map(|name| zoo.model(name).unwrap());
+        let beside = Beside { estimate: true, population: Some(&models[1]) };
+        let held = |sources: &[Model], beside, by| {
+            let all = entrants(&zoo, target, (sources, beside), &[]);
+            all.into_iter().filter(|one| one.held_by == by).collect::<Vec<_>>()
+        };
+        for by in [HeldBy::Estimate, HeldBy::Population] {
+            assert!(held(&models, Beside::default(), by).is_empty());
+            let found = held(&models, beside, by);
+            assert!(!found.is_empty() && found.iter().all(|one| one.source.ship == "mariner"));
+        }
+        assert!(held(&models[..1], beside, HeldBy::Estimate).is_empty());
+        let estimate = &held(&models, beside, HeldBy::Estimate)[0];
+        assert!(estimate.name().starts_with("estimate, "), "{}", estimate.name());
+        let settings = estimate.settings(&Settings::default());
+        assert_eq!((settings.prior, settings.mixture_positions), (Prior::Mixture, vec![1.0]));
+        let population = held(&models, beside, HeldBy::Population);
+        assert_eq!(population.iter().map(|one| &*one.law.name).collect::<Vec<_>>(), ["low-speed"]);
+        assert_eq!(population[0].settings(&Settings::default()).prior, Prior::Population);
+    }
+}

@@ -1,0 +1,72 @@
+//! The ships of which a population is made.
+
+use sistership_identification::refine::Member;
+use sistership_model::vessel::Status;
+use sistership_model::{Model, Vessel, Zoo};
+use sistership_priors::similarity::RankedSource;
+use sistership_priors::source::{Similarity, similar};
+
+use crate::entrant::POPULATION_LAW;
+use crate::thresholds::SEARCH;
+
+/// Other ships of the zoo with their published models, by rank of similarity, whatever their
+/// category. Estimates from particulars say what their formulas have in common, not what ships
+/// have; refined models are left out because what one ship's trials say is no part of another's
+/// provenance unless it is its source.
+pub fn population(zoo: &Zoo, target: &Vessel) -> Vec<Member> {
+    let ranking = similar(zoo, target, None, &[]).ranking;
+    let others = ranking.iter().filter(|ranked| ranked.ship != target.name());
+    let models = others.filter_map(|ranked| published(zoo, zoo.vessel(&ranked.ship)?));
+    let member = |model: Model| Some(Member { law: zoo.law(&model.law)?.clone(), model });
+    models.filter_map(member).take(SEARCH.population).collect()
+}
+
+/// The ship of a population at the states of whose manoeuvres all are asked: the first that is
+/// eligible as a source, else the most similar one. It must not be of the law that the population
+/// holds. It does not depend on what else might be a source: at the states of a poor model a
+/// population says something else.
+pub fn asked_at<'a>(population: &'a [Member], similarity: &Similarity) -> Option<&'a Model> {
+    let across = || population.iter().map(|of| &of.model).filter(|of| of.law != POPULATION_LAW);
+    let eligible = |ranked: &RankedSource| across().find(|of| of.ship == ranked.ship);
+    similarity.eligible().find_map(eligible).or_else(|| across().next())
+}
+
+fn published(zoo: &Zoo, vessel: &Vessel) -> Option<Model> {
+    let measured = vessel.file.models.iter().find(|model| model.status == Status::Published)?;
+    zoo.published(vessel, Some(&measured.name)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::collections::BTreeMap;
+
+    use sistership_priors::source::similar_with;
+
+    use super::*;
+
+    #[test]
+    fn a_population_is_of_published_models_of_other_ships() {
+        let zoo = Zoo::embedded().unwrap();
+        let all = population(&zoo, zoo.vessel("kcs").unwrap());
+        assert!(all.iter().all(|of| of.model.status == Status::Published));
+        let has = |ship: &str| all.iter().any(|of| of.model.ship == ship);
+        assert!(has("mariner") && !has("kcs"));
+        assert!(!has("seiun-maru"), "an estimate from particulars");
+    }
+
+    #[test]
+    fn all_are_asked_at_the_states_of_an_eligible_member_of_another_law() {
+        let zoo = Zoo::embedded().unwrap();
+        for ship in ["kvlcc2", "kcs", "mariner"] {
+            let target = zoo.vessel(ship).unwrap();
+            let all = population(&zoo, target);
+            let similarity = similar_with(&zoo, target, None, &[], &BTreeMap::new());
+            let at = asked_at(&all, &similarity).unwrap();
+            assert!(at.law != POPULATION_LAW && at.status == Status::Published);
+            assert!(similarity.eligible().any(|ranked| ranked.ship == at.ship), "{ship}");
+            let ineligible = Similarity { ranking: Vec::new(), ..similarity };
+            assert_eq!(asked_at(&all, &ineligible).unwrap().name, all[0].model.name);
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! What is taken of all that was tried: the choice that also sails the standard manoeuvres.
+
+use sistership_model::Law;
+
+use sistership_identification::refine::{
+    FoldModel, Progress, RefineError, Refinement, Settings, SourceEnvelopes, refine,
+};
+
+use crate::choice::standard_error;
+use crate::entrant::HeldBy;
+use crate::ladder::{Ladder, Line, Rung};
+use crate::sailed::unsailed_rudder;
+use crate::thresholds::SEARCH;
+use crate::tried::{
+    Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on, weighed_on,
+};
+
+/// What was taken, and how it is refined explicitly.
+#[derive(Debug, Clone)]
+pub struct Winner {
+    /// Its place among the entrants.
+    pub entrant: usize,
+    /// Settings that name its method.
+    pub settings: Settings,
+    /// What was tried.
+    pub ladder: Ladder,
+    /// The refinement that naming all of it gives.
+    pub refinement: Refinement,
+    /// The models of its folds.
+    pub folds: Vec<FoldModel>,
+}
+
+/// Refines the choice by its own settings. Where nothing that was fitted can be taken then, for no
+/// such model keeps the constraints and sails the standard manoeuvres, it is out, and the next
+/// choice is refined: the source as it is, or a law without coefficients, is not what was chosen.
+/// So it is where the model leaves the physical range under rudders at random, as long as another
+/// choice does not.
+///
+/// # Errors
+/// It was cancelled, a setting is refused, or nothing is left.
+pub(super) fn taken(
+    search: &Search<'_>,
+    mut tried: Vec<Tried>,
+    progress: Progress<'_>,
+) -> Result<Winner, RefineError> {
+    let mut spare = None;
+    loop {
+        let Some(best) = chosen_of(search, &tried) else {
+            return spare.ok_or_else(|| nothing_left(&tried));
+        };
+        let settings = settings_that_give(search, &tried, best);
+        let entrant = tried[best].entrant;
+        let made = match tried[best].refinement.take() {
+            Some(made) => Ok(made),
+            None => refined(search, (entrant, &settings), progress),
+        };
+        let reason = match fitted(made, tried[best].rung)? {
+            Err(reason) => reason,
+            Ok(refinement) => {
+                let law = &search.entrants[entrant].law;
+                let unsailed = unsailed_rudder(&refinement.model, law, &search.fitted());
+                let ladder = ladder(search, &tried, best);
+                let folds = tried[best].weighed.folds.clone();
+                let winner = Winner { entrant, settings, ladder, refinement, folds };
+                let Some(reason) = unsailed else { return Ok(winner) };
+                spare.get_or_insert(winner);
+                reason
+            }
+        };
+        tried[best].refusal = Some(reason);
+        tried.extend(held_more(search, &tried[best], progress)?);
+    }
+}
+
+/// The weak form of an entrant whose choice cannot be taken, by a stronger prior: nearer to what it
+/// began with. None of another rung, or where no strength is left.
+fn held_more(
+    search: &Search<'_>,
+    refused: &Tried,
+    progress: Progress<'_>,
+) -> Result<Option<Tried>, RefineError> {
+    let is_weak = refused.rung == Rung::Weak && search.settings.strengths.is_empty();
+    let Some((family, lambda)) = refused.weighed.ridge.filter(|_| is_weak) else {
+        return Ok(None);
+    };
+    let strengths: Vec<f64> = SEARCH.stronger.iter().map(|factor| factor * lambda).collect();
+    let strongest = SEARCH.strengths.iter().copied().fold(0.0, f64::max);
+    if strengths[0] > strongest {
+        return Ok(None);
+    }
+    let entrant = refused.entrant;
+    let own = search.entrants[entrant].settings(search.settings);
+    let roll_strength = stronger_roll(&search.entrants[entrant].law, refused.roll_strength);
+    let settings = Settings { families: vec![family], strengths, roll_strength, ..own };
+    let named = search.entrants[entrant].name();
+    let told = |_: f64, what: &str| progress(0.9, &format!("{named}, held more: {what}"));
+    let known = SourceEnvelopes::default();
+    weighed_on((search, &known), (entrant, Rung::Weak), &settings, &told).map(Some)
+}
+
+/// The strength of roll's own prior after a refusal: it is the likeliest by the trials whatever the
+/// common one is, and a ship that capsizes does so by what the trials say of her roll.
+fn stronger_roll(law: &Law, before: Option<f64>) -> Option<f64> {
+    law.has_roll().then(|| SEARCH.roll_stronger * before.unwrap_or(1.0))
+}
+
+fn nothing_left(tried: &[Tried]) -> RefineError {
+    let reason = |one: &'_ Tried| one.refusal.clone().or_else(|| one.weighed.reason.clone());
+    let reasons: Vec<String> = tried.iter().filter_map(reason).collect();
+    RefineError::diverged(reasons.iter().map(String::as_str))
+}
+
+/// Settings that name a rung's method, and of a weak form or of what trajectories begin with the
+/// strength.
+fn settings_that_give(search: &Search<'_>, tried: &[Tried], place: usize) -> Settings {
+    let (entrant, rung) = (tried[place].entrant, tried[place].rung);
+    let own = search.entrants[entrant].settings(search.settings);
+    if rung == Rung::Weak {
+        let own = Settings { roll_strength: tried[place].roll_strength, ..own };
+        return settings_of(&own, tried[place].weighed.ridge);
+    }
+    let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
+    settings_on(&own, rung, ridge_of(&tried[..below], entrant))
+}
+
+fn refined(
+    search: &Search<'_>,
+    (entrant, settings): (usize, &Settings),
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
+    let named = search.entrants[entrant].name();
+    let told =
+        |fraction: f64, what: &str| progress(0.9 + 0.1 * fraction, &format!("{named}: {what}"));
+    refine(&request(search, entrant, settings), &told)
+}
+
+/// A refinement with something fitted in it, or why there is none; of a source as carried over
+/// nothing else is asked.
+fn fitted(
+    made: Result<Refinement, RefineError>,
+    rung: Rung,
+) -> Result<Result<Refinement, String>, RefineError> {
+    match made {
+        Ok(made) if rung != Rung::CarriedOver && made.is_source_kept() => Ok(Err(made.refusals())),
+        Ok(made) => Ok(Ok(made)),
+        Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
+        Err(error) => Ok(Err(error.to_string())),
+    }
+}
+
+fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
+    let left = tried.iter().filter(|one| one.refusal.is_none());
+    let least = left.filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
+    let reference = reference(search, tried);
+    let lines = tried.iter().enumerate();
+    let line =
+        |(k, one)| Line { reference: reference == Some(k), ..line(search, one, least, k == best) };
+    Ladder { lines: lines.map(line).collect(), branch: None }
+}
+
+/// The place of the reference as it was first fitted.
+fn reference(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
+    let entrant = search.reference()?;
+    tried.iter().position(|one| one.entrant == entrant && one.rung == Rung::Weak)
+}
+
+fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
+    let entrant = &search.entrants[tried.entrant];
+    let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
+    let outcome = match chosen {
+        true if entrant.held_by == HeldBy::Population => {
+            "of what is alike, what other ships hold".to_owned()
+        }
+        true => "of what is alike, the least with five times its variance elsewhere".to_owned(),
+        false => format!("{ratio:.2} times the least error"),
+    };
+    let reason = tried.refusal.clone().or_else(|| tried.weighed.reason.clone());
+    Line {
+        source: entrant.source_name().map(str::to_owned),
+        law: entrant.law.name.clone(),
+        rung: tried.rung,
+        coefficients: tried.weighed.coefficients,
+        error: tried.weighed.error,
+        standard_error: standard_error(&tried.weighed),
+        variance: tried.weighed.variance.filter(|variance| variance.is_finite()),
+        cost_s: tried.cost_s,
+        chosen,
+        reference: false,
+        reason: reason.unwrap_or(outcome),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::entrant::Entrant;
+    use sistership_identification::refine::{Family, Method, Request, Weighed};
+    use sistership_identification::testing::{mariner, trials, with};
+    use sistership_model::Zoo;
+
+    #[test]
+    fn a_source_that_is_kept_is_not_what_was_chosen() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let trials = trials(&model, &law, 0.0);
+        let trials: Vec<_> = trials.iter().collect();
+        let settings = Settings { method: Method::Weak, ..Settings::default() };
+        let request = Request {
+            target: zoo.vessel("mariner").unwrap(),
+            source: &model,
+            source_law: None,
+            law: &law,
+            trials: &trials,
+            population: &[],
+            settings: &settings,
+        };
+        let made = refine(&request, &|_, _| true).unwrap();
+        assert!(made.is_source_kept(), "the trials are the source's own");
+        assert!(fitted(Ok(made.clone()), Rung::Weak).unwrap().is_err());
+        assert_eq!(fitted(Ok(made.clone()), Rung::CarriedOver).unwrap(), Ok(made));
+        assert!(fitted(Err(RefineError::Cancelled), Rung::Weak).is_err());
+    }
+
+    #[test]
+    fn the_reference_keeps_its_error_where_it_is_refused() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let source_law = Some(law.clone());
+        let alone = Entrant {
+            source: model.clone(),
+            source_law: None,
+            law: law.clone(),
+            held_by: HeldBy::Source,
+        };
+        let similar = Entrant { source: model, source_law, law, held_by: HeldBy::Source };
+        let search = Search {
+            target: zoo.vessel("mariner").unwrap(),
+            entrants: &[alone, similar],
+            trials: &[],
+            population: &[],
+            settings: &Settings::default(),
+        };
+        let tried = |entrant, error, refusal: Option<&str>| Tried {
+            entrant,
+            rung: Rung::Weak,
+            weighed: Weighed {
+                error: Some(error),
+                reason: None,
+                ..Weighed::refused(String::new())
+            },
+            refinement: None,
+            cost_s: 0.0,
+            roll_strength: None,
+            refusal: refusal.map(str::to_owned),
+        };
+        let all = [tried(0, 0.2, None), tried(1, 0.1, Some("does not sail"))];
+        let ladder = ladder(&search, &all, 0);
+        let line = &ladder.lines[1];
+        assert!(line.reference && !line.chosen && !ladder.lines[0].reference);
+        assert_eq!((line.error, line.reason.as_str()), (Some(0.1), "does not sail"));
+        assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("of"), "chosen");
+        let words = ladder.reference();
+        assert!(words.contains("mariner/") && words.contains("0.50 times"), "{words}");
+    }
+
+    #[test]
+    fn roll_is_held_more_with_every_refusal() {
+        let zoo = Zoo::embedded().unwrap();
+        let law = |name: &str| zoo.law(name).unwrap();
+        assert_eq!(stronger_roll(law("abkowitz"), None), None);
+        let once = stronger_roll(law("abkowitz-roll"), None);
+        let twice = stronger_roll(law("abkowitz-roll"), once);
+        assert_eq!((once, twice), (Some(10.0), Some(100.0)));
+    }
+
+    #[test]
+    fn what_cannot_be_taken_is_tried_nearer_to_its_source() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
+        let trials: Vec<_> = trials.iter().collect();
+        let entrant =
+            Entrant { source: model, source_law: Some(law.clone()), law, held_by: HeldBy::Source };
+        let search = Search {
+            target: zoo.vessel("mariner").unwrap(),
+            entrants: &[entrant],
+            trials: &trials,
+            population: &[],
+            settings: &Settings::default(),
+        };
+        let refused = |rung, lambda| {
+            let ridge = Some((Family::Own, lambda));
+            let weighed = Weighed { ridge, ..Weighed::refused(String::new()) };
+            let (refinement, roll_strength) = (None, None);
+            let refusal = Some("does not sail".to_owned());
+            Tried { entrant: 0, rung, weighed, refinement, cost_s: 0.0, roll_strength, refusal }
+        };
+        let again = |rung, lambda| {
+            let refused = refused(rung, lambda);
+            held_more(&search, &refused, &|_, _| true).unwrap()
+        };
+        let nearer = again(Rung::Weak, 1e-6).unwrap();
+        assert!(nearer.rung == Rung::Weak && nearer.weighed.error.is_some());
+        assert!(nearer.weighed.ridge.unwrap().1 > 3e-6);
+        assert!(again(Rung::Weak, 10.0).is_none(), "no strength is left");
+        assert!(again(Rung::Trajectory, 1e-6).is_none());
+    }
+}

@@ -1,0 +1,45 @@
+//! Parameters of a law that neither particulars nor source give, by a published estimate.
+//!
+//! The law `low-speed` has formulas for mass, inertia and added masses of any ship: a radius of
+//! gyration of a quarter of the length, a twentieth of the mass added in surge, and Clarke, Gedling
+//! and Hine (1983) for sway and yaw. A parameter of another law that has its name and meaning
+//! follows from the same.
+
+use std::sync::LazyLock;
+
+use sistership_model::Vessel;
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+
+static ESTIMATES: LazyLock<Option<Law>> = LazyLock::new(|| {
+    Law::parse("low-speed", include_str!("../../../../models/laws/low-speed.yaml")).ok()
+});
+
+/// An estimate of a law's parameter, labelled as one.
+pub(crate) fn estimated(law: &Law, name: &str, target: &Vessel) -> Option<Quantity> {
+    let estimates = ESTIMATES.as_ref()?;
+    let (wanted, known) = (law.parameters.get(name)?, estimates.parameters.get(name)?);
+    let is_same = known.dimension == wanted.dimension && known.meaning.starts_with(&wanted.meaning);
+    let value = estimates.derived_parameter(name, &target.particulars).filter(|_| is_same)?;
+    Some(Quantity::new(value, "estimated: Clarke et al. 1983, as in the law low-speed"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn added_masses_of_another_law_are_estimated_near_those_published() {
+        let zoo = Zoo::embedded().unwrap();
+        let (mariner, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let published = zoo.model("mariner/abkowitz").unwrap();
+        for name in ["X_udot", "Y_vdot", "N_rdot"] {
+            let estimate = estimated(law, name, mariner).unwrap().value;
+            let ratio = estimate / published.parameters[name].value;
+            assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}");
+        }
+        assert!(estimated(law, "U0", mariner).is_none());
+    }
+}

@@ -1,0 +1,186 @@
+//! Bands on the standard manoeuvres of an estimate.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use sistership_assessment::uncertainty::{Band, bands_over};
+use sistership_model::Model;
+use sistership_model::law::Law;
+use sistership_simulation::manoeuvre::{
+    Manoeuvre, ManoeuvreSettings, Sailed, StandardManoeuvres, Turn, Zigzag, sail_together,
+};
+use sistership_simulation::metrics::{criteria, initial_turning_distance};
+use sistership_simulation::{Ship, Stopped};
+
+use crate::estimates::draws::Draws;
+use crate::estimates::estimate::Estimate;
+use crate::estimates::limits;
+
+/// Sets of parameters and particulars that are drawn; each is a ship of its own.
+const SHIPS: usize = 8;
+/// Sets of coefficients that are drawn for each; they sail in lockstep.
+const SISTERS: usize = 8;
+/// A step, in the time that the ship takes for its length: draws need no more.
+const STEP_LENGTHS: f64 = 0.1;
+/// How long a hard turn is sailed, ship lengths: beyond half a circle until it is steady.
+const TURN_LENGTHS: f64 = 25.0;
+/// How long the heading may take to its first 10 deg, ship lengths.
+const INITIAL_LENGTHS: f64 = 6.0;
+const HARD_DEG: f64 = 35.0;
+const INITIAL_DEG: f64 = 10.0;
+const ZIGZAGS_DEG: [f64; 2] = [10.0, 20.0];
+
+/// The estimate's own manoeuvres, and the bands about them. All to starboard: an estimate is the
+/// same on both sides.
+#[derive(Debug, Clone, Serialize)]
+pub struct EstimateBands {
+    /// By the means.
+    pub manoeuvres: StandardManoeuvres,
+    /// Models that were drawn.
+    pub draws: usize,
+    /// Those that left the physical range in some manoeuvre.
+    pub failed: usize,
+    /// By figure: 95 % of the draws that reached it are inside.
+    pub figures: Vec<Band>,
+}
+
+/// Sails the standard manoeuvres by the estimate and by draws around it; the same seed gives the
+/// same bands. None where the law does not fit.
+pub fn estimate_bands(estimate: &Estimate, law: &Law, seed: u64) -> Option<EstimateBands> {
+    let lots = lots(estimate, seed);
+    let sailed: Vec<Vec<StandardManoeuvres>> =
+        lots.par_iter().map(|lot| sailed(lot, law)).collect::<Option<_>>()?;
+    let mut sailed = sailed.into_iter();
+    let own = sailed.next()?.into_iter().next()?;
+    let drawn: Vec<StandardManoeuvres> = sailed.flatten().collect();
+    Some(EstimateBands {
+        manoeuvres: own,
+        draws: drawn.len(),
+        failed: drawn.iter().filter(|one| !one.failures.is_empty()).count(),
+        figures: bands_over(drawn),
+    })
+}
+
+/// Models that differ in their coefficients alone; the first lot is the estimate.
+fn lots(estimate: &Estimate, seed: u64) -> Vec<Vec<Model>> {
+    let mut around = Draws::new(&estimate.around_covariance, seed);
+    let mut coefficients = Draws::new(&estimate.coefficients_covariance, seed ^ 0x9e37_79b9);
+    let mut lots = vec![vec![estimate.model.clone()]];
+    for _ in 0..SHIPS {
+        let moved: Vec<f64> = estimate
+            .around
+            .iter()
+            .zip(around.next())
+            .map(|(one, by)| limits::parameter(&one.name, one.mean + by))
+            .collect();
+        let ship = estimate.moved(&within_particulars(estimate, &moved));
+        let Ok(ship) = estimate.balanced(ship) else { continue };
+        let sister = |_| drawn(estimate, &ship, &coefficients.next());
+        lots.push((0..SISTERS).map(sister).collect());
+    }
+    lots
+}
+
+/// Particulars may not change their sign or grow beyond twice themselves.
+fn within_particulars(estimate: &Estimate, moved: &[f64]) -> Vec<f64> {
+    let one = |(one, value): (&crate::estimates::combined::Combined, &f64)| {
+        if one.name.ends_with("_m") && one.name != "x_g_m"
+            || one.name.ends_with("_m2")
+            || one.name.ends_with("_ratio")
+            || one.name == "f_alpha"
+        {
+            value.clamp(0.5 * one.mean, 2.0 * one.mean)
+        } else {
+            *value
+        }
+    };
+    estimate.around.iter().zip(moved).map(one).collect()
+}
+
+fn drawn(estimate: &Estimate, ship: &Model, moved: &[f64]) -> Model {
+    let mut model = Model { posterior: None, ..ship.clone() };
+    for (one, by) in estimate.coefficients.iter().zip(moved) {
+        if let Some(quantity) = model.coefficients.get_mut(&one.name) {
+            quantity.value = limits::coefficient(&one.name, one.mean + by, one.mean);
+        }
+    }
+    model
+}
+
+fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
+    let ship = Ship::sisters(lot.first()?, law).ok()?;
+    let sisters: Vec<Vec<f64>> =
+        lot.iter().map(|model| ship.sister(model)).collect::<Option<_>>()?;
+    let mut all = vec![StandardManoeuvres::default(); lot.len()];
+    let turn = Manoeuvre::Turn { rudder: HARD_DEG };
+    for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, &[turn], Some(TURN_LENGTHS))) {
+        let turn = sailed.and_then(|sailed| Turn::of(sailed, HARD_DEG));
+        note(one, turn.map(|turn| turn.metrics), turn_name, |all, turn| all.turns.push(turn));
+    }
+    // Both angles at once: those that have checked early give their lanes to others.
+    let zigzag = |angle: f64| Manoeuvre::Zigzag { rudder: angle, switch: angle };
+    let mut zigzags = run(&ship, &sisters, &ZIGZAGS_DEG.map(zigzag), None).into_iter();
+    for angle in ZIGZAGS_DEG {
+        for (one, sailed) in all.iter_mut().zip(zigzags.by_ref()) {
+            let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, angle, angle));
+            let name = || zigzag_name(angle);
+            note(one, zigzag.map(|zigzag| zigzag.metrics), name, |all, zigzag| {
+                all.zigzags.push(zigzag);
+            });
+        }
+    }
+    let initial = Manoeuvre::Turn { rudder: INITIAL_DEG };
+    for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, &[initial], Some(INITIAL_LENGTHS)))
+    {
+        one.initial_turning_m = sailed
+            .ok()
+            .and_then(|sailed| initial_turning_distance(&sailed.after, INITIAL_DEG, INITIAL_DEG));
+    }
+    for one in &mut all {
+        let speed = ship.approach_speed_m_s();
+        one.imo = criteria(ship.lpp_m(), speed, &one.turns, &one.zigzags, one.initial_turning_m);
+    }
+    Some(all)
+}
+
+fn turn_name() -> String {
+    Manoeuvre::Turn { rudder: HARD_DEG }.to_string()
+}
+
+fn zigzag_name(angle: f64) -> String {
+    Manoeuvre::Zigzag { rudder: angle, switch: angle }.to_string()
+}
+
+/// Sails manoeuvres one after the other, each by every sister; as long as so many lengths take, or
+/// until all is seen.
+fn run(
+    ship: &Ship,
+    sisters: &[Vec<f64>],
+    manoeuvres: &[Manoeuvre],
+    lengths: Option<f64>,
+) -> Vec<Result<Sailed, Stopped>> {
+    let length_s = ship.lpp_m() / ship.approach_speed_m_s();
+    let settings = ManoeuvreSettings {
+        step_s: Some(STEP_LENGTHS * length_s),
+        duration_s: lengths.map(|lengths| lengths * length_s),
+        reversals_within_steps: true,
+        ..ManoeuvreSettings::default()
+    };
+    let by_all = |manoeuvre: &Manoeuvre| {
+        let manoeuvre = *manoeuvre;
+        sisters.iter().map(move |sister| (manoeuvre, sister.as_slice()))
+    };
+    let all: Vec<(Manoeuvre, &[f64])> = manoeuvres.iter().flat_map(by_all).collect();
+    sail_together(ship, &all, &settings)
+}
+
+fn note<T>(
+    all: &mut StandardManoeuvres,
+    sailed: Result<T, Stopped>,
+    name: impl Fn() -> String,
+    keep: impl Fn(&mut StandardManoeuvres, T),
+) {
+    match sailed {
+        Ok(metrics) => keep(all, metrics),
+        Err(stopped) => all.failures.push(format!("{}: {stopped}", name())),
+    }
+}

@@ -1,0 +1,110 @@
+//! Several regressions for one value: a mixture, and its mean and covariance.
+//!
+//! Each regression says a value with a scatter. The mixture weights them by the inverse of their
+//! variances; its variance is the mean variance within the regressions and the variance between
+//! them (law of total variance), and what lies between them is shared by all values of a
+//! regression, so that their covariance follows.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use crate::estimates::regression::Given;
+
+/// Share of the mixture's variance that is taken. The scatter of each regression against four hulls
+/// has its bias in it, which the variance between regressions counts again, and values of one ship
+/// are not off independently. Chosen so that the bands hold what ships of the zoo do as often as
+/// they should (docs/evidence/estimates.md).
+pub const SPREAD: f64 = 0.35;
+
+/// One value of the mixture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Combined {
+    /// What is estimated.
+    pub name: String,
+    /// What each regression gives.
+    pub given: Vec<Given>,
+    /// The mean.
+    pub mean: f64,
+    /// Variance within the regressions.
+    pub within: f64,
+}
+
+impl Combined {
+    /// Combines what regressions give; none where there is nothing.
+    pub fn of(name: &str, given: Vec<Given>) -> Option<Self> {
+        let weights = weights(&given);
+        let total: f64 = weights.iter().sum();
+        if given.is_empty() || total <= 0.0 || total.is_nan() {
+            return None;
+        }
+        let mean = given.iter().zip(&weights).map(|(one, w)| w * one.value).sum::<f64>() / total;
+        let within =
+            given.iter().zip(&weights).map(|(one, w)| w * one.scatter.powi(2)).sum::<f64>() / total;
+        Some(Self { name: name.to_owned(), given, mean, within })
+    }
+
+    /// The regression that weighs most.
+    pub fn leading(&self) -> Option<&Given> {
+        self.given.iter().min_by(|a, b| a.scatter.total_cmp(&b.scatter))
+    }
+
+    /// How far each regression is from the mean, times the root of its weight.
+    fn deviations(&self) -> BTreeMap<&str, f64> {
+        let weights = weights(&self.given);
+        let total: f64 = weights.iter().sum();
+        let mut deviations = BTreeMap::new();
+        for (given, weight) in self.given.iter().zip(&weights) {
+            let deviation = (weight / total).sqrt() * (given.value - self.mean);
+            deviations.insert(given.regression.as_str(), deviation);
+        }
+        deviations
+    }
+}
+
+fn weights(given: &[Given]) -> Vec<f64> {
+    given.iter().map(|one| one.scatter.max(1e-12).powi(-2)).collect()
+}
+
+/// The covariance of values, in their order.
+pub fn covariance(values: &[Combined]) -> DMatrix<f64> {
+    let deviations: Vec<BTreeMap<&str, f64>> = values.iter().map(Combined::deviations).collect();
+    DMatrix::from_fn(values.len(), values.len(), |i, j| {
+        let between: f64 = deviations[i]
+            .iter()
+            .filter_map(|(name, a)| deviations[j].get(name).map(|b| a * b))
+            .sum();
+        SPREAD * (between + if i == j { values[i].within } else { 0.0 })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn given(regression: &str, value: f64, scatter: f64) -> Given {
+        Given { regression: regression.into(), value, scatter }
+    }
+
+    #[test]
+    fn mean_and_variance_are_those_of_the_mixture() {
+        let two = Combined::of("Y_v", vec![given("a", -0.3, 0.1), given("b", -0.2, 0.1)]).unwrap();
+        assert!((two.mean + 0.25).abs() < 1e-12);
+        assert!((covariance(&[two])[(0, 0)] - SPREAD * (0.01 + 0.0025)).abs() < 1e-12);
+        let sure =
+            Combined::of("Y_v", vec![given("a", -0.3, 0.1), given("b", -0.2, 0.01)]).unwrap();
+        assert!((sure.mean + 0.201).abs() < 1e-3 && sure.leading().unwrap().regression == "b");
+        assert_eq!(Combined::of("Y_v", Vec::new()), None);
+    }
+
+    #[test]
+    fn values_of_the_same_regressions_go_together() {
+        let of =
+            |name, a, b| Combined::of(name, vec![given("a", a, 0.1), given("b", b, 0.1)]).unwrap();
+        let pair = [of("Y_v", -0.3, -0.2), of("N_v", -0.12, -0.10)];
+        let together = covariance(&pair);
+        assert!((together[(0, 1)] - SPREAD * 0.05 * 0.01).abs() < 1e-12, "{together}");
+        assert!(together.cholesky().is_some());
+    }
+}

@@ -1,0 +1,395 @@
+//! The estimate of a ship: a model of the law `mmg`, and how far it may be off.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::estimated_particulars::ESTIMATED;
+use sistership_model::law::Law;
+use sistership_model::model::{DERIVED, ModelKind};
+use sistership_model::particulars::Particulars;
+use sistership_model::posterior::Posterior;
+use sistership_model::quantity::Quantity;
+use sistership_model::source::Source;
+use sistership_model::vessel::{Status, Steering};
+use sistership_model::{Model, Vessel};
+
+use crate::estimates::LAW;
+use crate::estimates::balance::Straight;
+use crate::estimates::combined::{Combined, covariance};
+use crate::estimates::error::EstimateError;
+use crate::estimates::inputs::Inputs;
+use crate::estimates::library::Library;
+use crate::estimates::limits;
+use crate::estimates::particulars::complete_particulars;
+use crate::estimates::propeller::Thrust;
+
+/// Particulars that regressions replace where the ship does not state them.
+const REPLACED: [&str; 6] = [
+    "rudder_area_m2",
+    "rudder_height_m",
+    "propeller_diameter_m",
+    "x_g_m",
+    "yaw_gyradius_ratio",
+    "propeller_pitch_ratio",
+];
+/// The particular that follows from the speed where nothing gives it.
+const FULLNESS: &str = "block_coefficient";
+/// What other formulas need.
+const FIRST: [&str; 5] = ["m_x", "m_y", "J_z", "w_P0", "t_P"];
+const PARAMETERS: [&str; 12] = [
+    "C_1", "C_2", "x_P", "x_R", "t_R", "a_H", "x_H", "gamma_R", "l_R", "epsilon", "kappa",
+    "f_alpha",
+];
+const COEFFICIENTS: [&str; 17] = [
+    "X_0", "X_vv", "X_vr", "X_rr", "X_vvvv", "Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr",
+    "N_v", "N_r", "N_vvv", "N_vvr", "N_vrr", "N_rrr",
+];
+/// Source key of what is chosen so that thrust and resistance balance.
+const BALANCE: &str = "thrust-balance";
+
+/// How far one value may be off, and which regressions give it.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Spread {
+    /// Coefficient, parameter or particular.
+    pub name: String,
+    /// Its estimate.
+    pub mean: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+    /// What each regression gives.
+    pub given: BTreeMap<String, f64>,
+}
+
+/// A ship's estimate.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// Labelled estimated; its posterior is of the coefficients.
+    pub model: Model,
+    /// Particulars that the ship does not state, then parameters.
+    pub(crate) around: Vec<Combined>,
+    pub(crate) around_covariance: DMatrix<f64>,
+    pub(crate) coefficients: Vec<Combined>,
+    pub(crate) coefficients_covariance: DMatrix<f64>,
+    pub(crate) thrust: ThrustCurve,
+}
+
+/// The thrust of a propeller by its pitch.
+#[derive(Debug, Clone)]
+pub(crate) struct ThrustCurve {
+    series: crate::estimates::propeller::PropellerSeries,
+    blades: Option<f64>,
+}
+
+impl ThrustCurve {
+    pub(crate) fn at(&self, pitch_ratio: f64) -> Thrust {
+        self.series.thrust(pitch_ratio.clamp(0.4, 1.4), self.blades)
+    }
+}
+
+/// Estimates a ship at a speed.
+///
+/// # Errors
+/// Names the particulars that are missing.
+pub fn estimate(
+    library: &Library,
+    vessel: &Vessel,
+    law: &Law,
+    speed_m_s: f64,
+) -> Result<Estimate, EstimateError> {
+    let ship = vessel.name();
+    let mut particulars = vessel.particulars.clone();
+    complete_particulars(&mut particulars, [FULLNESS]);
+    let at = |particulars: &Particulars| regress(library, ship, particulars, speed_m_s);
+    let Regressed { around, coefficients, blades } = at(&particulars)?;
+    let [by_around, by_coefficients] = fullness_effect(&particulars, &at)?;
+    let spread = |values: &[Combined], effect: &DVector<f64>| {
+        covariance(values) + effect * effect.transpose()
+    };
+    let mut estimate = Estimate {
+        model: empty(library, vessel, speed_m_s),
+        around_covariance: spread(&around, &by_around),
+        coefficients_covariance: spread(&coefficients, &by_coefficients),
+        around,
+        coefficients,
+        thrust: ThrustCurve { series: library.series.clone(), blades },
+    };
+    estimate.fill(&particulars)?;
+    estimate
+        .model
+        .check(law)
+        .map_err(|(field, message)| EstimateError::Law(format!("{ship}: {field}: {message}")))?;
+    Ok(estimate)
+}
+
+/// What all regressions give for a ship.
+struct Regressed {
+    around: Vec<Combined>,
+    coefficients: Vec<Combined>,
+    blades: Option<f64>,
+}
+
+fn regress(
+    library: &Library,
+    ship: &str,
+    particulars: &Particulars,
+    speed_m_s: f64,
+) -> Result<Regressed, EstimateError> {
+    let mut inputs = Inputs::new(ship, particulars, speed_m_s)?;
+    let (mut around, mut coefficients) = (Vec::new(), Vec::new());
+    for name in REPLACED {
+        if inputs.get(name).is_none() {
+            take(library, ship, &mut inputs, &mut around, name)?;
+        }
+    }
+    set_derived(&mut inputs);
+    for name in FIRST.into_iter().chain(PARAMETERS) {
+        take(library, ship, &mut inputs, &mut around, name)?;
+    }
+    for name in COEFFICIENTS {
+        take(library, ship, &mut inputs, &mut coefficients, name)?;
+    }
+    Ok(Regressed { around, coefficients, blades: inputs.get("propeller_blades") })
+}
+
+/// What one standard error of an estimated block coefficient changes in what is around the
+/// coefficients, and in these; nothing where it is stated.
+fn fullness_effect(
+    particulars: &Particulars,
+    at: &dyn Fn(&Particulars) -> Result<Regressed, EstimateError>,
+) -> Result<[DVector<f64>; 2], EstimateError> {
+    let estimated = particulars.get(FULLNESS).filter(|one| one.source.starts_with(ESTIMATED));
+    let error = estimated.and_then(|one| one.standard_error).unwrap_or(0.0);
+    let moved = |by: f64| {
+        let mut other = particulars.clone();
+        other.get_mut(FULLNESS).into_iter().for_each(|one| one.value += by);
+        at(&other)
+    };
+    let (fuller, finer) = (moved(error)?, moved(-error)?);
+    let half = |more: &[Combined], less: &[Combined]| {
+        let pairs = more.iter().zip(less).map(|(a, b)| 0.5 * (a.mean - b.mean));
+        DVector::from_iterator(more.len(), pairs)
+    };
+    Ok([half(&fuller.around, &finer.around), half(&fuller.coefficients, &finer.coefficients)])
+}
+
+fn take(
+    library: &Library,
+    ship: &str,
+    inputs: &mut Inputs,
+    into: &mut Vec<Combined>,
+    name: &str,
+) -> Result<(), EstimateError> {
+    let given = library.given(name, &|name| inputs.get(name));
+    let missing = || EstimateError::NotGiven { ship: ship.to_owned(), name: name.to_owned() };
+    let mut combined = Combined::of(name, given).ok_or_else(missing)?;
+    combined.mean = limits::parameter(name, combined.mean);
+    inputs.set(name, combined.mean);
+    into.push(combined);
+    Ok(())
+}
+
+/// What follows from particulars that were replaced.
+fn set_derived(inputs: &mut Inputs) {
+    let of = |name: &str| inputs.get(name).unwrap_or(0.0);
+    let (area, height, x_g, length) =
+        (of("rudder_area_m2"), of("rudder_height_m"), of("x_g_m"), of("L"));
+    inputs.set("x_G", x_g / length);
+    inputs.set("rudder_aspect_ratio", height * height / area);
+}
+
+fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
+    let mut sources: BTreeMap<String, Source> = vessel.file.sources.clone();
+    for one in &library.regressions {
+        sources.insert(one.name.clone(), one.source.clone());
+    }
+    sources.insert(library.series.name.clone(), library.series.source.clone());
+    Model {
+        kind: ModelKind::Model,
+        name: format!("{}/estimate", vessel.name()),
+        ship: vessel.name().to_owned(),
+        law: LAW.to_owned(),
+        status: Status::Estimated,
+        note: Some("estimated from particulars by published regressions, not measured".into()),
+        sources,
+        speed_m_s: Some(speed_m_s),
+        revolutions_rps: None,
+        steering: steering(vessel),
+        particulars: Particulars::new(),
+        parameters: BTreeMap::new(),
+        coefficients: BTreeMap::new(),
+        effects: Vec::new(),
+        uncertainty: None,
+        posterior: None,
+        validity: None,
+        propulsion: None,
+        branch: None,
+    }
+}
+
+/// The ship's own gear where a model of it states one, scaled to full rate by SOLAS otherwise.
+fn steering(vessel: &Vessel) -> Steering {
+    let stated = vessel.file.models.first().map(|model| model.steering.clone());
+    // A gear as fast as SOLAS asks of a ship turns a model's rudder faster by the root of scale.
+    let scaled = || {
+        let full = Steering::default();
+        let scale = vessel.file.scale.unwrap_or(1.0);
+        Steering { rate_deg_s: full.rate_deg_s * scale.sqrt(), ..full }
+    };
+    stated.unwrap_or_else(scaled)
+}
+
+impl Estimate {
+    /// How far each value may be off.
+    pub fn spreads(&self) -> Vec<Spread> {
+        let of = |values: &[Combined], covariance: &DMatrix<f64>| -> Vec<Spread> {
+            let spread = |(k, one): (usize, &Combined)| Spread {
+                name: one.name.clone(),
+                mean: one.mean,
+                deviation: covariance[(k, k)].sqrt(),
+                given: one
+                    .given
+                    .iter()
+                    .map(|given| (given.regression.clone(), given.value))
+                    .collect(),
+            };
+            values.iter().enumerate().map(spread).collect()
+        };
+        let mut all = of(&self.coefficients, &self.coefficients_covariance);
+        all.extend(of(&self.around, &self.around_covariance));
+        all
+    }
+
+    /// Fills the model with the means.
+    fn fill(&mut self, stated: &Particulars) -> Result<(), EstimateError> {
+        self.model.particulars = stated.clone();
+        let around: Vec<f64> = self.around.iter().map(|one| one.mean).collect();
+        let deviations: Vec<f64> =
+            self.around_covariance.diagonal().iter().map(|variance| variance.sqrt()).collect();
+        let quantity = |one: &Combined, deviation: f64| {
+            let mut quantity =
+                Quantity::new(one.mean, one.leading().map_or("", |given| &given.regression));
+            quantity.standard_error = Some(deviation);
+            let names: Vec<&str> =
+                one.given.iter().map(|given| given.regression.as_str()).collect();
+            quantity.note = (names.len() > 1).then(|| format!("mean of {}", names.join(", ")));
+            quantity
+        };
+        let model = with_around(&self.model, &self.around, &around, &|k| {
+            quantity(&self.around[k], deviations[k])
+        });
+        self.model = model;
+        for (k, one) in self.coefficients.iter().enumerate() {
+            let deviation = self.coefficients_covariance[(k, k)].sqrt();
+            self.model.coefficients.insert(one.name.clone(), quantity(one, deviation));
+        }
+        self.model = self.balanced(self.model.clone())?;
+        self.model.posterior = Some(posterior(&self.coefficients, &self.coefficients_covariance));
+        Ok(())
+    }
+
+    /// A model with other particulars and parameters, in the order of `around`.
+    pub(crate) fn moved(&self, around: &[f64]) -> Model {
+        with_around(&self.model, &self.around, around, &|k| Quantity::new(around[k], "draw"))
+    }
+
+    /// A model with the propeller's thrust and the revolutions that balance its resistance.
+    pub(crate) fn balanced(&self, mut model: Model) -> Result<Model, EstimateError> {
+        let particular = |name: &str| {
+            sistership_model::particulars::value(&model.particulars, name).unwrap_or(0.0)
+        };
+        let parameter = |name: &str| model.parameters.get(name).map_or(0.0, |one| one.value);
+        let speed_m_s = model.speed_m_s.unwrap_or(0.0);
+        let thrust = self.thrust.at(particular("propeller_pitch_ratio"));
+        let straight = Straight {
+            lpp_m: particular("lpp_m"),
+            draught_m: particular("draught_m"),
+            speed_m_s,
+            x_0: model.coefficient("X_0"),
+            t_p: parameter("t_P"),
+            w_p0: parameter("w_P0"),
+            diameter_m: particular("propeller_diameter_m"),
+            thrust,
+        };
+        let revolutions = straight.revolutions_rps().ok_or_else(|| EstimateError::NoBalance {
+            ship: model.ship.clone(),
+            diameter_m: straight.diameter_m,
+            speed_m_s,
+        })?;
+        model.revolutions_rps = Some(revolutions);
+        for (name, value) in [("k_0", thrust.k_0), ("k_1", thrust.k_1), ("k_2", thrust.k_2)] {
+            model.parameters.insert(name.into(), Quantity::new(value, "wageningen-b"));
+        }
+        if let Some(note) = &mut model.note
+            && !note.contains(BALANCE)
+        {
+            note.push_str("; revolutions by thrust-balance");
+        }
+        Ok(model)
+    }
+}
+
+/// Puts values of `around` where they belong: particulars, or parameters of the law.
+fn with_around(
+    base: &Model,
+    around: &[Combined],
+    values: &[f64],
+    quantity: &dyn Fn(usize) -> Quantity,
+) -> Model {
+    let mut model = base.clone();
+    for (k, one) in around.iter().enumerate() {
+        let of = || Quantity { value: values[k], ..quantity(k) };
+        match one.name.as_str() {
+            "C_2" => both(&mut model, ["C_2_plus", "C_2_minus"], &of),
+            "gamma_R" => both(&mut model, ["gamma_R_plus", "gamma_R_minus"], &of),
+            name if REPLACED.contains(&name) => {
+                let mut quantity = of();
+                quantity.source = format!("{ESTIMATED}{}", quantity.source);
+                model.particulars.insert(name.to_owned(), quantity);
+            }
+            name => {
+                model.parameters.insert(name.to_owned(), of());
+            }
+        }
+    }
+    derive(&mut model);
+    model
+}
+
+fn both(model: &mut Model, names: [&str; 2], of: &dyn Fn() -> Quantity) {
+    for name in names {
+        model.parameters.insert(name.to_owned(), of());
+    }
+}
+
+/// Parameters of the law that follow from particulars.
+fn derive(model: &mut Model) {
+    let of =
+        |name: &str| sistership_model::particulars::value(&model.particulars, name).unwrap_or(0.0);
+    // A rudder lower than the propeller is all in the slipstream.
+    let eta = (of("propeller_diameter_m") / of("rudder_height_m")).min(1.0);
+    let derived = [
+        ("m", of("mass_kg")),
+        ("x_G", of("x_g_m")),
+        ("k_zz", of("yaw_gyradius_ratio")),
+        ("eta", eta),
+    ];
+    for (name, value) in derived {
+        model.parameters.insert(name.to_owned(), Quantity::new(value, DERIVED));
+    }
+}
+
+/// The coefficients' covariance as a model carries it.
+fn posterior(values: &[Combined], covariance: &DMatrix<f64>) -> Posterior {
+    let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.sqrt()).collect();
+    let correlation = DMatrix::from_fn(values.len(), values.len(), |i, j| {
+        covariance[(i, j)] / (deviations[i] * deviations[j])
+    });
+    let identity = || DMatrix::identity(values.len(), values.len());
+    let root = correlation.cholesky().map_or_else(identity, |cholesky| cholesky.l());
+    Posterior {
+        names: values.iter().map(|one| one.name.clone()).collect(),
+        values: values.iter().map(|one| one.mean).collect(),
+        deviations,
+        root_correlation: Posterior::rows(values.len(), &|i, j| root[(i, j)]),
+    }
+}

@@ -1,0 +1,60 @@
+//! The regressions that the program carries.
+
+use include_dir::{Dir, include_dir};
+use rayon::prelude::*;
+use sistership_model::FileError;
+use sistership_model::version::sha256;
+
+use crate::estimates::propeller::PropellerSeries;
+use crate::estimates::regression::{Given, Regression};
+
+static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models/regressions");
+
+/// What the propeller series is called.
+const SERIES: &str = "wageningen-b.yaml";
+
+/// Regressions by name, and the propeller series.
+#[derive(Debug, Clone)]
+pub struct Library {
+    /// SHA-256 of all files, in the order of their names.
+    pub sha256: String,
+    /// In the order of their names.
+    pub regressions: Vec<Regression>,
+    pub(crate) series: PropellerSeries,
+}
+
+impl Library {
+    /// The embedded ones.
+    ///
+    /// # Errors
+    /// The first file that does not read; a test keeps this from happening in a release.
+    pub fn embedded() -> Result<Self, FileError> {
+        let files = FILES.files().filter_map(|file| {
+            let name = file.path().to_str().filter(|name| name.ends_with(".yaml"))?;
+            Some((name, file.contents_utf8()?))
+        });
+        let mut files: Vec<(&str, &str)> = files.collect();
+        files.sort_unstable();
+        let texts: Vec<u8> = files.iter().flat_map(|(_, text)| text.bytes()).collect();
+        let files = files.into_iter();
+        let (series, others): (Vec<_>, Vec<_>) = files.partition(|(name, _)| *name == SERIES);
+        let parsed: Vec<Result<Regression, FileError>> =
+            others.into_par_iter().map(|(name, text)| Regression::parse(name, text)).collect();
+        let mut regressions = parsed.into_iter().collect::<Result<Vec<_>, _>>()?;
+        regressions.sort_by(|a, b| a.name.cmp(&b.name));
+        let series = series.first().map(|(name, text)| PropellerSeries::parse(name, text));
+        let missing = || FileError {
+            file: SERIES.to_owned(),
+            line: None,
+            field: String::new(),
+            message: "is missing".to_owned(),
+            further: Vec::new(),
+        };
+        Ok(Self { sha256: sha256(&texts), regressions, series: series.ok_or_else(missing)?? })
+    }
+
+    /// What every regression gives for a name.
+    pub fn given(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Vec<Given> {
+        self.regressions.iter().filter_map(|one| one.given(name, known)).collect()
+    }
+}

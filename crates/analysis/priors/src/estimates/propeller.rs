@@ -1,0 +1,115 @@
+//! Thrust of a propeller series in open water.
+
+use serde::Deserialize;
+use sistership_model::FileError;
+use sistership_model::source::Source;
+
+/// A series as its file writes it: `K_T = sum c J^s (P/D)^t (A_E/A_0)^u Z^v`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PropellerSeries {
+    #[serde(rename = "kind")]
+    _kind: SeriesKind,
+    /// Its name.
+    pub name: String,
+    #[serde(rename = "title")]
+    _title: String,
+    /// Where it is published.
+    pub source: Source,
+    #[serde(rename = "note")]
+    _note: String,
+    /// Blades where the ship does not say.
+    blades: f64,
+    /// Expanded area ratio, which particulars do not have.
+    area_ratio: f64,
+    terms: Vec<[f64; 5]>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+enum SeriesKind {
+    #[serde(rename = "propeller-series")]
+    Series,
+}
+
+/// `K_T = k_0 + k_1 J + k_2 J^2`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thrust {
+    /// At `J = 0`.
+    pub k_0: f64,
+    /// Slope.
+    pub k_1: f64,
+    /// Curvature.
+    pub k_2: f64,
+}
+
+/// Points of the curve that the parabola is laid through.
+const POINTS: usize = 24;
+
+impl PropellerSeries {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Says what is wrong with it.
+    pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
+        sistership_model::yaml::read(text).map_err(|error| FileError {
+            file: file.to_owned(),
+            line: None,
+            field: String::new(),
+            message: error.to_string(),
+            further: Vec::new(),
+        })
+    }
+
+    /// Thrust coefficient at an advance ratio.
+    pub fn k_t(&self, advance: f64, pitch_ratio: f64, blades: f64) -> f64 {
+        let term = |[c, s, t, u, v]: &[f64; 5]| {
+            c * advance.powf(*s) * pitch_ratio.powf(*t) * self.area_ratio.powf(*u) * blades.powf(*v)
+        };
+        self.terms.iter().map(term).sum()
+    }
+
+    /// The parabola nearest to the curve from `J = 0` to where the thrust ends.
+    pub fn thrust(&self, pitch_ratio: f64, blades: Option<f64>) -> Thrust {
+        let blades = blades.unwrap_or(self.blades);
+        let mut advance = 0.0;
+        while self.k_t(advance, pitch_ratio, blades) > 0.0 && advance < 2.0 {
+            advance += 0.02;
+        }
+        let points: Vec<(f64, f64)> = (0..=POINTS)
+            .map(|k| advance * k as f64 / POINTS as f64)
+            .map(|j| (j, self.k_t(j, pitch_ratio, blades)))
+            .collect();
+        parabola(&points)
+    }
+}
+
+/// Least squares of a parabola.
+fn parabola(points: &[(f64, f64)]) -> Thrust {
+    let mut normal = nalgebra::Matrix3::<f64>::zeros();
+    let mut right = nalgebra::Vector3::<f64>::zeros();
+    for &(x, y) in points {
+        let row = nalgebra::Vector3::new(1.0, x, x * x);
+        normal += row * row.transpose();
+        right += row * y;
+    }
+    let solved = normal.lu().solve(&right).unwrap_or_default();
+    Thrust { k_0: solved[0], k_1: solved[1], k_2: solved[2] }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use crate::estimates::library::Library;
+
+    /// The propeller of KVLCC2 (pitch ratio 0.721, four blades, area ratio 0.431) has
+    /// 0.293 - 0.275 J - 0.139 J^2 in Yasukawa and Yoshimura 2015, of another series.
+    #[test]
+    fn the_series_gives_the_thrust_of_a_like_propeller() {
+        let thrust = Library::embedded().unwrap().series.thrust(0.721, Some(4.0));
+        let at = |j: f64| thrust.k_0 + thrust.k_1 * j + thrust.k_2 * j * j;
+        let kvlcc2 = |j: f64| 0.2931 - 0.2753 * j - 0.1385 * j * j;
+        for j in [0.0, 0.2, 0.4, 0.6] {
+            assert!((at(j) - kvlcc2(j)).abs() < 0.03, "{j}: {} {}", at(j), kvlcc2(j));
+        }
+    }
+}

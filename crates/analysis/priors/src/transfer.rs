@@ -1,0 +1,288 @@
+//! Carrying a source model over to another ship.
+
+use std::collections::BTreeSet;
+
+use crate::estimated::estimated;
+
+use crate::estimates::particulars::{complete_particulars, estimate_particular};
+use sistership_formula::Expr;
+use sistership_formula::units::Dimension;
+use sistership_model::estimated_particulars::SCALED;
+use sistership_model::law::Law;
+use sistership_model::model::{DERIVED, ModelKind};
+use sistership_model::particulars::{self, Particulars};
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::vessel::Status;
+use sistership_model::{Model, Vessel};
+use sistership_simulation::{PlantError, Ship};
+
+/// How a ship approaches its trials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// Propeller revolutions, 1/s, where recorded.
+    pub n_rps: Option<f64>,
+}
+
+/// The approach of a set of trials: the median speed at their first samples; where they start from
+/// rest, the median speed under way. `None` without velocities.
+pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
+    let first = |trial: &&Trial| {
+        Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
+    };
+    let mut starts: Vec<f64> = trials.iter().filter_map(first).collect();
+    let mut speeds: Vec<f64> = trials
+        .iter()
+        .flat_map(|trial| trial.channel(Channel::U).into_iter().flatten().copied())
+        .collect();
+    let mut revolutions: Vec<f64> =
+        trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
+    let (start, under_way) = (median(&mut starts)?, median(&mut speeds)?);
+    let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
+    (speed_m_s > 0.0)
+        .then(|| Approach { speed_m_s, n_rps: median(&mut revolutions).filter(|n| *n > 0.0) })
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// A source model on the target's particulars. What the law needs and the target does not state is
+/// estimated or scaled from the source by Froude's law, and marked so ([`completed`]); parameters
+/// with a unit that do not follow from particulars and the steering gear's rate are scaled
+/// likewise.
+pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<Approach>) -> Model {
+    let ratio = ratio(source, target);
+    let particulars = completed(law, target, Some(source));
+    let service = particulars::value(&particulars, "service_speed_m_s");
+    let froude = source.speed_m_s.map(|speed| speed * ratio.sqrt());
+    let speed = approach.map(|a| a.speed_m_s).or(service).or(froude);
+    let mut model = source.transferred(law, target.name(), &particulars, speed);
+    scale_parameters(&mut model, law, ratio);
+    model.speed_m_s = speed;
+    let scaled_n = source
+        .revolutions_rps
+        .zip(froude)
+        .zip(speed)
+        .map(|((n, froude), speed)| n / ratio.sqrt() * speed / froude);
+    model.revolutions_rps = approach.and_then(|a| a.n_rps).or(scaled_n);
+    model.steering.rate_deg_s = source.steering.rate_deg_s / ratio.sqrt();
+    model.steering.time_constant_s = source.steering.time_constant_s * ratio.sqrt();
+    model.steering.source = Some(format!("scaled from {}", source.name));
+    model
+}
+
+/// Scales the parameters with a unit that are still the source's by Froude's law.
+fn scale_parameters(model: &mut Model, law: &Law, ratio: f64) {
+    for (name, parameter) in law.parameters.iter().filter(|(_, one)| !one.is_approach_speed) {
+        let follows = law.derived_parameter(name, &model.particulars).is_some();
+        if let Some(quantity) = model.parameters.get_mut(name).filter(|_| !follows) {
+            quantity.value *= froude_factor(parameter.dimension, ratio);
+        }
+    }
+}
+
+/// What Froude's law multiplies a quantity by, for ships whose lengths have a ratio.
+fn froude_factor(dimension: Dimension, ratio: f64) -> f64 {
+    ratio.powf(dimension.length + 3.0 * dimension.mass + 0.5 * dimension.time)
+}
+
+/// Of the lengths of target and source; 1 where one is not known.
+fn ratio(source: &Model, target: &Vessel) -> f64 {
+    let there = particulars::value(&source.particulars, "lpp_m");
+    target.particular("lpp_m").zip(there).map_or(1.0, |(here, there)| here / there)
+}
+
+/// A parameter of a law that nothing gives.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` of law `{law}` does not follow from the particulars of {ship}")]
+pub struct UnknownParameter {
+    /// The parameter.
+    pub name: String,
+    /// The law.
+    pub law: String,
+    /// The ship.
+    pub ship: String,
+}
+
+/// As [`blank`], with what the target does not state scaled from a source.
+pub fn blank_of(
+    law: &Law,
+    target: &Vessel,
+    source: &Model,
+    approach: Option<Approach>,
+) -> Result<Model, UnknownParameter> {
+    let particulars = completed(law, target, Some(source));
+    filled(law, (target, &particulars), approach, &|name| same_parameter(law, name, source))
+}
+
+/// A source's parameter of the same name, where it has no unit and so belongs to no size.
+fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
+    let is_bare = law.parameters.get(name).is_some_and(|parameter| parameter.unit == "1");
+    let value = source.parameters.get(name).filter(|_| is_bare)?.value;
+    Some(Quantity::new(value, format!("as of {}", source.name)))
+}
+
+/// A model of a law for a ship of which nothing is known but its particulars: every coefficient
+/// that the law lists is zero, so that a prior which pulls to it is a plain ridge. Only trials make
+/// it a model.
+///
+/// # Errors
+/// Names a parameter of the law that does not follow from its particulars.
+pub fn blank(
+    law: &Law,
+    target: &Vessel,
+    approach: Option<Approach>,
+) -> Result<Model, UnknownParameter> {
+    filled(law, (target, &completed(law, target, None)), approach, &|_| None)
+}
+
+/// As [`blank`]; what does not follow from the particulars is asked of the caller, then estimated.
+fn filled(
+    law: &Law,
+    (target, particulars): (&Vessel, &Particulars),
+    approach: Option<Approach>,
+    given: &dyn Fn(&str) -> Option<Quantity>,
+) -> Result<Model, UnknownParameter> {
+    let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
+    let parameter = |name: &String| {
+        let own = if law.approach_speed_parameter() == Some(name) {
+            approach.map(|a| a.speed_m_s)
+        } else {
+            None
+        };
+        let derived = own.or_else(|| law.derived_parameter(name, particulars));
+        let value = derived.map(|value| Quantity::new(value, DERIVED));
+        let value = value.or_else(|| given(name)).or_else(|| estimated(law, name, target));
+        let unknown = || UnknownParameter {
+            name: name.clone(),
+            law: law.name.clone(),
+            ship: target.name().to_owned(),
+        };
+        Ok((name.clone(), value.ok_or_else(unknown)?))
+    };
+    Ok(Model {
+        kind: ModelKind::Model,
+        name: format!("{}/{}", target.name(), law.name),
+        ship: target.name().to_owned(),
+        law: law.name.clone(),
+        status: Status::Transferred,
+        note: Some("a law without coefficients, to be filled by trials alone".to_owned()),
+        sources: Default::default(),
+        speed_m_s: approach
+            .map(|a| a.speed_m_s)
+            .or_else(|| particulars::value(particulars, "service_speed_m_s")),
+        revolutions_rps: approach.and_then(|a| a.n_rps),
+        steering: Default::default(),
+        particulars: particulars.clone(),
+        parameters: law
+            .parameters
+            .keys()
+            .map(parameter)
+            .collect::<Result<_, UnknownParameter>>()?,
+        coefficients: law.axes.values().flat_map(|axis| axis.terms.keys().map(zero)).collect(),
+        effects: Vec::new(),
+        uncertainty: None,
+        posterior: None,
+        validity: None,
+        propulsion: None,
+        branch: None,
+    })
+}
+
+/// How the mass of a ship lies in the plane: its own, whatever the ship that its coefficients come
+/// from. Metacentric height and the radius in roll go with the coefficients of roll instead: ships
+/// scatter about their regression by half of it.
+const LOADING: [&str; 6] = [
+    "block_coefficient",
+    "displacement_m3",
+    "mass_kg",
+    "x_g_m",
+    "yaw_gyradius_ratio",
+    "water_density_kg_m3",
+];
+
+/// The target's particulars with those that a law needs and the target does not state: how its mass
+/// lies by regressions, geometry scaled from the source whose coefficients belong to it, and by
+/// regressions what the source does not state either; what no regression gives is the source's.
+pub fn completed(law: &Law, target: &Vessel, source: Option<&Model>) -> Particulars {
+    let needed = needed_particulars(law);
+    let (loading, geometry): (Vec<&str>, Vec<&str>) =
+        needed.iter().map(String::as_str).partition(|name| LOADING.contains(name));
+    let mut particulars = target.particulars.clone();
+    complete_particulars(&mut particulars, loading.iter().copied());
+    for name in geometry.iter().chain(&loading) {
+        scale_particular(&mut particulars, target, source, name);
+    }
+    complete_particulars(&mut particulars, geometry);
+    particulars
+}
+
+/// Two ships scatter about a regression independently: their difference by the root of two.
+const DIFFERENCE: f64 = std::f64::consts::SQRT_2;
+
+fn scale_particular(
+    particulars: &mut Particulars,
+    target: &Vessel,
+    source: Option<&Model>,
+    name: &str,
+) {
+    let is_known = particulars::given(particulars, name).is_some();
+    let Some(source) = source.filter(|_| !is_known) else { return };
+    let (Some(value), Some(dimension)) =
+        (particulars::value(&source.particulars, name), particulars::dimension(name))
+    else {
+        return;
+    };
+    let value = value * froude_factor(dimension, ratio(source, target));
+    let mut quantity = Quantity::new(value, format!("{SCALED}{}", source.name));
+    let scatter = estimate_particular(particulars, name).and_then(|one| one.standard_error);
+    let scatter = scatter.unwrap_or(relative_scatter(dimension) * value.abs());
+    quantity.standard_error = Some(DIFFERENCE * scatter);
+    particulars.insert(name.to_owned(), quantity);
+}
+
+/// Where no regression holds for want of main dimensions: the scatter of ships of the zoo about a
+/// common ratio to a power of the length, 0.62 for displacements (34 ships), 0.13 to 0.30 for
+/// diameters, heights and areas (17 to 22).
+fn relative_scatter(dimension: Dimension) -> f64 {
+    if dimension.length + 3.0 * dimension.mass > 2.5 { 0.62 } else { 0.3 }
+}
+
+/// The particulars that a law's formulas mention, those of its parameters included.
+fn needed_particulars(law: &Law) -> BTreeSet<String> {
+    let axes =
+        law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale, &axis.rest]));
+    let parameters = law.parameters.values().filter_map(|parameter| parameter.from.as_ref());
+    let formulas: Vec<&Expr> =
+        law.values.values().chain(law.mass.values()).chain(axes).chain(parameters).collect();
+    let names = formulas
+        .into_iter()
+        .flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+    names.filter(|name| particulars::dimension(name).is_some()).collect()
+}
+
+/// A ship whose envelope covers the speeds of the trials.
+pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
+    widened(Ship::new(model, law), trials)
+}
+
+/// As [`ready`], for all models that have the same names of coefficients.
+pub fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
+    let mut ship = widened(Ship::sisters(model, law), trials)?;
+    ship.forget_validity();
+    Ok(ship)
+}
+
+fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, PlantError> {
+    let mut ship = ship?;
+    let fastest = trials
+        .iter()
+        .flat_map(|t| t.channel(Channel::U).into_iter().flatten())
+        .fold(0.0_f64, |a, b| a.max(b.abs()));
+    ship.set_envelope_speed(fastest);
+    Ok(ship)
+}

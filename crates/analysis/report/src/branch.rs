@@ -1,0 +1,103 @@
+//! The report of a learned branch: what it is, and what it is worth on trials left out.
+
+use askama::Template;
+use serde::Serialize;
+use sistership_learned::Judgement;
+use sistership_model::branch::Branch;
+use sistership_model::version::code_revision;
+
+use crate::numbers::significant;
+use crate::rendered::{Rendered, ReportError, VersionLabel};
+
+/// What a report is made of.
+#[derive(Debug, Clone, Serialize)]
+pub struct BranchInput<'a> {
+    /// The branch.
+    pub branch: &'a Branch,
+    /// What trials left out of its training said; none where there was only one.
+    pub judgement: Option<&'a Judgement>,
+    /// The version that is its foundation.
+    pub of: VersionLabel,
+    /// The version with the branch.
+    pub made: VersionLabel,
+}
+
+#[derive(Template)]
+#[template(path = "report_branch.html")]
+struct BranchPage<'a> {
+    input: &'a BranchInput<'a>,
+    rows: Vec<BranchRow>,
+    mean: Option<BranchRow>,
+    verdict: String,
+    domain: Vec<(String, String)>,
+}
+
+/// A line of the table of trials.
+struct BranchRow {
+    name: String,
+    foundation: String,
+    branch: String,
+    share: String,
+}
+
+/// Renders the report in both forms.
+///
+/// # Errors
+/// It cannot be written.
+pub fn render_branch(input: &BranchInput<'_>) -> Result<Rendered, ReportError> {
+    let trials = input.judgement.iter().flat_map(|judgement| &judgement.trials);
+    let row = |name: &str, foundation: f64, branch: f64, share: f64| BranchRow {
+        name: name.to_owned(),
+        foundation: significant(foundation, 3),
+        branch: significant(branch, 3),
+        share: format!("{:.0} %", 100.0 * share),
+    };
+    let page = BranchPage {
+        input,
+        rows: trials
+            .map(|trial| {
+                let errors = (trial.foundation.standardised_mse, trial.branch.standardised_mse);
+                row(&trial.name, errors.0, errors.1, trial.share)
+            })
+            .collect(),
+        mean: input.judgement.map(|all| row("mean", all.foundation, all.branch, all.share)),
+        verdict: verdict(input.judgement),
+        domain: domain(input.branch),
+    };
+    Ok(Rendered { json: serde_json::to_value(input)?, html: page.render()? })
+}
+
+/// What trials left out say, in a sentence.
+fn verdict(judgement: Option<&Judgement>) -> String {
+    let Some(judged) = judgement else {
+        return "There was one trial only, so that none is left to judge the branch on.".to_owned();
+    };
+    let word = if judged.wins() { "wins" } else { "does not win" };
+    format!(
+        "On {} trials left out of its training, the branch {word} by more than its uncertainty: \
+         error {} with it, {} without, the difference sure to {}. It counted for {:.0} % of the \
+         simulated time.",
+        judged.trials.len(),
+        significant(judged.branch, 3),
+        significant(judged.foundation, 3),
+        significant(judged.standard_error, 2),
+        100.0 * judged.share
+    )
+}
+
+/// The ranges of the domain, SI and radians.
+fn domain(branch: &Branch) -> Vec<(String, String)> {
+    let range =
+        |[low, high]: &[f64; 2]| format!("{} to {}", significant(*low, 3), significant(*high, 3));
+    branch.domain.ranges.iter().map(|(name, bounds)| (name.clone(), range(bounds))).collect()
+}
+
+impl BranchPage<'_> {
+    fn revision(&self) -> &'static str {
+        code_revision()
+    }
+
+    fn number(&self, value: &f64) -> String {
+        significant(*value, 3)
+    }
+}

@@ -1,0 +1,105 @@
+//! The page of a contributed ship, in Markdown.
+
+use std::fmt::Write as _;
+
+use sistership_assessment::validation::{Appraisal, Dataset, Review, Severity};
+use sistership_model::Vessel;
+
+use crate::numbers::hundredths;
+
+/// Particulars, models, published trials, findings and sources of a ship.
+pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
+    [
+        format!("# {}\n\n{}\n\n", review.ship, review.title),
+        findings(review),
+        particulars(vessel),
+        models(review),
+        trials(review),
+        sources(vessel),
+    ]
+    .concat()
+}
+
+fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let line = |cells: &[String]| {
+        let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+        format!("| {} |\n", cells.join(" | "))
+    };
+    let names: Vec<String> = columns.iter().map(|name| (*name).to_owned()).collect();
+    let rules = vec!["---".to_owned(); columns.len()];
+    let rows: String = rows.iter().map(|row| line(row)).collect();
+    format!("## {head}\n\n{}{}{rows}\n", line(&names), line(&rules))
+}
+
+fn findings(review: &Review) -> String {
+    let verdict = if review.is_taken() { "It can be taken." } else { "It is refused." };
+    let mut text = format!("{verdict}\n\n");
+    for (severity, head) in
+        [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
+    {
+        let of = review.findings.iter().filter(|finding| finding.severity == severity);
+        let lines: String =
+            of.map(|finding| format!("- `{}`: {}\n", finding.about, finding.message)).collect();
+        if !lines.is_empty() {
+            let _ = write!(text, "## {head}\n\n{lines}\n");
+        }
+    }
+    text
+}
+
+fn particulars(vessel: &Vessel) -> String {
+    let row = |(name, quantity): (&String, &sistership_model::quantity::Quantity)| {
+        let note = quantity.note.clone().unwrap_or_default();
+        vec![name.clone(), format!("{}", quantity.value), quantity.source.clone(), note]
+    };
+    let rows = vessel.particulars.iter().map(row).collect();
+    table("Particulars", &["particular", "value", "source", "note"], rows)
+}
+
+fn models(review: &Review) -> String {
+    let columns =
+        ["model", "law", "status", "advance, L", "tactical, L", "10/10, deg", "20/20, deg"];
+    table("Models", &columns, review.models.iter().map(model).collect())
+}
+
+fn model(model: &Appraisal) -> Vec<String> {
+    let name = model.model.split_once('/').map_or(model.model.as_str(), |(_, name)| name);
+    vec![
+        format!("`{name}`"),
+        format!("`{}`", model.law),
+        model.standing.word().to_owned(),
+        hundredths(model.turn_lengths(|turn| turn.advance_m)),
+        hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+        hundredths(model.first_overshoot_deg(10.0)),
+        hundredths(model.first_overshoot_deg(20.0)),
+    ]
+}
+
+fn trials(review: &Review) -> String {
+    let columns = ["model", "figure", "published", "sailed", "allowed", "met", "source"];
+    let each = review.models.iter().flat_map(|model| {
+        model.comparisons.iter().map(|one| {
+            vec![
+                format!("`{}`", model.model),
+                one.figure.clone(),
+                format!("{:.2} ± {:.2} {}", one.published, one.uncertainty, one.unit),
+                hundredths(one.sailed),
+                format!("{:.2}", one.limit),
+                if one.is_within() { "yes" } else { "no" }.to_owned(),
+                one.source.clone(),
+            ]
+        })
+    });
+    table("Published trials", &columns, each.collect())
+}
+
+fn sources(vessel: &Vessel) -> String {
+    let rows = Dataset::of(vessel).sources.into_iter().map(|work| {
+        let terms = work.license.as_deref().or(work.usage).unwrap_or("not known").to_owned();
+        vec![work.alternate_name, work.name, work.url.unwrap_or_default(), terms]
+    });
+    table("Sources", &["key", "citation", "where", "licence"], rows.collect())
+}

@@ -1,0 +1,76 @@
+//! What changes within a trial.
+
+use sistership_diagnosis::{Change, ChangeCourse};
+
+use super::figures::with_figures;
+use crate::numbers::list;
+
+/// Each change in a sentence.
+pub(crate) fn changes(all: &[Change]) -> Vec<String> {
+    all.iter().map(sentence).collect()
+}
+
+fn sentence(of: &Change) -> String {
+    let first = change(of);
+    let or: Vec<String> = of.or.iter().map(|name| name.replace('-', " ")).collect();
+    let capital = first.chars().take(1).flat_map(char::to_uppercase);
+    let first: String = capital.chain(first.chars().skip(1)).collect();
+    match or.is_empty() {
+        true => format!("{first}."),
+        false => format!("{first}; nearly as probable is {}.", list(&or)),
+    }
+}
+
+/// A change in words: `in turn.csv a rudder damage (share lost 35 %) begins at 412 s`.
+pub fn change(of: &Change) -> String {
+    let name = with_figures(of.effect.replace('-', " "), &of.parameters);
+    let time = |t_s: Option<f64>| t_s.map_or_else(String::new, |t_s| format!(" at {t_s:.0} s"));
+    let between = of.between_s.map_or_else(String::new, |[first, last]| {
+        format!(" (between {first:.0} s and {last:.0} s)")
+    });
+    let course = match of.course {
+        ChangeCourse::Begins => format!("begins{}{between}", time(of.at_s)),
+        ChangeCourse::Ends => format!("ends{}{between}", time(of.at_s)),
+        ChangeCourse::Drifts => "grows from its beginning to its end".to_owned(),
+        ChangeCourse::Throughout => "is there throughout, and not in all other trials".to_owned(),
+    };
+    format!("in {} {name} {course}", of.trial)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sistership_diagnosis::Value;
+
+    fn damage(course: ChangeCourse) -> Change {
+        let lost = Value { value: 35.0, se: 2.0 };
+        Change {
+            effect: "rudder-damage".into(),
+            form: "share-lost".into(),
+            meaning: String::new(),
+            trial: "turn.csv".into(),
+            course,
+            at_s: Some(412.0),
+            between_s: Some([405.0, 420.0]),
+            parameters: [("share_lost_percent".to_owned(), lost)].into(),
+            evidence: 80.0,
+            or: vec!["rudder-offset".into()],
+        }
+    }
+
+    #[test]
+    fn a_change_is_told_with_its_time() {
+        let told = changes(&[damage(ChangeCourse::Begins)]).remove(0);
+        assert_eq!(
+            told,
+            "In turn.csv rudder damage (35 %) begins at 412 s (between 405 s and 420 s); nearly as \
+             probable is rudder offset."
+        );
+    }
+
+    #[test]
+    fn what_has_no_time_is_told_without() {
+        let told = change(&Change { or: Vec::new(), ..damage(ChangeCourse::Throughout) });
+        assert!(told.ends_with("is there throughout, and not in all other trials"), "{told}");
+    }
+}

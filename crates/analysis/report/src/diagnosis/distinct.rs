@@ -1,0 +1,49 @@
+//! Hypotheses as people read them: each set of effects once.
+
+use std::collections::BTreeSet;
+
+use sistership_diagnosis::Hypothesis;
+
+/// Each set of effects once, in the order given: judged several times on the way, it stands where
+/// it was taken, or else where it was most probable.
+pub fn distinct(all: &[Hypothesis]) -> Vec<&Hypothesis> {
+    let taken: Vec<Vec<&str>> =
+        all.iter().filter(|hypothesis| hypothesis.taken).map(effects).collect();
+    let mut seen = BTreeSet::new();
+    let kept = all.iter().filter(|hypothesis| {
+        let effects = effects(hypothesis);
+        (hypothesis.taken || !taken.contains(&effects)) && seen.insert(effects)
+    });
+    kept.collect()
+}
+
+fn effects(hypothesis: &Hypothesis) -> Vec<&str> {
+    let mut effects: Vec<&str> = hypothesis.effects.iter().map(String::as_str).collect();
+    effects.sort_unstable();
+    effects
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_taken_stands_for_its_repetitions() {
+        let hypothesis = |effects: &[&str], evidence: f64, taken: bool| Hypothesis {
+            effects: effects.iter().map(|&effect| effect.to_owned()).collect(),
+            evidence,
+            held_out: None,
+            parameters: Default::default(),
+            taken,
+        };
+        let all = [
+            hypothesis(&["a", "b"], 9.0, false),
+            hypothesis(&["b", "a"], 8.0, true),
+            hypothesis(&["c"], 7.0, false),
+            hypothesis(&["c"], 6.0, false),
+        ];
+        let kept: Vec<f64> =
+            distinct(&all).into_iter().map(|hypothesis| hypothesis.evidence).collect();
+        assert_eq!(kept, [8.0, 7.0]);
+    }
+}

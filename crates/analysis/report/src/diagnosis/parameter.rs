@@ -1,0 +1,96 @@
+//! Parameters of effects as people read them: words, value and unit from a name that carries its
+//! unit.
+
+use std::collections::BTreeMap;
+
+use sistership_diagnosis::Value;
+
+use crate::numbers::{fixed, significant};
+
+/// Endings of names, the unit shown, and what the value is multiplied by.
+const UNITS: [(&str, &str, f64); 10] = [
+    ("_rad_s", "deg/s", 180.0 / std::f64::consts::PI),
+    ("_deg_s", "deg/s", 1.0),
+    ("_m_s", "m/s", 1.0),
+    ("_rad", "deg", 180.0 / std::f64::consts::PI),
+    ("_deg", "deg", 1.0),
+    ("_rps", "1/s", 1.0),
+    ("_m", "m", 1.0),
+    ("_s", "s", 1.0),
+    ("_n", "N", 1.0),
+    ("_percent", "%", 1.0),
+];
+
+/// A parameter as it is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShownParameter {
+    /// Its name without the unit, in words.
+    pub words: String,
+    /// Empty where it has none.
+    pub unit: &'static str,
+    pub value: f64,
+    pub se: f64,
+}
+
+impl ShownParameter {
+    pub fn of(name: &str, value: &Value) -> Self {
+        let known = UNITS
+            .into_iter()
+            .find_map(|(ending, unit, factor)| Some((name.strip_suffix(ending)?, unit, factor)));
+        let (stem, unit, factor) = known.unwrap_or((name, "", 1.0));
+        let is_symbol = stem.starts_with(|first: char| first.is_ascii_uppercase());
+        let words = if is_symbol { stem.to_owned() } else { stem.replace('_', " ") };
+        Self { words, unit, value: factor * value.value, se: factor * value.se }
+    }
+
+    /// All of an effect with their names, but for an angle in radians that is there in degrees too.
+    pub fn all(values: &BTreeMap<String, Value>) -> Vec<(&str, Self)> {
+        let in_degrees = |name: &str| values.contains_key(&name.replace("_rad", "_deg"));
+        let shown = values.iter().filter(|(name, _)| !name.contains("_rad") || !in_degrees(name));
+        shown.map(|(name, value)| (name.as_str(), Self::of(name, value))).collect()
+    }
+
+    /// The value as far as its standard error lets it be known.
+    pub fn value_text(&self) -> String {
+        match self.decimals() {
+            Some(decimals) => fixed(self.value, decimals),
+            None => significant(self.value, 3),
+        }
+    }
+
+    /// The standard error with two digits.
+    pub fn se_text(&self) -> String {
+        if self.se > 0.0 { significant(self.se, 2) } else { "–".into() }
+    }
+
+    /// Decimals down to the second digit of the standard error, where both are of everyday size.
+    fn decimals(&self) -> Option<usize> {
+        let everyday = self.se > 1e-4 && self.se < 1e4 && self.value.abs() < 1e5;
+        everyday.then(|| (1.0 - self.se.log10().floor()).clamp(0.0, 5.0) as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_give_words_units_and_digits() {
+        let shown = |name: &str, value: f64, se: f64| {
+            let parameter = ShownParameter::of(name, &Value { value, se });
+            (parameter.words.clone(), format!("{} {}", parameter.value_text(), parameter.unit))
+        };
+        assert_eq!(shown("speed_m_s", 0.6012, 0.021), ("speed".into(), "0.601 m/s".into()));
+        assert_eq!(shown("offset_rad", 0.026_18, 0.000_9), ("offset".into(), "1.500 deg".into()));
+        assert_eq!(shown("towards_deg", 45.3, 12.0), ("towards".into(), "45 deg".into()));
+        assert_eq!(shown("N_phi", 1.2e-4, 2e-5), ("N_phi".into(), "0.000120 ".into()));
+        assert_eq!(shown("yaw_lever", 0.5, 0.0).0, "yaw lever");
+        let twice = ["offset_deg", "offset_rad", "rate_rad_s"]
+            .map(|name| (name.to_owned(), Value { value: 1.0, se: 0.1 }));
+        let names: Vec<String> = ShownParameter::all(&twice.into())
+            .into_iter()
+            .map(|(name, _)| name.to_owned())
+            .collect();
+        assert_eq!(names, ["offset_deg", "rate_rad_s"]);
+    }
+}

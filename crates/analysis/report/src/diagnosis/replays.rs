@@ -1,0 +1,86 @@
+//! The trials that are plotted, simulated by the model before and after.
+
+use sistership_diagnosis::ResidualSeries;
+use sistership_model::Model;
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::recorded::{Replay, ReplaySettings, replay};
+use sistership_simulation::{PlantError, Ship};
+
+use super::input::DiagnosisInput;
+use crate::plots::Hull;
+use crate::replayed::{ReplaySummary, ReplayedTrial};
+
+/// Most trials that are plotted.
+const MOST: usize = 4;
+
+/// Simulates the trials on which the model is most off; those that lack a channel are left out.
+/// What is called source and refined there is the model before and after here.
+pub(crate) fn replay_chosen<'a>(
+    input: &DiagnosisInput<'a>,
+) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
+    let after = input.diagnosis.model.as_ref().unwrap_or(input.model);
+    let (before, after) = (ready(input.model, input)?, ready(after, input)?);
+    let settings = ReplaySettings::default();
+    let one = |trial: &'a Trial| {
+        let (before, after) =
+            (replay(&before, trial, &settings).ok()?, replay(&after, trial, &settings).ok()?);
+        Some(replayed(input, trial, before, after))
+    };
+    Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
+}
+
+fn replayed<'a>(
+    input: &DiagnosisInput<'a>,
+    trial: &'a Trial,
+    before: Replay,
+    after: Replay,
+) -> ReplayedTrial<'a> {
+    let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
+    let shown = ReplaySummary {
+        trial: &trial.name,
+        manoeuvre: trial.manoeuvre.as_deref(),
+        duration_s: trial.duration_s(),
+        fitted: true,
+        source: SquaredError::of(trial, &before).rmse(),
+        refined: SquaredError::of(trial, &after).rmse(),
+        source_stopped: stopped(&before),
+        refined_stopped: stopped(&after),
+    };
+    let hull = Hull::of(&input.model.particulars);
+    ReplayedTrial {
+        trial,
+        source: before,
+        refined: after,
+        rolls: input.law.has_roll(),
+        hull,
+        shown,
+    }
+}
+
+/// A ship whose envelope covers the speeds of the trials.
+fn ready(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> {
+    let mut ship = Ship::new(model, input.law)?;
+    let speeds =
+        input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+    ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
+    Ok(ship)
+}
+
+/// The trials, the one with the largest residual against its noise first.
+fn ranked<'a>(input: &DiagnosisInput<'a>) -> Vec<&'a Trial> {
+    let size = |trial: &Trial| {
+        let own = input.diagnosis.residuals.iter().filter(|series| series.trial == trial.name);
+        own.map(over_noise).fold(0.0, f64::max)
+    };
+    let mut trials: Vec<(f64, &Trial)> =
+        input.trials.iter().map(|trial| (size(trial), *trial)).collect();
+    trials.sort_by(|a, b| b.0.total_cmp(&a.0));
+    trials.into_iter().map(|(_, trial)| trial).collect()
+}
+
+fn over_noise(series: &ResidualSeries) -> f64 {
+    let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+    let noise = square(&series.band);
+    if noise > 0.0 { (square(&series.before) / noise).sqrt() } else { 0.0 }
+}

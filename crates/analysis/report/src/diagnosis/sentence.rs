@@ -1,0 +1,84 @@
+//! The answer in one plain sentence.
+
+use sistership_diagnosis::{Diagnosis, Found, OriginKind, RemainderOrigin, Verdict};
+
+use super::changes::change;
+use super::figures::with_figures;
+use crate::numbers::list;
+
+/// What was found, for a stranger.
+pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
+    let lacks = list(&diagnosis.effects.iter().map(effect).collect::<Vec<_>>());
+    match (diagnosis.verdict, diagnosis.effects.is_empty()) {
+        (Verdict::Complete, _) => {
+            "Your model holds: what remains between it and these trials is what the noise predicts."
+                .into()
+        }
+        (Verdict::Unexplained, true) => {
+            format!(
+                "Something is missing from your model that no known effect explains{}.",
+                where_(diagnosis)
+            )
+        }
+        (Verdict::Unexplained, false) => {
+            format!(
+                "Your model lacks: {lacks}; and something that no known effect explains{}.",
+                where_(diagnosis)
+            )
+        }
+        (Verdict::Effects, _) => format!("Your model lacks: {lacks}."),
+    }
+}
+
+/// An effect with what is known of it: `current (0.60 m/s towards 45 deg)`.
+pub(crate) fn effect(found: &Found) -> String {
+    with_figures(name(found), &found.parameters)
+}
+
+/// What an effect is called: a missing term by the term.
+fn name(found: &Found) -> String {
+    let words = found.name.replace('-', " ");
+    if found.form.starts_with(|first: char| first.is_ascii_uppercase()) {
+        format!("{words} {}", found.form)
+    } else {
+        words
+    }
+}
+
+/// Where it is: the change that explains it, or the stretch that the diagnosis puts first.
+fn where_(diagnosis: &Diagnosis) -> String {
+    if let Some(first) = diagnosis.changes.first() {
+        return format!(" throughout: {}", change(first));
+    }
+    diagnosis.unexplained.first().map_or_else(String::new, |stretch| {
+        let of_stretch = || motion(&stretch.channel).to_owned();
+        let what = diagnosis.origins.first().map_or_else(of_stretch, of_origin);
+        format!(
+            ", most of all in {what} of {} from {:.0} s to {:.0} s",
+            stretch.trial, stretch.from_s, stretch.to_s
+        )
+    })
+}
+
+/// What an origin of the remainder is.
+pub(super) fn of_origin(origin: &RemainderOrigin) -> String {
+    let motion = motion(&origin.channel);
+    match origin.of {
+        OriginKind::Acceleration => motion.to_owned(),
+        OriginKind::Readings => format!("the readings of {motion}"),
+    }
+}
+
+/// The motion whose equation a channel stands for.
+pub(crate) fn motion(channel: &str) -> &str {
+    match channel {
+        "u" => "surge",
+        "v" => "sway",
+        "r" => "yaw",
+        "p" => "roll",
+        "psi" => "the heading",
+        "x" => "the position north",
+        "y" => "the position east",
+        other => other,
+    }
+}

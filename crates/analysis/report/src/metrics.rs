@@ -1,0 +1,36 @@
+//! The figures of a manoeuvre: their names, their units, and how they are read.
+
+use sistership_simulation::metrics::{ManoeuvreMetrics, TurningMetrics, ZigzagMetrics};
+
+/// Takes one figure from the metrics of a manoeuvre.
+pub(crate) type ReadMetric<T> = fn(&T) -> Option<f64>;
+
+/// Of a turning circle, in metres.
+pub(crate) const TURN: [(&str, ReadMetric<TurningMetrics>); 4] = [
+    ("advance", |turn| turn.advance_m),
+    ("transfer", |turn| turn.transfer_m),
+    ("tactical diameter", |turn| turn.tactical_diameter_m),
+    ("steady radius", |turn| turn.steady_radius_m),
+];
+
+/// Of a zigzag, with units.
+pub(crate) const ZIGZAG: [(&str, &str, ReadMetric<ZigzagMetrics>); 3] = [
+    ("first overshoot", "deg", |zigzag| zigzag.first_overshoot_deg),
+    ("second overshoot", "deg", |zigzag| zigzag.second_overshoot_deg),
+    ("period", "s", |zigzag| zigzag.period_s),
+];
+
+/// Name, unit, value.
+pub(crate) type MetricValue = (&'static str, &'static str, Option<f64>);
+
+/// The figures of a manoeuvre.
+pub(crate) fn read(metrics: &ManoeuvreMetrics) -> Vec<MetricValue> {
+    match metrics {
+        ManoeuvreMetrics::Turn(turn) => {
+            TURN.iter().map(|(name, read)| (*name, "m", read(turn))).collect()
+        }
+        ManoeuvreMetrics::Zigzag(zigzag) => {
+            ZIGZAG.iter().map(|(name, unit, read)| (*name, *unit, read(zigzag))).collect()
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The residual of each acceleration over time, before and after, with the band of what noise alone
+//! would show.
+
+use sistership_diagnosis::{ResidualSeries, Unexplained};
+
+use super::axes::{Scale, columns, extent, padded, rows};
+use super::decimate::{kept, path};
+use super::{Plot, Shape, WIDTH};
+use crate::words::acceleration;
+
+const LEFT: f64 = 52.0;
+const RIGHT: f64 = 12.0;
+const TITLE: f64 = 20.0;
+const HEIGHT: f64 = 78.0;
+const BOTTOM: f64 = 34.0;
+
+/// The panels of one trial, one for each acceleration; stretches that nothing explains are shaded.
+pub(crate) fn residual(
+    trial: &str,
+    series: &[&ResidualSeries],
+    stretches: &[&Unexplained],
+) -> Plot {
+    let (low, high) =
+        extent(series.iter().flat_map(|series| series.t_s.iter().copied())).unwrap_or((0.0, 1.0));
+    let time =
+        Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false };
+    let mut shapes = Vec::new();
+    for (index, one) in series.iter().enumerate() {
+        let top = TITLE + index as f64 * (TITLE + HEIGHT);
+        let own: Vec<&Unexplained> =
+            stretches.iter().copied().filter(|stretch| stretch.channel == one.channel).collect();
+        shapes.extend(panel(one, &own, &time, top, index + 1 == series.len()));
+    }
+    let height = series.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
+    shapes.push(Shape::Text {
+        at: (LEFT + time.length / 2.0, height - 4.0),
+        text: "time [s]".into(),
+        class: "title mid",
+    });
+    Plot {
+        width: WIDTH,
+        height,
+        label: format!("Residual accelerations of trial {trial} over time"),
+        shapes,
+    }
+}
+
+fn panel(
+    series: &ResidualSeries,
+    stretches: &[&Unexplained],
+    time: &Scale,
+    top: f64,
+    last: bool,
+) -> Vec<Shape> {
+    let (unit, factor) = acceleration(&series.channel);
+    let all = series.before.iter().chain(&series.after).chain(&series.band);
+    let (low, high) = extent(all.map(|value| value * factor)).unwrap_or((-1.0, 1.0));
+    let (low, high) = padded((low.min(-high_band(series, factor)), high), 0.06);
+    let scale = Scale { low, high, length: HEIGHT, reversed: true };
+    let title = format!("d{}/dt: what must be added to the model [{unit}]", series.channel);
+    let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
+    let place = |values: &[f64]| -> Vec<(f64, f64)> {
+        series
+            .t_s
+            .iter()
+            .zip(values)
+            .map(|(t, value)| (time.at(*t), scale.at(value * factor)))
+            .collect()
+    };
+    let mut areas: Vec<Shape> = stretches.iter().map(|stretch| shade(stretch, time)).collect();
+    areas.push(band(&place(&series.band), scale.at(0.0)));
+    let line = |values: &[f64], class| Shape::Path { d: path(&place(values), |_, _| false), class };
+    let lines = vec![line(&series.before, "source"), line(&series.after, "refined")];
+    let size = (time.length, HEIGHT);
+    shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: areas });
+    shapes.extend(rows((LEFT, top), time.length, &scale, 4));
+    shapes.extend(columns((LEFT, top), HEIGHT, time, 6, last));
+    shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: lines });
+    shapes.push(Shape::Rect { at: (LEFT, top), size, class: "frame" });
+    shapes
+}
+
+fn high_band(series: &ResidualSeries, factor: f64) -> f64 {
+    series.band.iter().fold(0.0, |most: f64, value| most.max(value * factor))
+}
+
+fn shade(stretch: &Unexplained, time: &Scale) -> Shape {
+    let (from, to) = (time.at(stretch.from_s), time.at(stretch.to_s));
+    Shape::Rect { at: (from, 0.0), size: ((to - from).max(1.0), HEIGHT), class: "stretch" }
+}
+
+/// The area between the band and its mirror image about `zero`.
+fn band(edge: &[(f64, f64)], zero: f64) -> Shape {
+    let kept = kept(edge.len());
+    let upper = kept.iter().map(|&index| edge[index]);
+    let lower = kept.iter().rev().map(|&index| (edge[index].0, 2.0 * zero - edge[index].1));
+    let points: Vec<String> = upper.chain(lower).map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
+    let d = if points.is_empty() { String::new() } else { format!("M{}Z", points.join("L")) };
+    Shape::Path { d, class: "band" }
+}

@@ -1,0 +1,58 @@
+//! The residual of an acceleration against the variable that explains most of it, before and after,
+//! all trials together.
+
+use std::collections::BTreeMap;
+
+use sistership_diagnosis::ResidualSeries;
+
+use super::decimate::kept;
+use super::small::SmallPlot;
+use super::{Plot, Shape};
+use crate::words::{acceleration, recorded};
+
+const HEIGHT: f64 = 190.0;
+
+/// One plot for each acceleration and variable.
+pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
+    let mut groups: BTreeMap<(usize, &str, &str), Vec<&ResidualSeries>> = BTreeMap::new();
+    for series in residuals
+        .iter()
+        .filter(|series| series.variable.len() == series.t_s.len() && !series.t_s.is_empty())
+    {
+        let rank =
+            ["u", "v", "r", "p"].iter().position(|known| *known == series.channel).unwrap_or(4);
+        groups.entry((rank, &series.channel, &series.against)).or_default().push(series);
+    }
+    groups
+        .into_iter()
+        .map(|((_, channel, against), group)| scatter(channel, against, &group))
+        .collect()
+}
+
+fn scatter(channel: &str, against: &str, group: &[&ResidualSeries]) -> Plot {
+    let ((name, unit, of_variable), (residual_unit, factor)) =
+        (recorded(against), acceleration(channel));
+    let points = |of: fn(&ResidualSeries) -> &[f64]| -> Vec<(f64, f64)> {
+        let pairs = group.iter().flat_map(|series| series.variable.iter().zip(of(series)));
+        pairs.map(|(x, y)| (of_variable(*x), y * factor)).collect()
+    };
+    let (before, after) = (points(|series| &series.before), points(|series| &series.after));
+    let plot = SmallPlot::over(before.iter().chain(&after), HEIGHT);
+    let clouds = [(&before, "cloud source"), (&after, "cloud refined")]
+        .map(|(points, class)| cloud(points, &plot, class));
+    plot.with(
+        clouds.into(),
+        format!("residual of d{channel}/dt [{residual_unit}]"),
+        format!("{name} [{unit}]"),
+        format!("Residual of d{channel}/dt against {name}"),
+    )
+}
+
+/// Points as strokes without length: far smaller than as many circles.
+fn cloud(points: &[(f64, f64)], plot: &SmallPlot, class: &'static str) -> Shape {
+    let dot = |index: usize| {
+        let (x, y) = plot.at(&points[index]);
+        format!("M{x:.1} {y:.1}h0")
+    };
+    Shape::Path { d: kept(points.len()).into_iter().map(dot).collect(), class }
+}

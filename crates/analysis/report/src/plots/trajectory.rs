@@ -1,0 +1,107 @@
+//! The path over the ground, with the outline of the ship at the same instants on every path.
+
+use sistership_model::trial::Channel;
+use sistership_simulation::recorded::Replay;
+use sistership_simulation::state::at;
+
+use super::axes::{extent, nice_step, shown};
+use super::decimate::path;
+use super::lines::{self, PlottedLine};
+use super::{GroundChart, Hull, Plot, Shape, WIDTH};
+use crate::replayed::ReplayedTrial;
+
+/// The trajectory of one trial.
+pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
+    let lines = lines::positions(replayed);
+    let chart = chart(&lines, replayed.hull);
+    let mut inside: Vec<Shape> = lines.iter().map(|line| curve(&chart, replayed, line)).collect();
+    inside.extend(lines.iter().flat_map(|line| marks(&chart, replayed, line)));
+    let mut shapes = chart.drawn(inside);
+    let first = lines.first().and_then(|line| line.values.first());
+    shapes.extend(first.into_iter().flat_map(|place| chart.start(*place)));
+    Plot {
+        width: WIDTH,
+        height: chart.height(),
+        label: format!("Trajectory of trial {}", replayed.trial.name),
+        shapes,
+    }
+}
+
+/// Seconds between the marks on a path.
+pub fn mark_interval_s(duration_s: f64) -> f64 {
+    nice_step((duration_s / 8.0).max(1e-3))
+}
+
+fn chart(lines: &[PlottedLine<(f64, f64)>], hull: Option<Hull>) -> GroundChart {
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        let own = |measured: bool| {
+            let lines = lines.iter().filter(move |line| (line.class == "measured") == measured);
+            extent(lines.flat_map(|line| line.values.iter().map(of)))
+        };
+        shown(own(true), own(false))
+    };
+    GroundChart::of(range(|point| point.0), range(|point| point.1), hull)
+}
+
+fn curve(
+    chart: &GroundChart,
+    replayed: &ReplayedTrial<'_>,
+    line: &PlottedLine<(f64, f64)>,
+) -> Shape {
+    let starts = lines::starts(replayed.trial);
+    let points: Vec<(f64, f64)> = line.values.iter().map(|point| chart.at(*point)).collect();
+    let jumps = |from: usize, to: usize| {
+        lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to])
+    };
+    Shape::Path { d: path(&points, jumps), class: line.class }
+}
+
+/// Outlines where the heading is known, else dots.
+fn marks(
+    chart: &GroundChart,
+    replayed: &ReplayedTrial<'_>,
+    line: &PlottedLine<(f64, f64)>,
+) -> Vec<Shape> {
+    let times = &replayed.trial.t_s;
+    let interval = mark_interval_s(replayed.trial.duration_s());
+    let number = |index: usize| ((times[line.samples[index]] - times[0]) / interval + 1e-9).floor();
+    let crossed = |index: &usize| number(*index) > number(*index - 1);
+    let mark = |index: usize| {
+        let outline = || {
+            let heading = heading(replayed, line, index)?;
+            chart.outline(replayed.hull?, line.values[index], heading, hull_class(line.class))
+        };
+        let (at, class) = (chart.at(line.values[index]), dot_class(line.class));
+        outline().unwrap_or(Shape::Dot { at, radius: 2.6, class })
+    };
+    (1..line.values.len()).filter(crossed).map(mark).collect()
+}
+
+fn heading(
+    replayed: &ReplayedTrial<'_>,
+    line: &PlottedLine<(f64, f64)>,
+    index: usize,
+) -> Option<f64> {
+    let of = |run: &Replay| run.track.states.get(index).map(|state| state[at::PSI]);
+    match line.class {
+        "source" => of(&replayed.source),
+        "refined" => of(&replayed.refined),
+        _ => replayed.trial.channel(Channel::Psi)?.get(line.samples[index]).copied(),
+    }
+}
+
+fn hull_class(line: &str) -> &'static str {
+    match line {
+        "source" => "hull source",
+        "refined" => "hull refined",
+        _ => "hull measured",
+    }
+}
+
+fn dot_class(line: &str) -> &'static str {
+    match line {
+        "source" => "dot source",
+        "refined" => "dot refined",
+        _ => "dot measured",
+    }
+}

@@ -1,0 +1,94 @@
+//! Which coefficients moved, and how far.
+
+use serde::Serialize;
+use sistership_identification::refine::CoefficientChange;
+
+use super::input::RefinementInput;
+use super::provenance;
+
+/// Every coefficient by axis, and those that the trials cannot tell apart.
+#[derive(Debug, Serialize)]
+pub(crate) struct Coefficients<'a> {
+    pub axes: Vec<AxisChanges<'a>>,
+    pub collinear_groups: &'a [Vec<String>],
+    pub condition_number: f64,
+}
+
+/// The coefficients of one axis.
+#[derive(Debug, Serialize)]
+pub(crate) struct AxisChanges<'a> {
+    pub axis: &'a str,
+    pub coefficients: Vec<ChangedCoefficient<'a>>,
+}
+
+/// One coefficient with what a reader wants to know of it.
+#[derive(Debug, Serialize)]
+pub(crate) struct ChangedCoefficient<'a> {
+    #[serde(flatten)]
+    pub change: &'a CoefficientChange,
+    /// ChangedCoefficient over the size of the source's value, in per cent; none where the source
+    /// has none.
+    pub moved_percent: Option<f64>,
+    /// Number of its collinear group, from 1.
+    pub collinear_group: Option<usize>,
+    /// Whether the source's figure is an estimate.
+    pub source_estimated: bool,
+}
+
+impl<'a> Coefficients<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
+        let refinement = input.refinement;
+        let mut axes: Vec<AxisChanges<'a>> = Vec::new();
+        for axis in ["X", "Y", "K", "N"] {
+            let own = refinement.coefficients.iter().filter(|change| axis_of(&change.name) == axis);
+            let coefficients: Vec<ChangedCoefficient<'a>> =
+                own.map(|change| ChangedCoefficient::of(input, change)).collect();
+            if !coefficients.is_empty() {
+                axes.push(AxisChanges { axis, coefficients });
+            }
+        }
+        Self {
+            axes,
+            collinear_groups: &refinement.collinear_groups,
+            condition_number: refinement.condition_number,
+        }
+    }
+
+    /// Every coefficient.
+    pub fn all(&self) -> impl Iterator<Item = &ChangedCoefficient<'a>> {
+        self.axes.iter().flat_map(|axis| &axis.coefficients)
+    }
+
+    /// The power of ten in which the values read best: that of prime systems where all are small
+    /// numbers without unit.
+    pub fn exponent(&self) -> i32 {
+        let mut sizes: Vec<f64> =
+            self.all().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
+        sizes.sort_by(f64::total_cmp);
+        let bare = self.all().all(|c| c.change.unit == "1");
+        let small = sizes.get(sizes.len() / 2).is_some_and(|median| *median < 0.02);
+        if bare && small { -5 } else { 0 }
+    }
+}
+
+impl<'a> ChangedCoefficient<'a> {
+    fn of(input: &RefinementInput<'_>, change: &'a CoefficientChange) -> Self {
+        let groups = &input.refinement.collinear_groups;
+        let in_group = |group: &Vec<String>| {
+            group.iter().any(|names| names.split('/').any(|name| name == change.name))
+        };
+        let quantity = input.refinement.transferred.coefficients.get(&change.name);
+        Self {
+            change,
+            moved_percent: (change.source != 0.0)
+                .then(|| 100.0 * (change.refined - change.source) / change.source.abs()),
+            collinear_group: groups.iter().position(in_group).map(|index| index + 1),
+            source_estimated: quantity
+                .is_some_and(|quantity| provenance::is_estimated(&quantity.source)),
+        }
+    }
+}
+
+fn axis_of(name: &str) -> &str {
+    name.split_once('_').map_or("", |(axis, _)| axis)
+}

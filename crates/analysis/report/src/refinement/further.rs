@@ -1,0 +1,28 @@
+//! What the refined model says of stopping and of keeping a course.
+
+use sistership_simulation::manoeuvre::{
+    FurtherAsked, FurtherManoeuvres, ManoeuvreSettings, further,
+};
+use sistership_simulation::{PlantError, Ship};
+
+use super::input::RefinementInput;
+
+/// The usual manoeuvres beside the standard ones, sailed by the refined model.
+pub(crate) fn sailed(input: &RefinementInput<'_>) -> Result<FurtherManoeuvres, PlantError> {
+    let (model, law) = (&input.refinement.model, input.law);
+    let ship = Ship::new(model, law)?;
+    Ok(further(model, law, &ship, &ManoeuvreSettings::default(), &FurtherAsked::usual()))
+}
+
+/// What must be known to read the figures.
+pub(crate) fn remarks(sailed: &FurtherManoeuvres, lpp_m: f64) -> Vec<String> {
+    let stable = match sailed.straight_line_stable {
+        Some(true) => Some("by pull-outs to both sides the ship is stable on a straight course"),
+        Some(false) => Some("by pull-outs the ship is not stable on a straight course"),
+        None if sailed.pull_outs.is_empty() => None,
+        None => Some("by pull-outs it cannot be told whether it is stable on a straight course"),
+    };
+    let mut all = sailed.remarks(lpp_m);
+    all.extend(stable.map(str::to_owned));
+    all
+}

@@ -1,0 +1,186 @@
+//! The standard manoeuvres and the IMO criteria before and after.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+use sistership_assessment::uncertainty::Bands;
+use sistership_model::validity::Excursion;
+use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+
+use super::input::RefinementInput;
+use crate::metrics::{TURN, ZIGZAG};
+
+/// The two sides of every figure.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub(crate) struct FigurePair {
+    pub source: Option<f64>,
+    pub refined: Option<f64>,
+}
+
+/// One figure of one manoeuvre.
+#[derive(Debug, Serialize)]
+pub(crate) struct ManoeuvreFigure {
+    pub manoeuvre: String,
+    pub figure: &'static str,
+    pub unit: &'static str,
+    #[serde(flatten)]
+    pub pair: FigurePair,
+    /// 95 % of models drawn from the refined one's posterior are between.
+    pub band: Option<[f64; 2]>,
+}
+
+/// One IMO criterion.
+#[derive(Debug, Serialize)]
+pub(crate) struct CriterionComparison<'a> {
+    pub criterion: &'a str,
+    pub limit: f64,
+    pub unit: &'a str,
+    pub source: Option<f64>,
+    pub source_pass: Option<bool>,
+    pub refined: Option<f64>,
+    pub refined_pass: Option<bool>,
+    /// 95 % of models drawn from the refined one's posterior are between.
+    pub band: Option<[f64; 2]>,
+    /// Share of them that meet it.
+    pub pass_share: Option<f64>,
+}
+
+/// The whole comparison.
+#[derive(Debug, Serialize)]
+pub(crate) struct ManoeuvreComparison<'a> {
+    pub lpp_m: Option<f64>,
+    pub speed_m_s: Option<f64>,
+    pub turns: Vec<ManoeuvreFigure>,
+    pub zigzags: Vec<ManoeuvreFigure>,
+    pub imo: Vec<CriterionComparison<'a>>,
+    pub source_failures: &'a [String],
+    pub refined_failures: &'a [String],
+    /// Manoeuvres in which the refined model leaves what its trials covered.
+    pub outside: &'a BTreeMap<String, Excursion>,
+    /// The trial that would help most.
+    pub next_trial: Option<String>,
+}
+
+impl<'a> ManoeuvreComparison<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
+        let both = &input.refinement.manoeuvres;
+        let (source, refined, bands) = (&both.source, &both.refined, both.bands.as_ref());
+        Self {
+            lpp_m: input.vessel.particular("lpp_m"),
+            speed_m_s: input.refinement.model.speed_m_s,
+            turns: turns(&source.turns, &refined.turns, bands),
+            zigzags: zigzags(&source.zigzags, &refined.zigzags, bands),
+            imo: criteria(&source.imo, &refined.imo, bands),
+            source_failures: &source.failures,
+            refined_failures: &refined.failures,
+            outside: &refined.outside,
+            next_trial: bands.and_then(|bands| Some(bands.next_trial.as_ref()?.words())),
+        }
+    }
+}
+
+/// The values of one key from both sides, in the order of the first; what only one side sailed is
+/// kept.
+fn matched<'t, T>(
+    source: &'t [T],
+    refined: &'t [T],
+    same: impl Fn(&T, &T) -> bool,
+) -> Vec<(Option<&'t T>, Option<&'t T>)> {
+    let mut pairs: Vec<_> = source
+        .iter()
+        .map(|one| (Some(one), refined.iter().find(|other| same(one, other))))
+        .collect();
+    let alone = refined.iter().filter(|other| !source.iter().any(|one| same(one, other)));
+    pairs.extend(alone.map(|other| (None, Some(other))));
+    pairs
+}
+
+/// The edges of a figure's band.
+fn band(bands: Option<&Bands>, name: &str) -> Option<[f64; 2]> {
+    bands?.of(name).map(|band| [band.low, band.high])
+}
+
+fn turns(
+    source: &[TurningMetrics],
+    refined: &[TurningMetrics],
+    bands: Option<&Bands>,
+) -> Vec<ManoeuvreFigure> {
+    let mut figures = Vec::new();
+    for (before, after) in matched(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
+        let rudder = before.or(after).map_or(0.0, |turn| turn.rudder_deg);
+        let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), side(rudder));
+        for (figure, read) in TURN {
+            let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
+            let band = band(bands, &format!("turn {rudder} deg: {figure}"));
+            figures.push(ManoeuvreFigure {
+                manoeuvre: manoeuvre.clone(),
+                figure,
+                unit: "m",
+                pair,
+                band,
+            });
+        }
+    }
+    figures
+}
+
+fn zigzags(
+    source: &[ZigzagMetrics],
+    refined: &[ZigzagMetrics],
+    bands: Option<&Bands>,
+) -> Vec<ManoeuvreFigure> {
+    let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| {
+        a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg
+    };
+    let mut figures = Vec::new();
+    for (before, after) in matched(source, refined, same) {
+        let Some(one) = before.or(after) else { continue };
+        let manoeuvre = format!(
+            "zigzag {}/{}, first to {}",
+            one.rudder_deg.abs(),
+            one.switch_deg,
+            side(one.rudder_deg)
+        );
+        for (figure, unit, read) in ZIGZAG {
+            let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
+            let band =
+                band(bands, &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg));
+            figures.push(ManoeuvreFigure {
+                manoeuvre: manoeuvre.clone(),
+                figure,
+                unit,
+                pair,
+                band,
+            });
+        }
+    }
+    figures
+}
+
+fn criteria<'a>(
+    source: &'a [Criterion],
+    refined: &'a [Criterion],
+    bands: Option<&Bands>,
+) -> Vec<CriterionComparison<'a>> {
+    let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
+    let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
+        let any = after.or(before)?;
+        let drawn = bands.and_then(|bands| bands.of(&format!("IMO: {}", any.criterion)));
+        Some(CriterionComparison {
+            criterion: &any.criterion,
+            limit: any.limit,
+            unit: &any.unit,
+            source: before.and_then(|criterion| criterion.value),
+            source_pass: before.and_then(|criterion| criterion.pass),
+            refined: after.and_then(|criterion| criterion.value),
+            refined_pass: after.and_then(|criterion| criterion.pass),
+            band: drawn.map(|band| [band.low, band.high]),
+            pass_share: drawn.and_then(|band| band.pass),
+        })
+    };
+    pairs.into_iter().filter_map(one).collect()
+}
+
+fn side(rudder_deg: f64) -> &'static str {
+    if rudder_deg < 0.0 { "port" } else { "starboard" }
+}

@@ -1,0 +1,127 @@
+//! Where every figure comes from.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use sistership_identification::refine::Settings;
+use sistership_model::estimated_particulars::{EstimatedParticular, SCALED, estimated_particulars};
+use sistership_model::law::Parameter;
+use sistership_model::model::DERIVED;
+use sistership_model::quantity::Quantity;
+use sistership_model::source::Source;
+use sistership_model::vessel::{Status, Steering};
+
+use super::input::RefinementInput;
+use crate::words;
+
+/// What the refined model was made of.
+#[derive(Debug, Serialize)]
+pub(crate) struct Provenance<'a> {
+    pub particulars: Vec<StatedQuantity<'a>>,
+    pub estimated_particulars: Vec<EstimatedParticular>,
+    pub parameters: Vec<StatedQuantity<'a>>,
+    pub steering: &'a Steering,
+    pub ship_sources: &'a BTreeMap<String, Source>,
+    pub model_sources: &'a BTreeMap<String, Source>,
+    pub law_sources: &'a BTreeMap<String, Source>,
+    pub source_note: Option<&'a str>,
+    pub trials: Vec<&'a str>,
+    pub remarks: &'a [String],
+    pub condition_number: f64,
+    pub settings: &'a Settings,
+}
+
+/// A figure with where it comes from.
+#[derive(Debug, Serialize)]
+pub(crate) struct StatedQuantity<'a> {
+    pub name: &'a str,
+    pub meaning: String,
+    pub unit: &'a str,
+    #[serde(flatten)]
+    pub quantity: &'a Quantity,
+    /// How it came about, where it is not simply stated by a source.
+    pub kind: Option<&'static str>,
+}
+
+impl<'a> Provenance<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
+        let (refinement, model) = (input.refinement, &input.refinement.model);
+        Self {
+            particulars: model
+                .particulars
+                .iter()
+                .map(|(name, quantity)| particular(name, quantity))
+                .collect(),
+            estimated_particulars: estimated_particulars(&model.particulars),
+            parameters: model
+                .parameters
+                .iter()
+                .map(|(name, q)| parameter(name, q, input.law.parameters.get(name)))
+                .collect(),
+            steering: &model.steering,
+            ship_sources: &input.vessel.file.sources,
+            model_sources: &refinement.transferred.sources,
+            law_sources: &input.law.sources,
+            source_note: refinement.transferred.note.as_deref(),
+            trials: input.trials.iter().map(|trial| trial.name.as_str()).collect(),
+            remarks: &refinement.remarks,
+            condition_number: refinement.condition_number,
+            settings: &refinement.settings,
+        }
+    }
+}
+
+fn particular<'a>(name: &'a str, quantity: &'a Quantity) -> StatedQuantity<'a> {
+    let (meaning, unit) = words::field(name);
+    StatedQuantity { name, meaning, unit, quantity, kind: kind(&quantity.source) }
+}
+
+fn parameter<'a>(
+    name: &'a str,
+    quantity: &'a Quantity,
+    of: Option<&'a Parameter>,
+) -> StatedQuantity<'a> {
+    let (meaning, unit) =
+        of.map_or(("", "–"), |parameter| (parameter.meaning.as_str(), parameter.unit.as_str()));
+    StatedQuantity {
+        name,
+        meaning: meaning.to_owned(),
+        unit,
+        quantity,
+        kind: kind(&quantity.source),
+    }
+}
+
+/// How a figure came about, by its source.
+fn kind(source: &str) -> Option<&'static str> {
+    match source {
+        DERIVED => Some("derived"),
+        "approach-speed" => Some("from trials"),
+        _ if source.starts_with(SCALED) => Some("scaled"),
+        _ if is_estimated(source) => Some("estimated"),
+        _ if source.starts_with("mean of what") => Some("of a population"),
+        _ => None,
+    }
+}
+
+/// Whether a source says that its figure is an estimate.
+pub(crate) fn is_estimated(source: &str) -> bool {
+    source.to_lowercase().contains("estimat")
+}
+
+/// The status of the source model, where the documents at hand tell: a model of the ship itself, or
+/// one not carried over.
+pub(crate) fn source_status(input: &RefinementInput<'_>) -> Option<Status> {
+    let refinement = input.refinement;
+    if refinement.transferred.status != Status::Transferred {
+        return Some(refinement.transferred.status);
+    }
+    let (ship, model) = refinement.source.split_once('/')?;
+    let own = input
+        .vessel
+        .file
+        .models
+        .iter()
+        .find(|file| ship == input.vessel.name() && file.name == model);
+    own.map(|file| file.status)
+}

@@ -1,0 +1,115 @@
+//! The trials that are plotted, simulated by the source and by the refined model.
+
+use std::collections::BTreeMap;
+
+use sistership_model::Model;
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::recorded::{Replay, ReplaySettings, replay};
+use sistership_simulation::{PlantError, Ship};
+
+use super::input::RefinementInput;
+use crate::plots::Hull;
+use crate::replayed::{ReplaySummary, ReplayedTrial};
+
+/// Most trials that are plotted.
+const MOST: usize = 4;
+
+/// Simulates the chosen trials; those that lack a channel are left out.
+pub(crate) fn replay_chosen<'a>(
+    input: &RefinementInput<'a>,
+) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
+    let source = ready(&input.refinement.transferred, input)?;
+    let refined = ready(&input.refinement.model, input)?;
+    let settings = ReplaySettings::default();
+    let one = |trial: &'a Trial| {
+        let runs =
+            (replay(&source, trial, &settings).ok()?, replay(&refined, trial, &settings).ok()?);
+        Some(replayed(input, trial, runs))
+    };
+    Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
+}
+
+fn replayed<'a>(
+    input: &RefinementInput<'a>,
+    trial: &'a Trial,
+    (source, refined): (Replay, Replay),
+) -> ReplayedTrial<'a> {
+    let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
+    let shown = ReplaySummary {
+        trial: &trial.name,
+        manoeuvre: trial.manoeuvre.as_deref(),
+        duration_s: trial.duration_s(),
+        fitted: is_fitted(input, trial) && !input.refinement.is_source_kept(),
+        source: SquaredError::of(trial, &source).rmse(),
+        refined: SquaredError::of(trial, &refined).rmse(),
+        source_stopped: stopped(&source),
+        refined_stopped: stopped(&refined),
+    };
+    let hull = Hull::of(&input.refinement.model.particulars);
+    ReplayedTrial { trial, source, refined, rolls: input.law.has_roll(), hull, shown }
+}
+
+fn is_fitted(input: &RefinementInput<'_>, trial: &Trial) -> bool {
+    !input.refinement.settings.held_out.contains(&trial.name)
+}
+
+/// A ship whose envelope covers the speeds of the trials.
+fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError> {
+    let mut ship = Ship::new(model, input.law)?;
+    let speeds =
+        input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+    ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
+    Ok(ship)
+}
+
+/// The trials in the order of interest: kinds of manoeuvre in turn, held out before fitted, and
+/// within a kind first one from each half of the list, where names that sort alike stand together.
+fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
+    let mut kinds: BTreeMap<(bool, ManoeuvreKind), Vec<&Trial>> = BTreeMap::new();
+    for trial in input.trials {
+        kinds.entry((is_fitted(input, trial), ManoeuvreKind::of(trial))).or_default().push(trial);
+    }
+    let mut keyed: Vec<((bool, usize, ManoeuvreKind), &Trial)> = Vec::new();
+    for ((fitted, kind), trials) in kinds {
+        keyed.extend(
+            spread(trials)
+                .into_iter()
+                .enumerate()
+                .map(|(turn, trial)| ((fitted, turn, kind), trial)),
+        );
+    }
+    keyed.sort_by_key(|(key, _)| *key);
+    keyed.into_iter().map(|(_, trial)| trial).collect()
+}
+
+/// The first and the middle one before the others.
+fn spread(mut trials: Vec<&Trial>) -> Vec<&Trial> {
+    if trials.len() > 2 {
+        let middle = trials.remove(trials.len() / 2);
+        trials.insert(1, middle);
+    }
+    trials
+}
+
+/// What was sailed, as far as its name tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum ManoeuvreKind {
+    Zigzag,
+    Turn,
+    Other,
+}
+
+impl ManoeuvreKind {
+    fn of(trial: &Trial) -> Self {
+        let text =
+            format!("{} {}", trial.manoeuvre.as_deref().unwrap_or(""), trial.name).to_lowercase();
+        if text.contains("zigzag") || text.contains("zig-zag") || text.contains("zz") {
+            Self::Zigzag
+        } else if text.contains("turn") || text.contains("circle") {
+            Self::Turn
+        } else {
+            Self::Other
+        }
+    }
+}

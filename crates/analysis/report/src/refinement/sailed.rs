@@ -1,0 +1,45 @@
+//! Manoeuvres that were sailed at sea, beside what both models make of the recorded rudder.
+
+use serde::Serialize;
+use sistership_identification::refine::MeasuredManoeuvre;
+use sistership_simulation::metrics::ManoeuvreMetrics;
+
+use super::input::RefinementInput;
+use crate::metrics::{MetricValue, read};
+
+/// One figure of one trial.
+#[derive(Debug, Serialize)]
+pub(crate) struct Sailed {
+    /// The trial, and whether the fit has seen it.
+    pub trial: String,
+    pub figure: &'static str,
+    pub unit: &'static str,
+    pub measured: Option<f64>,
+    pub source: Option<f64>,
+    pub refined: Option<f64>,
+}
+
+/// Every figure of every manoeuvre that was recognised.
+pub(crate) fn figures(input: &RefinementInput<'_>) -> Vec<Sailed> {
+    input.refinement.manoeuvres.measured.iter().flat_map(of_manoeuvre).collect()
+}
+
+fn of_manoeuvre(manoeuvre: &MeasuredManoeuvre) -> Vec<Sailed> {
+    let seen = if manoeuvre.fitted { "fitted" } else { "kept out of the fit" };
+    let trial = format!("{}, {seen}", manoeuvre.trial);
+    let measured = read(&manoeuvre.measured);
+    let of = |metrics: &Option<ManoeuvreMetrics>| metrics.as_ref().map(read).unwrap_or_default();
+    let (source, refined) = (of(&manoeuvre.source), of(&manoeuvre.refined));
+    let value = |all: &[MetricValue], index: usize| all.get(index).and_then(|figure| figure.2);
+    let one = |(index, &(figure, unit, measured)): (usize, &MetricValue)| Sailed {
+        trial: trial.clone(),
+        figure,
+        unit,
+        measured,
+        source: value(&source, index),
+        refined: value(&refined, index),
+    };
+    // With the recorded rudder both models have the period of the record.
+    let known = |sailed: &Sailed| sailed.measured.is_some() && sailed.figure != "period";
+    measured.iter().enumerate().map(one).filter(known).collect()
+}

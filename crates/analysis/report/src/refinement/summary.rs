@@ -1,0 +1,148 @@
+//! The headline and the errors before and after.
+
+use serde::Serialize;
+use sistership_identification::refine::TRIALS_ALONE;
+use sistership_model::vessel::Status;
+
+use super::input::RefinementInput;
+use super::provenance;
+use crate::error_row::{ErrorRow, times};
+use crate::numbers::list;
+use crate::rendered::VersionLabel;
+use crate::words::{self, CHANNELS, ShownChannel};
+
+/// What the report is of, and what came out.
+#[derive(Debug, Serialize)]
+pub(crate) struct Headline<'a> {
+    pub ship: &'a str,
+    pub title: &'a str,
+    pub source: &'a str,
+    pub source_status: Option<Status>,
+    pub status: Status,
+    pub law: &'a str,
+    pub law_title: &'a str,
+    pub method: &'a str,
+    pub trials: usize,
+    pub version: Option<VersionLabel>,
+    pub verdict: String,
+}
+
+impl<'a> Headline<'a> {
+    pub fn of(input: &RefinementInput<'a>, errors: &HeldOutErrors<'_>) -> Self {
+        let refinement = input.refinement;
+        Self {
+            ship: &refinement.ship,
+            title: &input.vessel.file.title,
+            source: &refinement.source,
+            source_status: provenance::source_status(input),
+            status: refinement.model.status,
+            law: &input.law.name,
+            law_title: &input.law.title,
+            method: &refinement.method,
+            trials: input.trials.len(),
+            version: input.version.clone(),
+            verdict: verdict(input, errors),
+        }
+    }
+}
+
+/// HeldOutErrors on manoeuvres left out.
+#[derive(Debug, Serialize)]
+pub(crate) struct HeldOutErrors<'a> {
+    pub how: &'a str,
+    /// Whether the errors are of the very trial that was fitted.
+    pub on_fitted_trial: bool,
+    pub restart_s: Option<f64>,
+    /// Over which the measured motion was smoothed, s; none where trials were kept out, which are
+    /// compared as recorded.
+    pub smoothing_s: Option<f64>,
+    pub rows: Vec<ErrorRow>,
+}
+
+impl<'a> HeldOutErrors<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
+        let (held_out, settings) = (&input.refinement.held_out, &input.refinement.settings);
+        let rolls = |quantity: &ShownChannel| {
+            input.law.has_roll() || !matches!(quantity.channel, "phi" | "p")
+        };
+        let rows = CHANNELS
+            .into_iter()
+            .filter(rolls)
+            .map(|q| ErrorRow::of(q, &held_out.source, &held_out.refined));
+        Self {
+            how: &held_out.how,
+            on_fitted_trial: settings.held_out.is_empty() && input.trials.len() == 1,
+            restart_s: settings.restart_s,
+            smoothing_s: settings.compared_smoothing_s(),
+            rows: rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect(),
+        }
+    }
+
+    /// The rows of a headline: speeds, yaw rate, heading and position.
+    pub fn headline(&self) -> impl Iterator<Item = &ErrorRow> {
+        self.rows
+            .iter()
+            .filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel))
+    }
+}
+
+/// What such a comparison is worth: of a law that lists no coefficient a source says something only
+/// where it is fitted.
+fn without_coefficients(input: &RefinementInput<'_>) -> String {
+    let source = &input.refinement.source;
+    let who = match source == TRIALS_ALONE {
+        true => "No ship was the source".to_owned(),
+        false => format!("What {source} says is the prior, not what is compared"),
+    };
+    format!(
+        " {who}: the comparison is with the law without coefficients, which answers to no rudder, \
+         so these factors are no measure of what a similar ship would have given."
+    )
+}
+
+fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
+    if input.refinement.is_source_kept() {
+        return "No refinement beat the source on manoeuvres left out: the source model is kept as \
+            it is.".into();
+    }
+    let phrases: Vec<String> =
+        ["fell", "rose", "unchanged"].into_iter().filter_map(|word| phrase(errors, word)).collect();
+    let place = if errors.on_fitted_trial {
+        "On the trial that was fitted (nothing could be left out)"
+    } else {
+        "On manoeuvres that the fit had not seen"
+    };
+    if phrases.is_empty() {
+        return format!("{place}, no error is known.");
+    }
+    let compared = if is_blank(input) { without_coefficients(input) } else { String::new() };
+    format!("{place}, the error {}.{compared}", phrases.join("; it "))
+}
+
+/// Whether what stands for the source is a law without coefficients.
+fn is_blank(input: &RefinementInput<'_>) -> bool {
+    input.refinement.transferred.coefficients.values().all(|coefficient| coefficient.value == 0.0)
+}
+
+/// `fell by a factor of 4.2 in surge speed and 1.3 in heading`.
+fn phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
+    let rows: Vec<&ErrorRow> = errors.headline().filter(|row| row.change().0 == word).collect();
+    let named = |row: &&ErrorRow| match row.change() {
+        ("unchanged", _) => row.quantity.name.to_owned(),
+        (_, factor) => format!("{} in {}", times(factor), row.quantity.name),
+    };
+    let words = list(&rows.iter().map(named).collect::<Vec<_>>());
+    match word {
+        _ if rows.is_empty() => None,
+        "unchanged" => Some(format!("is unchanged in {words}")),
+        _ => Some(format!("{word} by a factor of {words}")),
+    }
+}
+
+/// The estimator in words.
+pub(crate) fn method_text(headline: &Headline<'_>) -> String {
+    match words::method(headline.method) {
+        "" => headline.method.to_owned(),
+        text => format!("{}: {text}", headline.method),
+    }
+}

@@ -1,0 +1,66 @@
+//! The trials that could be sailed.
+
+use sistership_simulation::manoeuvre::Manoeuvre;
+
+use crate::thresholds::THRESHOLDS;
+
+/// One of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Candidate {
+    /// What the rudder does.
+    pub manoeuvre: Manoeuvre,
+    /// Approach speed by that of the model.
+    pub speed: f64,
+    /// Heading of the approach, deg.
+    pub heading_deg: f64,
+}
+
+/// Rudder angles of turns, deg: from the initial turn to hard over.
+const TURNS_DEG: [f64; 5] = [10.0, 15.0, 20.0, 25.0, 35.0];
+
+/// Rudder and change of heading of zigzags, deg: those of IMO, gentler and harder ones, and two
+/// with more rudder than heading.
+const ZIGZAGS_DEG: [(f64, f64); 6] =
+    [(5.0, 5.0), (10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (30.0, 30.0), (35.0, 20.0)];
+
+/// The manoeuvres of IMO MSC.137(76), in the order in which yards sail them.
+const STANDARD: [Manoeuvre; 6] = [
+    Manoeuvre::Turn { rudder: 35.0 },
+    Manoeuvre::Turn { rudder: -35.0 },
+    Manoeuvre::Zigzag { rudder: 10.0, switch: 10.0 },
+    Manoeuvre::Zigzag { rudder: -10.0, switch: 10.0 },
+    Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 },
+    Manoeuvre::Zigzag { rudder: -20.0, switch: 20.0 },
+];
+
+/// Every manoeuvre to both sides, at every speed, and on several headings where something comes
+/// from outside.
+pub(crate) fn candidates(has_outside: bool) -> Vec<Candidate> {
+    let turns = TURNS_DEG.into_iter().map(|rudder| Manoeuvre::Turn { rudder });
+    let zigzag = |(rudder, switch): (f64, f64)| Manoeuvre::Zigzag { rudder, switch };
+    let one_side = turns.chain(ZIGZAGS_DEG.map(zigzag));
+    let both = one_side.flat_map(|manoeuvre| [manoeuvre, mirrored(manoeuvre)]);
+    let headings = &THRESHOLDS.headings_deg[..if has_outside { 3 } else { 1 }];
+    let at = |manoeuvre: Manoeuvre| {
+        let speeds = THRESHOLDS.speeds.into_iter();
+        speeds.flat_map(move |speed| {
+            headings.iter().map(move |&heading_deg| Candidate { manoeuvre, speed, heading_deg })
+        })
+    };
+    both.flat_map(at).collect()
+}
+
+fn mirrored(manoeuvre: Manoeuvre) -> Manoeuvre {
+    match manoeuvre {
+        Manoeuvre::Turn { rudder } => Manoeuvre::Turn { rudder: -rudder },
+        Manoeuvre::Zigzag { rudder, switch } => Manoeuvre::Zigzag { rudder: -rudder, switch },
+    }
+}
+
+/// Places among candidates of the IMO manoeuvres at full speed, on the first heading.
+pub(crate) fn standard(candidates: &[Candidate]) -> Vec<usize> {
+    let place = |manoeuvre: Manoeuvre| {
+        candidates.iter().position(|one| one.manoeuvre == manoeuvre && one.speed == 1.0)
+    };
+    STANDARD.into_iter().filter_map(place).collect()
+}

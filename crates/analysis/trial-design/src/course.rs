@@ -1,0 +1,117 @@
+//! A candidate sailed by the model: the track that would be recorded, and how long everything
+//! takes.
+
+use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, sail_together};
+use sistership_simulation::state::{StateVector, Trajectory, at, speed};
+use sistership_simulation::{Method, Order, Run, Ship};
+
+use crate::candidates::Candidate;
+use crate::thresholds::THRESHOLDS;
+
+/// A candidate that was sailed.
+#[derive(Debug, Clone)]
+pub(crate) struct Course {
+    pub candidate: Candidate,
+    /// With the run before the rudder is executed.
+    pub track: Trajectory,
+    /// From the execution of the rudder to the end, s.
+    pub manoeuvre_s: f64,
+    /// With the approach, and until the ship is steady at its full speed again, s.
+    pub takes_s: f64,
+}
+
+/// Sails candidates at one speed in lockstep; why, where one leaves the physical range.
+pub(crate) fn courses(ship: &Ship, candidates: &[Candidate]) -> Vec<Result<Course, String>> {
+    let Some(first) = candidates.first() else { return Vec::new() };
+    let speed_m_s = first.speed * ship.approach_speed_m_s();
+    let length_s = ship.lpp_m() / speed_m_s;
+    let settings = ManoeuvreSettings {
+        speed_m_s: Some(speed_m_s),
+        run_in_s: THRESHOLDS.run_in * length_s,
+        ..ManoeuvreSettings::default()
+    };
+    let (turns, zigzags): (Vec<Candidate>, Vec<Candidate>) =
+        candidates.iter().partition(|one| matches!(one.manoeuvre, Manoeuvre::Turn { .. }));
+    let longest = ManoeuvreSettings { duration_s: Some(THRESHOLDS.longest * length_s), ..settings };
+    let sail = |all: &[Candidate], settings: &ManoeuvreSettings| {
+        let manoeuvres: Vec<(Manoeuvre, &[f64])> =
+            all.iter().map(|one| (one.manoeuvre, &[] as &[f64])).collect();
+        let sailed = sail_together(ship, &manoeuvres, settings);
+        let one = |(candidate, sailed): (&Candidate, _)| {
+            course(ship, *candidate, sailed, settings.run_in_s)
+        };
+        all.iter().zip(sailed.into_iter().map(tracked)).map(one).collect::<Vec<_>>()
+    };
+    let mut all = sail(&turns, &longest);
+    all.extend(sail(&zigzags, &settings));
+    all
+}
+
+fn tracked(
+    sailed: Result<sistership_simulation::manoeuvre::Sailed, sistership_simulation::Stopped>,
+) -> Result<Trajectory, String> {
+    sailed.map(|sailed| sailed.track).map_err(|stopped| stopped.to_string())
+}
+
+fn course(
+    ship: &Ship,
+    candidate: Candidate,
+    track: Result<Trajectory, String>,
+    run_in_s: f64,
+) -> Result<Course, String> {
+    let name = |reason: String| format!("{}: {reason}", candidate.manoeuvre);
+    let track = cut(track.map_err(name)?);
+    let last = *track.last().ok_or_else(|| name("nothing was sailed".into()))?;
+    let end_s = track.t_s.last().copied().unwrap_or_default();
+    let full = ship.approach_speed_m_s();
+    let slower = straight_at(full);
+    let slowing_s =
+        if candidate.speed == 1.0 { 0.0 } else { recovery_s(ship, slower, candidate.speed * full) };
+    let takes_s = slowing_s + end_s + recovery_s(ship, last, full);
+    Ok(Course { candidate, manoeuvre_s: end_s - run_in_s, track, takes_s })
+}
+
+fn straight_at(speed_m_s: f64) -> StateVector {
+    sistership_simulation::state::straight(speed_m_s)
+}
+
+/// A track until the ship has turned so far as a turning circle is sailed.
+fn cut(track: Trajectory) -> Trajectory {
+    let most = THRESHOLDS.turned_deg.to_radians();
+    let end = track.states.iter().position(|state| state[at::PSI].abs() >= most);
+    let mut kept = Trajectory::default();
+    for k in 0..end.map_or(track.t_s.len(), |end| end + 1) {
+        kept.push(track.t_s[k], track.states[k], track.n_rps[k]);
+    }
+    kept
+}
+
+/// How long the ship needs, on whatever heading, until it is steady at a speed, s.
+fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
+    let length_s = ship.lpp_m() / speed_m_s;
+    let given = THRESHOLDS;
+    let (psi, n_rps) = (from[at::PSI], ship.revolutions_at(speed_m_s));
+    let most = given.helm_deg.to_radians();
+    let is_steady = |state: &StateVector| {
+        (speed(state) / speed_m_s - 1.0).abs() < given.steady_speed
+            && state[at::R].abs() * length_s < given.steady_rate
+    };
+    let bridge = |_: f64, state: &StateVector| {
+        let [by_heading, by_rate] = given.helm;
+        let error = by_heading * (state[at::PSI] - psi) + by_rate * state[at::R] * length_s;
+        let order = Order { delta_rad: (-error).clamp(-most, most), n_rps };
+        (!is_steady(state)).then_some(order)
+    };
+    let run = Run {
+        start: from,
+        duration_s: given.recovery * length_s,
+        step_s: given.interval * length_s,
+        method: Method::Rk4,
+    };
+    let mut track = Trajectory::default();
+    // One that leaves the physical range while it steadies takes as long as is waited at most.
+    match ship.sail(run, &mut track, bridge) {
+        Ok(()) => track.t_s.last().copied().unwrap_or_default(),
+        Err(_) => run.duration_s,
+    }
+}

@@ -1,0 +1,48 @@
+//! The instruments by which planned trials are read.
+
+use serde::{Deserialize, Serialize};
+use sistership_filtering::{Instrument, Noise};
+use sistership_model::trial::Channel;
+
+/// Standard deviations of the noise of readings.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Instruments {
+    /// Position, m.
+    pub position_m: f64,
+    /// Velocities, m/s.
+    pub velocity_m_s: f64,
+    /// Yaw and roll rate, rad/s.
+    pub rate_rad_s: f64,
+    /// Heading and roll, rad.
+    pub angle_rad: f64,
+}
+
+impl Instruments {
+    /// Of a sea trial. Source: chosen; differential GNSS, gyro compass and rate gyro.
+    pub const SEA_TRIAL: Self =
+        Self { position_m: 0.5, velocity_m_s: 0.03, rate_rad_s: 3e-4, angle_rad: 1.5e-3 };
+
+    /// Of a free-running model. Source: chosen; optical or RTK positions and a fibre-optic gyro.
+    pub const MODEL: Self =
+        Self { position_m: 0.02, velocity_m_s: 0.012, rate_rad_s: 4e-3, angle_rad: 3e-3 };
+
+    /// Those of a ship of this length, m: below ten metres it is a model.
+    pub fn of(lpp_m: f64) -> Self {
+        if lpp_m < 10.0 { Self::MODEL } else { Self::SEA_TRIAL }
+    }
+
+    /// By channel, of which nothing but the scatter is known.
+    pub(crate) fn noise(&self) -> Noise {
+        let all = [
+            (Channel::X, self.position_m),
+            (Channel::Y, self.position_m),
+            (Channel::U, self.velocity_m_s),
+            (Channel::V, self.velocity_m_s),
+            (Channel::R, self.rate_rad_s),
+            (Channel::P, self.rate_rad_s),
+            (Channel::Psi, self.angle_rad),
+            (Channel::Phi, self.angle_rad),
+        ];
+        all.into_iter().map(|(channel, d)| (channel, Instrument::of_scatter(d))).collect()
+    }
+}

@@ -1,0 +1,108 @@
+//! A design as a plan says it.
+
+use sistership_simulation::manoeuvre::Manoeuvre;
+use sistership_simulation::state::at;
+
+use crate::candidates::standard;
+use crate::course::Course;
+use crate::design::Design;
+use crate::outcome::{ExpectedBand, Plan, PlannedTrial, StandardProgramme};
+use crate::request::PlanRequest;
+use crate::targets::Target;
+use crate::thresholds::THRESHOLDS;
+
+/// Half the width of a band that holds 95 % of a normal distribution, by its deviation.
+const HALF_WIDTH: f64 = 1.96;
+
+/// The courses that were chosen, what they are expected to leave, and the IMO manoeuvres beside
+/// them.
+pub(crate) fn said(
+    request: &PlanRequest<'_>,
+    design: &Design,
+    (courses, chosen): (&[Course], &[usize]),
+    targets: &[Target],
+    remarks: Vec<String>,
+) -> Plan {
+    let (standard, bands) = beside_standard(request, design, (courses, chosen), targets);
+    Plan {
+        model: request.model.name.clone(),
+        budget_min: request.budget_s / 60.0,
+        takes_min: design.lasts_s(chosen) / 60.0,
+        trials: trials(request, design, courses, chosen),
+        narrower: design.narrower(chosen),
+        bands,
+        standard,
+        instruments: request.sailed.is_empty().then_some(request.instruments),
+        remarks,
+    }
+}
+
+/// Courses in an order.
+fn trials(
+    request: &PlanRequest<'_>,
+    design: &Design,
+    courses: &[Course],
+    order: &[usize],
+) -> Vec<PlannedTrial> {
+    let by_heading = !request.apart.is_empty();
+    let one = |(place, &which): (usize, &usize)| {
+        let course = &courses[which];
+        let (rudder_deg, switch_deg) = match course.candidate.manoeuvre {
+            Manoeuvre::Turn { rudder } => (rudder, None),
+            Manoeuvre::Zigzag { rudder, switch } => (rudder, Some(switch)),
+        };
+        PlannedTrial {
+            manoeuvre: course.candidate.manoeuvre.to_string(),
+            rudder_deg,
+            switch_deg,
+            speed_m_s: course.track.states.first().map_or(0.0, |state| state[at::U]),
+            heading_deg: by_heading.then_some(course.candidate.heading_deg),
+            manoeuvre_min: course.manoeuvre_s / 60.0,
+            takes_min: course.takes_s / 60.0,
+            narrower: design.narrower(&order[..=place]),
+        }
+    };
+    order.iter().enumerate().map(one).collect()
+}
+
+/// The IMO manoeuvres as far as the budget goes, and the bands after either.
+fn beside_standard(
+    request: &PlanRequest<'_>,
+    design: &Design,
+    (courses, chosen): (&[Course], &[usize]),
+    targets: &[Target],
+) -> (StandardProgramme, Vec<ExpectedBand>) {
+    let all: Vec<_> = courses.iter().map(|course| course.candidate).collect();
+    let sailed = as_far_as(design, &standard(&all), request.budget_s);
+    let of = |places: &[usize]| design.deviations(design.with(places)).unwrap_or_default();
+    let (now, after, after_standard) = (of(&[]), of(chosen), of(&sailed));
+    let half =
+        |deviations: &[f64], k: usize| HALF_WIDTH * deviations.get(k).copied().unwrap_or(f64::NAN);
+    let band = |(k, target): (usize, &Target)| ExpectedBand {
+        figure: target.name.clone(),
+        unit: target.unit.to_owned(),
+        value: target.value,
+        now: half(&now, k),
+        after: half(&after, k),
+        after_standard: half(&after_standard, k),
+    };
+    let programme = StandardProgramme {
+        trials: trials(request, design, courses, &sailed),
+        takes_min: design.lasts_s(&sailed) / 60.0,
+        narrower: design.narrower(&sailed),
+    };
+    (programme, targets.iter().enumerate().map(band).collect())
+}
+
+/// Candidates one after the other, from the first again after the last, until one does not fit.
+fn as_far_as(design: &Design, order: &[usize], budget_s: f64) -> Vec<usize> {
+    let mut sailed = Vec::new();
+    for &place in order.iter().cycle().take(THRESHOLDS.most_trials) {
+        sailed.push(place);
+        if design.lasts_s(&sailed) > budget_s {
+            sailed.pop();
+            break;
+        }
+    }
+    sailed
+}

@@ -1,0 +1,102 @@
+//! What is to be narrowed: figures of the IMO criteria, and parameters of effects, by how they
+//! change with the deviations of the unknowns.
+
+use nalgebra::{DMatrix, DVector};
+use sistership_assessment::uncertainty::{Drawn, Sampling, figures};
+use sistership_model::Model;
+use sistership_model::law::Law;
+
+use crate::thresholds::THRESHOLDS;
+use crate::unknowns::Unknowns;
+
+/// The figures that IMO MSC.137(76) judges, each to either side, and their units.
+const FIGURES: [(&str, &str); 11] = [
+    ("turn 35 deg: advance", "m"),
+    ("turn -35 deg: advance", "m"),
+    ("turn 35 deg: tactical diameter", "m"),
+    ("turn -35 deg: tactical diameter", "m"),
+    ("initial turning", "m"),
+    ("zigzag 10/10: first overshoot", "deg"),
+    ("zigzag -10/10: first overshoot", "deg"),
+    ("zigzag 10/10: second overshoot", "deg"),
+    ("zigzag -10/10: second overshoot", "deg"),
+    ("zigzag 20/20: first overshoot", "deg"),
+    ("zigzag -20/20: first overshoot", "deg"),
+];
+
+/// One of them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Target {
+    /// A figure, or `effect: parameter`.
+    pub name: String,
+    /// Its unit; empty where the name says it.
+    pub unit: &'static str,
+    /// What the model says.
+    pub value: f64,
+    /// Its change with each deviation.
+    pub gradient: DVector<f64>,
+}
+
+/// Everything that is to be narrowed, and the figures that the model does not reach.
+pub(crate) fn targets(
+    model: &Model,
+    law: &Law,
+    unknowns: &Unknowns,
+) -> Option<(Vec<Target>, Vec<String>)> {
+    let count = unknowns.coefficients.len();
+    let models: Vec<Model> = std::iter::once(unknowns.moved(model, 0, 0.0))
+        .chain((0..count).flat_map(|j| [1.0, -1.0].map(|side| unknowns.moved(model, j, side))))
+        .collect();
+    let sampling = Sampling { within_steps: true, figures_only: true, ..Sampling::default() };
+    let sailed = figures(&models[0], law, &models, sampling)?;
+    let (estimate, moved) = sailed.split_first()?;
+    let of = |(name, unit): &(&'static str, &'static str)| {
+        let value = *estimate.get(*name)?;
+        let mut gradient = DVector::zeros(unknowns.root.nrows());
+        for (j, pair) in moved.chunks_exact(2).enumerate() {
+            gradient[j] = secant(name, value, &pair[0], &pair[1]);
+        }
+        Some(Target { name: (*name).to_owned(), unit, value, gradient })
+    };
+    let mut all: Vec<Target> = FIGURES.iter().filter_map(of).collect();
+    let unreached =
+        FIGURES.iter().map(|(name, _)| *name).filter(|name| !estimate.contains_key(*name));
+    let unreached = unreached.map(str::to_owned).collect();
+    all.extend(of_effects(unknowns));
+    all.retain(|target| target.gradient.norm() > THRESHOLDS.least_scatter * target.value.abs());
+    Some((all, unreached))
+}
+
+/// The change of a figure by a deviation: the secant over one to either side, so that a posterior
+/// as wide as a figure is curved is judged over its own width (as the sigma points of Julier and
+/// Uhlmann 2004, Proceedings of the IEEE 92, 401-422); over one side where the other does not reach
+/// it.
+fn secant(name: &str, value: f64, above: &Drawn, below: &Drawn) -> f64 {
+    match (above.get(name), below.get(name)) {
+        (Some(above), Some(below)) => 0.5 * (above - below),
+        (Some(above), None) => above - value,
+        (None, Some(below)) => value - below,
+        (None, None) => 0.0,
+    }
+}
+
+fn of_effects(unknowns: &Unknowns) -> Vec<Target> {
+    let first = unknowns.coefficients.len();
+    let size = unknowns.root.nrows();
+    let parameters = unknowns.effects.iter().flat_map(|effect| {
+        effect.form.parameters.keys().zip(&effect.at).map(move |(name, at)| (effect, name, *at))
+    });
+    let one = |(k, (effect, name, value)): (usize, (&_, &String, f64))| {
+        let effect: &sistership_filtering::EffectCandidate = effect;
+        let mut gradient = DVector::zeros(size);
+        gradient[first + k] = unknowns.root[(first + k, first + k)];
+        Target { name: format!("{}: {name}", effect.key()), unit: "", value, gradient }
+    };
+    parameters.enumerate().map(one).collect()
+}
+
+/// Their changes as one matrix, targets by deviations.
+pub(crate) fn gradients(targets: &[Target]) -> DMatrix<f64> {
+    let rows: Vec<_> = targets.iter().map(|target| target.gradient.transpose()).collect();
+    DMatrix::from_rows(&rows)
+}

@@ -1,0 +1,81 @@
+//! What is not known: coefficients by the model's posterior, and parameters of effects by the
+//! library's priors, all in deviations that are independent before any new trial.
+
+use nalgebra::DMatrix;
+use sistership_filtering::EffectCandidate;
+use sistership_model::Model;
+
+use crate::error::PlanError;
+use crate::thresholds::THRESHOLDS;
+
+/// The unknowns `x = R z` about what the model states, `z` being independent with unit variances.
+pub(crate) struct Unknowns {
+    /// Names of the coefficients.
+    pub coefficients: Vec<String>,
+    /// Effects, in their order after the coefficients.
+    pub effects: Vec<EffectCandidate>,
+    /// `R`, unknowns by deviations, lower triangular.
+    pub root: DMatrix<f64>,
+    /// What is said of it.
+    pub remark: Option<String>,
+}
+
+impl Unknowns {
+    /// By the posterior of a model; where it has none, each coefficient by itself within a share.
+    ///
+    /// # Errors
+    /// The posterior does not read.
+    pub fn new(model: &Model, effects: Vec<EffectCandidate>) -> Result<Self, PlanError> {
+        let (coefficients, rows, remark) = match model.posterior() {
+            Some(posterior) => (posterior.names.clone(), posterior.root()?, None),
+            None => by_share(model),
+        };
+        let own: usize = effects.iter().map(|effect| effect.at.len()).sum();
+        let count = coefficients.len();
+        let mut root = DMatrix::zeros(count + own, count + own);
+        for (i, row) in rows.iter().enumerate() {
+            row.iter().enumerate().for_each(|(j, value)| root[(i, j)] = *value);
+        }
+        let deviations =
+            effects.iter().flat_map(|e| e.form.parameters.values().map(|p| p.prior_deviation));
+        deviations.enumerate().for_each(|(k, d)| root[(count + k, count + k)] = d);
+        Ok(Self { coefficients, effects, root, remark })
+    }
+
+    /// Information on the unknowns as information on the deviations.
+    pub fn on_deviations(&self, information: &DMatrix<f64>) -> DMatrix<f64> {
+        self.root.transpose() * information * &self.root
+    }
+
+    /// The model with its coefficients moved by so many deviations of one.
+    pub fn moved(&self, model: &Model, deviation: usize, by: f64) -> Model {
+        let mut moved = Model { posterior: None, uncertainty: None, ..model.clone() };
+        moved.validity = None;
+        for (place, name) in self.coefficients.iter().enumerate() {
+            if let Some(quantity) = moved.coefficients.get_mut(name) {
+                quantity.value += by * self.root[(place, deviation)];
+            }
+        }
+        moved
+    }
+}
+
+type Shares = (Vec<String>, Vec<Vec<f64>>, Option<String>);
+
+fn by_share(model: &Model) -> Shares {
+    let share = THRESHOLDS.unknown_share;
+    let names: Vec<String> = model.coefficients.keys().cloned().collect();
+    let row = |(place, name): (usize, &String)| {
+        let mut row = vec![0.0; place + 1];
+        row[place] = share * model.coefficient(name).abs();
+        row
+    };
+    let rows = names.iter().enumerate().map(row).collect();
+    let remark = format!(
+        "{} does not say how sure its coefficients are: each is taken to be within {:.0} % of the \
+         truth, independent of the others",
+        model.name,
+        100.0 * share
+    );
+    (names, rows, Some(remark))
+}

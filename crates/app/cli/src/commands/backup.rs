@@ -1,0 +1,96 @@
+//! `sistership backup` and `sistership restore`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use sistership_jobs::upkeep::{self, BackupManifest};
+
+use super::store::{StoreArguments, block_on, with_archive};
+use crate::failure::Failure;
+use crate::output::{self, count};
+
+const BACKUP_EXAMPLES: &str = "\
+Examples:
+  sistership backup /backup/2026-11-21 --data-dir /var/lib/sistership
+  sistership backup /backup/2026-11-21 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
+
+Servers and workers may go on: the backup holds the database as it was at one moment after the
+command began, and the samples that it refers to. Exit status 1 where samples were missing or
+damaged; the rest is copied all the same.";
+
+const RESTORE_EXAMPLES: &str = "\
+Examples:
+  sistership restore /backup/2026-11-21 --data-dir /var/lib/sistership-2
+  sistership restore /backup/2026-11-21 --database-url postgres://user@host/empty --data-dir /mnt/shared/sistership-2
+
+The place must be empty: no database file, or a database without tables, and no samples.
+`sistership fsck` then checks all of it.";
+
+/// Copy a store, while it is written, into a folder.
+#[derive(Debug, Args)]
+#[command(after_help = BACKUP_EXAMPLES)]
+pub struct BackupArguments {
+    /// The folder; it must be empty or not be there.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Make a store of a backup, in an empty place.
+#[derive(Debug, Args)]
+#[command(after_help = RESTORE_EXAMPLES)]
+pub struct RestoreArguments {
+    /// The backup's folder.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs `sistership backup`.
+///
+/// # Errors
+/// The store is not there, the folder is not empty, something cannot be read or written, or samples
+/// are lost.
+pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
+    let manifest =
+        with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
+    output::print(backup.json, &manifest, || text("backed up", &manifest))?;
+    if manifest.lost.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Runs `sistership restore`.
+///
+/// # Errors
+/// The place is not empty, the backup is damaged or of another kind of database, or something
+/// cannot be written.
+pub fn restore(restore: &RestoreArguments) -> Result<(), Failure> {
+    let RestoreArguments { folder, store, json } = restore;
+    let place = store.place(&store.file()?)?;
+    let manifest = block_on(async {
+        let restored = upkeep::restore(folder, &place.database_url, &place.objects).await;
+        restored.map_err(|error| Failure::Refused(error.to_string()))
+    })?;
+    output::print(*json, &manifest, || text("restored", &manifest))
+}
+
+fn text(done: &str, manifest: &BackupManifest) -> String {
+    let files: u64 = manifest.files.values().map(|file| file.bytes).sum();
+    let lost: String = manifest
+        .lost
+        .iter()
+        .map(|key| format!("lost: the samples {key} are missing or damaged\n"))
+        .collect();
+    let objects = count(manifest.objects, "object");
+    format!(
+        "{lost}{done}: {files} bytes of the database, {objects} of {} bytes\n",
+        manifest.object_bytes
+    )
+}

@@ -1,0 +1,234 @@
+//! `sistership branch`: a learned branch beside a model, trained on what it leaves of trials.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use sistership_jobs::derive::corrected_with_uncertainty;
+use sistership_learned::{
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Judgement, Kinds,
+    Training, attach, choose, judge, train, with_branch,
+};
+use sistership_model::branch::BranchMode;
+use sistership_model::{Law, Model, Trial, Zoo};
+
+use super::branch_document::BranchDocument;
+use super::branch_text;
+use super::written::{WrittenFiles, guard, model_file, promised};
+use crate::failure::{Failure, both};
+use crate::named;
+use crate::output::{self, count, note};
+use crate::trials;
+use crate::values::positive;
+use crate::weights::{self, BranchWords};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
+  sistership branch --model mariner --trials a.csv b.csv c.csv --kind forest --mode parallel --out m.yaml --json
+
+Weights are written beside the model: with-branch.weights.json for with-branch.yaml. Without
+--kind, every kind is tried on trials left out of its training, and none is taken that does not
+win by more than its uncertainty: then --out writes nothing, which is a result (exit status 0).";
+
+/// Train a learned branch beside a model, on what it leaves of trials.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct BranchArguments {
+    /// The model, its foundation: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
+    trials: Vec<PathBuf>,
+    /// What learns.
+    #[arg(long, value_enum, default_value_t)]
+    kind: Kind,
+    /// How it is joined to the law: `parallel` adds to its accelerations, `serial` takes them as
+    /// inputs, `convert` knows nothing of them.
+    #[arg(long, value_enum, default_value_t)]
+    mode: Mode,
+    /// What every random number follows from.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Time over which accelerations are taken; where absent, half of that of sailing its length.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    window_s: Option<f64>,
+    /// How far beyond what the trials covered nothing of it is left, by half ranges; 1 where
+    /// absent.
+    #[arg(long, value_name = "HALF_RANGES", value_parser = positive, allow_negative_numbers = true)]
+    fade: Option<f64>,
+    /// Write the model with the branch, and its weights beside it.
+    #[arg(long, value_name = "MODEL.yaml")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What learns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum Kind {
+    /// The best on trials left out, if any wins.
+    #[default]
+    Auto,
+    /// A random forest.
+    Forest,
+    /// Boosted trees.
+    Boosted,
+    /// Kernel ridge.
+    Kernels,
+    /// A multilayer perceptron.
+    Perceptron,
+}
+
+/// How a branch is joined to its foundation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum Mode {
+    /// It adds to the law's accelerations.
+    #[default]
+    Parallel,
+    /// It gives the accelerations, those of the law among its inputs.
+    Serial,
+    /// It gives the accelerations, without the law's.
+    Convert,
+}
+
+impl Kind {
+    fn named(self) -> Option<BranchKind> {
+        match self {
+            Self::Auto => None,
+            Self::Forest => Some(BranchKind::Forest),
+            Self::Boosted => Some(BranchKind::Boosted),
+            Self::Kernels => Some(BranchKind::Kernels),
+            Self::Perceptron => Some(BranchKind::Perceptron),
+        }
+    }
+}
+
+impl From<Mode> for BranchMode {
+    fn from(mode: Mode) -> Self {
+        match mode {
+            Mode::Parallel => Self::Parallel,
+            Mode::Serial => Self::Serial,
+            Mode::Convert => Self::Convert,
+        }
+    }
+}
+
+/// A branch with what it was trained by and what it is worth.
+struct Trained {
+    model: Model,
+    weights: Vec<u8>,
+    training: Training,
+    judgement: Option<Judgement>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model, a trial or a setting is refused, or a file cannot be written.
+pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
+    let inputs: Vec<PathBuf> =
+        arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
+    let beside = arguments.out.as_deref().map(weights::beside);
+    let files =
+        both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs));
+    let asked = both(settings(arguments), named::foundation(zoo, &arguments.model));
+    let read = both(files, trials::read(&arguments.trials));
+    let ((settings, (model, law)), ((out, beside_file), read)) = both(asked, read)?;
+    trials::remark_other_ship(&read, &model.ship);
+    let mut files = WrittenFiles { out: arguments.out.as_deref(), report: None };
+    guard(&files, &read)?;
+    note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
+    let (choice, trained) = trained((zoo, &model, &law), &trials::trials(&read), &settings)?;
+    match (out, beside_file, &trained) {
+        (Some(out), Some(beside), Some(trained)) => {
+            // Weights first: a model that is there has them.
+            beside.write(&trained.weights)?;
+            out.write(model_file(zoo, &trained.model, "with a learned branch")?.as_bytes())?;
+        }
+        (Some(_), ..) => note("no branch is taken, and --out writes nothing"),
+        _ => {}
+    }
+    files.out = files.out.filter(|_| trained.is_some());
+    let beside = beside.as_deref().filter(|_| trained.is_some());
+    let document = document(&model, choice.as_ref(), trained.as_ref(), files, beside);
+    output::print(arguments.json, &document, || branch_text::text(&document))
+}
+
+/// What can be seen in the call alone is a call that is wrong.
+fn settings(arguments: &BranchArguments) -> Result<BranchSettings, Failure> {
+    let settings = BranchSettings {
+        kind: arguments.kind.named(),
+        mode: Some(arguments.mode.into()),
+        seed: Some(arguments.seed),
+        window_s: arguments.window_s,
+        fade: arguments.fade,
+        ..BranchSettings::default()
+    };
+    let flag = |field: String| field.replace('_', "-");
+    settings
+        .check()
+        .map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
+    Ok(settings)
+}
+
+fn refused(error: impl std::fmt::Display) -> Failure {
+    Failure::Refused(error.to_string())
+}
+
+/// The branch that is asked for, or the one that trials left out take.
+fn trained(
+    (zoo, model, law): (&Zoo, &Model, &Law),
+    trials: &[&Trial],
+    settings: &BranchSettings,
+) -> Result<(Option<BranchChoice>, Option<Trained>), Failure> {
+    let (choice, settings) = if settings.is_open() {
+        let told = |kind: BranchKind| {
+            note(&format!("trying {} on trials left out", kind.name()));
+            true
+        };
+        let folds = HeldOutFold::of_one(model, trials.len());
+        let on = HeldOutTrials { law, trials, folds: &folds };
+        let choice = choose(model, &on, (settings, Kinds::Every), &told).map_err(refused)?;
+        match choice.as_ref().and_then(|choice| choice.taken) {
+            Some(kind) => (choice, settings.of(kind)),
+            None => return Ok((choice, None)),
+        }
+    } else {
+        (None, settings.clone())
+    };
+    let training = settings.training(model, law, trials).map_err(refused)?;
+    note("training the branch, and judging it on trials left out");
+    let (branch, weights) = train(model, law, trials, &training).map_err(refused)?;
+    let judgement = judge(model, law, trials, &training).map_err(refused)?;
+    let weights = weights.bytes().map_err(refused)?;
+    let mut model = with_branch(model, branch);
+    attach(&mut model, &weights).map_err(refused)?;
+    note("learning what these trials leave open beside it");
+    let effects: Vec<_> = zoo.effects().cloned().collect();
+    let model = corrected_with_uncertainty(model, law, &effects, trials);
+    Ok((choice, Some(Trained { model, weights, training, judgement })))
+}
+
+fn document<'a>(
+    model: &'a Model,
+    choice: Option<&'a BranchChoice>,
+    trained: Option<&'a Trained>,
+    files: WrittenFiles<'a>,
+    weights: Option<&'a Path>,
+) -> BranchDocument<'a> {
+    let branch = trained.and_then(|trained| trained.model.branch.as_ref());
+    let judgement = trained.and_then(|trained| trained.judgement.as_ref());
+    BranchDocument {
+        model: &model.name,
+        choice,
+        branch: branch.map(BranchWords::of),
+        training: trained.map(|trained| &trained.training),
+        weights_sha256: branch.map(|branch| branch.weights_sha256.as_str()),
+        judgement,
+        wins: judgement.map(Judgement::wins),
+        files,
+        weights,
+    }
+}

@@ -1,0 +1,161 @@
+//! `sistership compare`: models side by side.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use sistership_jobs::comparison::{
+    Compared, ComparedTrial, Comparison, TrialError, check, compare,
+};
+use sistership_model::Zoo;
+use sistership_model::trial::{Channel, Trial};
+
+use crate::failure::{Failure, all, both};
+use crate::table::{TextTable, number, optional};
+use crate::{named, output, trials};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership compare kvlcc2 my-tanker.yaml
+  sistership compare my-model.yaml source.yaml --trials trials.yaml --json
+
+Errors are root mean squares of simulations that start once from the first sample. An IMO criterion
+that is not met is a result: the exit status is 0.";
+
+/// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct CompareArguments {
+    /// Models: names in the zoo, model files, or vessel files with a model.
+    #[arg(required = true, num_args = 2..=5, value_name = "MODEL")]
+    models: Vec<String>,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1..)]
+    trials: Vec<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A model or a trial is refused.
+pub fn run(zoo: &Zoo, asked: &CompareArguments) -> Result<(), Failure> {
+    let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
+    let names: Vec<&str> = asked.models.iter().map(String::as_str).collect();
+    check(&names).map_err(|error| Failure::Call(error.to_string()))?;
+    let models = all(names.iter().map(|name| named::model(zoo, name)));
+    let (models, read) = both(models, trials::read(&asked.trials))?;
+    let compared: Vec<Compared<'_>> = names
+        .iter()
+        .zip(&models)
+        .map(|(name, (model, law))| Compared { name, model, law })
+        .collect();
+    let on: Vec<(&str, &Trial)> =
+        read.iter().map(|read| (read.file.as_str(), &read.trial)).collect();
+    let comparison = compare(&compared, &on).map_err(|error| refused(&error))?;
+    output::print(asked.json, &comparison, || text(&comparison))
+}
+
+fn text(comparison: &Comparison) -> String {
+    let mut parts = vec![models(comparison), coefficients(comparison)];
+    if !comparison.trials.is_empty() {
+        parts.push(errors(comparison));
+    }
+    parts.push(figures(comparison));
+    let failures = comparison.models.iter().flat_map(|model| {
+        model.failures.iter().map(|failure| format!("{}: {failure}\n", model.name))
+    });
+    parts.push(failures.collect());
+    parts.join("\n")
+}
+
+/// A table with a column for each model.
+fn table(comparison: &Comparison, first: &[&str]) -> TextTable {
+    let names = comparison.models.iter().map(|model| model.name.as_str());
+    TextTable::of(first.iter().copied().chain(names))
+}
+
+fn models(comparison: &Comparison) -> String {
+    let mut table = TextTable::new(["model", "law", "ship", "Lpp m", "speed m/s"]);
+    for model in &comparison.models {
+        let (name, law, ship) = (model.name.clone(), model.law.clone(), model.ship.clone());
+        table.row(vec![name, law, ship, number(model.lpp_m), number(model.speed_m_s)]);
+    }
+    table.to_string()
+}
+
+fn coefficients(comparison: &Comparison) -> String {
+    let mut table = table(comparison, &["coefficient"]);
+    for row in &comparison.coefficients {
+        let cell = |value: &Option<sistership_jobs::comparison::Estimate>| match value {
+            None => "-".to_owned(),
+            Some(estimate) => {
+                let error = estimate.standard_error;
+                let error = error.map_or(String::new(), |error| format!(" +- {error:.1e}"));
+                format!("{:.5e}{error}", estimate.value)
+            }
+        };
+        table.row(std::iter::once(row.name.clone()).chain(row.values.iter().map(cell)));
+    }
+    table.to_string()
+}
+
+/// Channels of the table of errors, with the factor to the unit that is shown.
+const SHOWN: [(Channel, &str, f64); 6] = [
+    (Channel::U, "u m/s", 1.0),
+    (Channel::V, "v m/s", 1.0),
+    (Channel::R, "r deg/s", 180.0 / std::f64::consts::PI),
+    (Channel::Psi, "psi deg", 180.0 / std::f64::consts::PI),
+    (Channel::X, "x m", 1.0),
+    (Channel::Y, "y m", 1.0),
+];
+
+fn errors(comparison: &Comparison) -> String {
+    let mut table = table(comparison, &["trial", "error"]);
+    for trial in &comparison.trials {
+        for (channel, unit, factor) in SHOWN {
+            let of = |error: &TrialError| {
+                optional(error.rmse.get(channel.name()).map(|rmse| rmse * factor))
+            };
+            table.row(error_row(trial, unit, of));
+        }
+        table.row(error_row(trial, "std. MSE", |error| optional(error.standardised_mse)));
+    }
+    if comparison.trials.len() > 1 {
+        let all = comparison.models.iter().map(|model| optional(model.standardised_mse));
+        table.row(["all".to_owned(), "std. MSE".to_owned()].into_iter().chain(all));
+    }
+    let reasons = comparison.trials.iter().flat_map(|trial| {
+        let models = comparison.models.iter().zip(&trial.errors);
+        models.filter_map(|(model, error)| {
+            Some(format!("{}: {}: {}\n", trial.trial, model.name, error.reason.as_ref()?))
+        })
+    });
+    format!("{table}{}", reasons.collect::<String>())
+}
+
+fn error_row(trial: &ComparedTrial, what: &str, of: impl Fn(&TrialError) -> String) -> Vec<String> {
+    let head = [trial.trial.clone(), what.to_owned()];
+    head.into_iter().chain(trial.errors.iter().map(of)).collect()
+}
+
+fn figures(comparison: &Comparison) -> String {
+    let mut table = table(comparison, &["figure", "unit"]);
+    for row in &comparison.figures {
+        let cell = |value: &Option<sistership_jobs::comparison::FigureValue>| match value {
+            None => "-".to_owned(),
+            Some(figure) => {
+                let met = match figure.pass {
+                    Some(true) => " met",
+                    Some(false) => " NOT met",
+                    None => "",
+                };
+                format!("{}{met}", optional(figure.value))
+            }
+        };
+        let head = [row.name.clone(), row.unit.clone()];
+        table.row(head.into_iter().chain(row.values.iter().map(cell)));
+    }
+    table.to_string()
+}

@@ -1,0 +1,198 @@
+//! `sistership diagnose`: what a model lacks, by the trials that it has not seen.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use serde::Serialize;
+use serde_json::Value;
+use sistership_diagnosis::{Diagnosis, Request, Settings, diagnose};
+use sistership_model::{Effect, Law, Model, Zoo};
+use sistership_report::{DiagnosisInput, render_diagnosis};
+
+use super::diagnose_text;
+use super::written::{WrittenFiles, guard, model_file, promised};
+use crate::failure::{Failure, both};
+use crate::files::PromisedFile;
+use crate::named;
+use crate::output::{self, count, note};
+use crate::trials::{self, ReadTrial};
+use crate::values::{odds, positive};
+use crate::weights;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
+  sistership diagnose --model my-model.yaml --trials a.csv b.csv c.csv --out with-effects.yaml --json
+  sistership diagnose --zoo my-effects --model kvlcc2 --trials trials.yaml
+
+Give trials that the model was not fitted on, several of them and on several headings: what a
+current does and what a wind does look alike on one. The verdict is `complete`, `effects` or
+`unexplained`; each is a result (exit status 0).";
+
+/// Find what a model lacks, by trials that it has not seen.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct DiagnoseArguments {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
+    trials: Vec<PathBuf>,
+    /// Start simulations that judge anew every so often; where absent, every ten ship lengths
+    /// sailed.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    restart_s: Option<f64>,
+    /// Shortest interval between samples that are used; where absent, that of sailing a fiftieth of
+    /// its length.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    least_step_s: Option<f64>,
+    /// How far a coefficient may be from the truth, as a share of its value, where the model does
+    /// not say itself.
+    #[arg(long, value_name = "SHARE", value_parser = positive, allow_negative_numbers = true)]
+    slack: Option<f64>,
+    /// Least evidence (natural logarithm) for an effect to be named.
+    #[arg(long, value_name = "EVIDENCE", allow_negative_numbers = true)]
+    least_evidence: Option<f64>,
+    /// Most effects that are named together.
+    #[arg(long, value_name = "N")]
+    most_effects: Option<usize>,
+    /// Odds that the trials have an effect, before they are looked at, against that they do not;
+    /// where absent, those of the library. May be given more than once.
+    #[arg(long, value_name = "EFFECT=ODDS", value_parser = odds)]
+    prior_odds: Vec<(String, f64)>,
+    /// Write the model with the effects found.
+    #[arg(long, value_name = "MODEL.yaml")]
+    out: Option<PathBuf>,
+    /// Write a report with plots.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct DiagnoseDocument<'a> {
+    #[serde(flatten)]
+    diagnosis: Value,
+    #[serde(flatten)]
+    files: WrittenFiles<'a>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model, a trial or a setting is refused, or a file cannot be written.
+pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
+    let named: Vec<PathBuf> =
+        arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
+    let beside = arguments.out.as_deref().map(weights::beside);
+    let files = both(
+        both(promised(arguments.out.as_deref(), &named), promised(beside.as_deref(), &named)),
+        promised(arguments.report.as_deref(), &named),
+    );
+    let asked = both(settings(zoo, arguments), named::model(zoo, &arguments.model));
+    let read = both(files, trials::read(&arguments.trials));
+    let ((settings, (model, law)), (((out, beside), report), read)) = both(asked, read)?;
+    trials::remark_other_ship(&read, &model.ship);
+    note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
+    let mut files =
+        WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
+    guard(&files, &read)?;
+    let diagnosis = diagnosed(zoo, &model, &law, &settings, &read)?;
+    if let (Some(found), Some(_), Some(file)) = (&diagnosis.model, &out, beside) {
+        // Weights first: a model that is there has them.
+        let kept = weights::read_beside(Path::new(&arguments.model), found)?;
+        kept.map_or(Ok(()), |bytes| file.write(&bytes))?;
+    }
+    let kept = written(zoo, out, &diagnosis)?;
+    if let Some(report) = report {
+        report.write(&report_html(&model, &law, &diagnosis, &read)?)?;
+    }
+    files.out = files.out.filter(|_| kept);
+    let document = DiagnoseDocument { diagnosis: printed(&diagnosis)?, files };
+    output::print(arguments.json, &document, || diagnose_text::text(&diagnosis, &model, &files))
+}
+
+/// What can be seen in the call alone is a call that is wrong.
+fn settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
+    let unknown = |(name, _): &&(String, f64)| zoo.effect(name).is_none();
+    if let Some((name, _)) = arguments.prior_odds.iter().find(unknown) {
+        let known: Vec<&str> = zoo.effects().map(|effect| effect.name.as_str()).collect();
+        let message = format!("--prior-odds: no effect `{name}`; there are {}", known.join(", "));
+        return Err(Failure::Call(message));
+    }
+    let default = Settings::default();
+    let settings = Settings {
+        restart_s: arguments.restart_s,
+        least_step_s: arguments.least_step_s,
+        slack: arguments.slack.unwrap_or(default.slack),
+        least_evidence: arguments.least_evidence.unwrap_or(default.least_evidence),
+        most_effects: arguments.most_effects.unwrap_or(default.most_effects),
+        prior_odds: arguments.prior_odds.iter().cloned().collect(),
+    };
+    let flag = |field: String| field.replace('_', "-");
+    settings
+        .check()
+        .map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
+    Ok(settings)
+}
+
+fn diagnosed(
+    zoo: &Zoo,
+    model: &Model,
+    law: &Law,
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<Diagnosis, Failure> {
+    let effects: Vec<Arc<Effect>> = zoo.effects().cloned().collect();
+    let trials = trials::trials(read);
+    let request = Request { model, law, effects: &effects, trials: &trials, settings };
+    let told = |fraction: f64, what: &str| {
+        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        true
+    };
+    diagnose(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+/// Writes the model with the effects; whether there was one to write.
+fn written(zoo: &Zoo, out: Option<PromisedFile>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
+    match (out, &diagnosis.model) {
+        (Some(out), Some(model)) => out
+            .write(model_file(zoo, model, "with the effects that a diagnosis found")?.as_bytes())
+            .map(|()| true),
+        (Some(_), None) => {
+            note("no effect was found: the model stays as it is, and --out writes nothing");
+            Ok(false)
+        }
+        (None, _) => Ok(false),
+    }
+}
+
+fn report_html(
+    model: &Model,
+    law: &Law,
+    diagnosis: &Diagnosis,
+    read: &[ReadTrial],
+) -> Result<Vec<u8>, Failure> {
+    let trials = trials::trials(read);
+    let input = DiagnosisInput { diagnosis, model, law, trials: &trials, of: None, made: None };
+    let rendered = render_diagnosis(&input)
+        .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+    Ok(rendered.html.into_bytes())
+}
+
+/// The diagnosis without the model, which `--out` writes, and without the series that only plots
+/// need.
+fn printed(diagnosis: &Diagnosis) -> Result<Value, Failure> {
+    let document = serde_json::to_value(diagnosis);
+    let mut document = document
+        .map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?;
+    if let Some(fields) = document.as_object_mut() {
+        fields.remove("model");
+        fields.remove("residuals");
+    }
+    Ok(document)
+}

@@ -1,0 +1,198 @@
+//! A diagnosis in words and tables.
+
+use std::collections::BTreeMap;
+
+use sistership_diagnosis::{
+    Confounded, Diagnosis, Found, Hypothesis, LimitedBy, NextTrial, Unexplained, Verdict,
+};
+use sistership_model::Model;
+use sistership_report::{change, dependence, distinct, origin};
+
+use super::channels::CHANNELS;
+use super::worth;
+use super::written::WrittenFiles;
+use crate::table::{TextTable, number, optional};
+
+/// Most hypotheses that are listed.
+const MOST: usize = 8;
+
+/// Everything that came of a diagnosis.
+pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
+    let mut parts = vec![format!(
+        "{} ({})\n{}\n",
+        diagnosis.diagnosed,
+        worth(model.status),
+        verdict(diagnosis)
+    )];
+    parts.extend(diagnosis.effects.iter().map(effect));
+    if !diagnosis.unexplained.is_empty() {
+        parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
+        parts.extend(changed(diagnosis));
+        parts.extend(origin(&diagnosis.origins).map(|said| said + "\n"));
+        parts.extend(diagnosis.depends_on.iter().map(|left| dependence(left) + "\n"));
+    }
+    parts.extend(diagnosis.next_trial.as_ref().map(next_trial));
+    parts.extend(limits(diagnosis));
+    parts.push(format!("Root mean square errors: {}\n{}", diagnosis.how, errors(diagnosis)));
+    parts.push(format!(
+        "Most probable hypotheses (evidence: natural logarithm)\n{}",
+        hypotheses(&diagnosis.hypotheses)
+    ));
+    parts.push(end(diagnosis, files));
+    parts.join("\n")
+}
+
+/// The answer for a stranger.
+fn verdict(diagnosis: &Diagnosis) -> String {
+    let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect();
+    match diagnosis.verdict {
+        Verdict::Complete => {
+            "COMPLETE: nothing is missing above the sizes that these trials would show".to_owned()
+        }
+        Verdict::Effects => format!("EFFECTS: the model lacks {}", names.join(" and ")),
+        Verdict::Unexplained if names.is_empty() => {
+            "UNEXPLAINED: something is missing that no known effect explains".to_owned()
+        }
+        Verdict::Unexplained => {
+            format!(
+                "UNEXPLAINED: the model lacks {}, and something that no known effect explains",
+                names.join(" and ")
+            )
+        }
+    }
+}
+
+/// An effect with its parameters, whose names carry their units, and what it is confounded with.
+fn effect(found: &Found) -> String {
+    let mut table = TextTable::new(["parameter", "value", "standard error"]);
+    for (name, value) in &found.parameters {
+        table.row([name.clone(), number(value.value), number(value.se)]);
+    }
+    let (name, form, meaning, evidence) =
+        (&found.name, &found.form, &found.meaning, found.evidence);
+    let head = format!(
+        "{name} ({form}): {meaning}; evidence {evidence:.1} (above 5 is very strong)\n{table}"
+    );
+    let other = |other: &Confounded| {
+        format!("{} ({:.1} deg, evidence {:.1} behind)", other.name, other.angle_deg, other.behind)
+    };
+    let others: Vec<String> = found.confounded_with.iter().map(other).collect();
+    if others.is_empty() {
+        head
+    } else {
+        format!("{head}  hard to tell by these trials from {}\n", others.join(", "))
+    }
+}
+
+fn unexplained(stretches: &[Unexplained]) -> TextTable {
+    let mut table = TextTable::new(["trial", "channel", "from s", "to s", "rms / noise"]);
+    for stretch in stretches {
+        let figures = [stretch.from_s, stretch.to_s, stretch.rms_over_noise].map(number);
+        table.row([stretch.trial.clone(), stretch.channel.clone()].into_iter().chain(figures));
+    }
+    table
+}
+
+/// What begins, ends or drifts within trials; none where nothing does.
+fn changed(diagnosis: &Diagnosis) -> Option<String> {
+    let lines: Vec<String> =
+        diagnosis.changes.iter().map(|one| format!("  {}\n", change(one))).collect();
+    let of_the_day = "it is of that day: no model carries it";
+    (!lines.is_empty()).then(|| format!("What changed then ({of_the_day})\n{}", lines.concat()))
+}
+
+fn next_trial(next: &NextTrial) -> String {
+    let (speed, heading) = (number(next.speed_m_s), number(next.heading_deg));
+    format!(
+        "To be sure, sail next: {} at {speed} m/s, heading {heading} deg; it tells {} apart\n",
+        next.manoeuvre,
+        next.separates.join(" and ")
+    )
+}
+
+/// How small an effect would have been shown; none where nothing says it.
+fn limits(diagnosis: &Diagnosis) -> Option<String> {
+    let mut table = TextTable::new(["effect", "form", "parameter", "shown from", "usual", "told"]);
+    for limit in &diagnosis.limits {
+        let told = limit.limited_by.map_or("yes", |cause| match cause {
+            LimitedBy::Model => "cannot tell: refine the model first",
+            LimitedBy::Trials => "cannot tell: other trials are needed",
+            LimitedBy::Sensors => "cannot tell: the instruments scatter too much",
+        });
+        let names = [&limit.effect, &limit.form, &limit.parameter].map(Clone::clone);
+        let sizes = [optional(limit.size), number(limit.usual), told.to_owned()];
+        table.row(names.into_iter().chain(sizes));
+    }
+    (!diagnosis.limits.is_empty())
+        .then(|| format!("The smallest sizes that would have been shown (90 %)\n{table}"))
+}
+
+/// The errors on trials left out, before and after, and what they are by the noise.
+fn errors(diagnosis: &Diagnosis) -> TextTable {
+    let mut table = TextTable::new([
+        "channel",
+        "unit",
+        "before",
+        "after",
+        "change",
+        "noise",
+        "before / noise",
+        "after / noise",
+    ]);
+    for (name, unit, factor) in CHANNELS {
+        let of =
+            |all: &BTreeMap<String, f64>| all.get(name).copied().filter(|value| *value != f64::MAX);
+        let (before, after, noise) = (
+            of(&diagnosis.before),
+            of(&diagnosis.after),
+            of(&diagnosis.noise).filter(|n| *n > 0.0),
+        );
+        if before.is_none() && after.is_none() {
+            continue;
+        }
+        let shown = |value: Option<f64>| optional(value.map(|value| value * factor));
+        let over =
+            |value: Option<f64>| optional(value.zip(noise).map(|(value, noise)| value / noise));
+        let change = before.zip(after).filter(|(before, _)| *before > 0.0);
+        let change = change.map_or("-".to_owned(), |(before, after)| {
+            format!("{:+.0} %", 100.0 * (after / before - 1.0))
+        });
+        let figures =
+            [shown(before), shown(after), change, shown(noise), over(before), over(after)];
+        table.row([name.to_owned(), unit.to_owned()].into_iter().chain(figures));
+    }
+    table
+}
+
+fn hypotheses(hypotheses: &[Hypothesis]) -> TextTable {
+    let mut table = TextTable::new(["hypothesis", "evidence", "on trials left out", "taken"]);
+    for hypothesis in distinct(hypotheses).into_iter().take(MOST) {
+        let name = if hypothesis.effects.is_empty() {
+            "the model alone".to_owned()
+        } else {
+            hypothesis.effects.join(" + ")
+        };
+        let taken = if hypothesis.taken { "yes" } else { "" };
+        table.row([
+            name,
+            number(hypothesis.evidence),
+            optional(hypothesis.held_out),
+            taken.to_owned(),
+        ]);
+    }
+    table
+}
+
+fn end(diagnosis: &Diagnosis, files: &WrittenFiles<'_>) -> String {
+    let mut lines: Vec<String> =
+        diagnosis.remarks.iter().map(|remark| format!("remark: {remark}")).collect();
+    lines.extend(match (files.out, &diagnosis.model) {
+        (Some(path), _) => Some(format!("model with the effects written to {}", path.display())),
+        (None, Some(_)) => {
+            Some("model not written: give --out MODEL.yaml to keep it with the effects".to_owned())
+        }
+        (None, None) => None,
+    });
+    lines.extend(files.report.map(|path| format!("report written to {}", path.display())));
+    lines.join("\n")
+}

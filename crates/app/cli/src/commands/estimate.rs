@@ -1,0 +1,231 @@
+//! `sistership estimate`: a model of any ship from its particulars alone.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Args;
+use serde::Serialize;
+use sistership_assessment::uncertainty::Band;
+use sistership_model::estimated_particulars::{
+    EstimatedParticular, estimated_particulars, estimated_words,
+};
+use sistership_model::vessel::Status;
+use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_priors::estimates::particulars::complete_particulars;
+use sistership_priors::estimates::{
+    Estimate, EstimateBands, LAW, Library, Spread, estimate as estimated, estimate_bands,
+};
+use sistership_simulation::manoeuvre::{Figure, StandardManoeuvres};
+
+use super::written::{model_file, promised};
+use crate::failure::Failure;
+use crate::table::{TextTable, number};
+use crate::{named, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership estimate --ship my-ship.yaml
+  sistership estimate --ship pcc --out pcc-estimate.yaml
+  sistership manoeuvre --model pcc-estimate.yaml --all
+
+The ship needs lpp_m, beam_m and draught_m. What else it does not state (block coefficient, speed,
+centre of gravity, rudder, propeller) is estimated and named with its band. What comes out is an
+estimate by published regressions (models/regressions), not a measurement.";
+
+/// Estimate a model of a ship from its particulars, with bands on the standard manoeuvres.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct EstimateArguments {
+    /// The ship: a name in the zoo or a vessel file.
+    #[arg(long, value_name = "SHIP")]
+    ship: String,
+    /// Approach speed; by default that of the ship's first model, else its service speed, stated or
+    /// estimated.
+    #[arg(long, value_name = "U")]
+    speed_m_s: Option<f64>,
+    /// Write the model to a file.
+    #[arg(long, value_name = "MODEL.yaml")]
+    out: Option<PathBuf>,
+    /// What the draws of the bands follow from.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct EstimateDocument<'a> {
+    ship: &'a str,
+    status: Status,
+    law: &'static str,
+    speed_m_s: f64,
+    revolutions_rps: Option<f64>,
+    draws: usize,
+    failed: usize,
+    manoeuvres: &'a StandardManoeuvres,
+    bands: &'a [Band],
+    values: &'a [Spread],
+    estimated_particulars: Vec<EstimatedParticular>,
+    model: &'a Model,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    out: Option<&'a PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Names the particulars that are missing; the model cannot be written.
+pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
+    let vessel = named::ship(zoo, &asked.ship)?;
+    let vessel = with_speed(&vessel, asked.speed_m_s);
+    let inputs = [PathBuf::from(&asked.ship)];
+    let file = promised(asked.out.as_deref(), &inputs)?;
+    let (estimate, law) = estimate_of(zoo, &vessel, asked.speed_m_s)?;
+    let speed_m_s = speed(&vessel, asked.speed_m_s)?;
+    let bands = estimate_bands(&estimate, &law, asked.seed)
+        .ok_or_else(|| Failure::Refused(format!("{}: the law does not fit", vessel.name())))?;
+    if let Some(file) = file {
+        let text = model_file(zoo, &estimate.model, "estimated from particulars")?;
+        file.write(text.as_bytes())?;
+    }
+    let values = estimate.spreads();
+    let document = EstimateDocument {
+        ship: vessel.name(),
+        status: estimate.model.status,
+        law: LAW,
+        speed_m_s,
+        revolutions_rps: estimate.model.revolutions_rps,
+        draws: bands.draws,
+        failed: bands.failed,
+        manoeuvres: &bands.manoeuvres,
+        bands: &bands.figures,
+        values: &values,
+        estimated_particulars: estimated_particulars(&estimate.model.particulars),
+        model: &estimate.model,
+        out: asked.out.as_ref(),
+    };
+    output::print(asked.json, &document, || text(&vessel, &document, &bands))
+}
+
+/// The ship with a service speed that is estimated where nothing says how fast it sails.
+pub(super) fn with_speed(vessel: &Vessel, asked: Option<f64>) -> Vessel {
+    let mut vessel = vessel.clone();
+    let own = vessel.file.models.first().and_then(|model| model.speed_m_s);
+    if asked.or(own).is_none() {
+        let needed = ["block_coefficient", "service_speed_m_s"];
+        complete_particulars(&mut vessel.particulars, needed);
+    }
+    vessel
+}
+
+/// The estimate of a ship, and its law.
+///
+/// # Errors
+/// Names the particulars that are missing.
+pub(super) fn estimate_of(
+    zoo: &Zoo,
+    vessel: &Vessel,
+    speed_m_s: Option<f64>,
+) -> Result<(Estimate, Arc<Law>), Failure> {
+    let speed_m_s = speed(vessel, speed_m_s)?;
+    let library = Library::embedded()?;
+    let law = zoo.law(LAW).ok_or_else(|| Failure::Refused(format!("there is no law `{LAW}`")))?;
+    let refused =
+        |error: sistership_priors::estimates::EstimateError| Failure::Refused(error.to_string());
+    let estimate = estimated(&library, vessel, law, speed_m_s).map_err(refused)?;
+    Ok((estimate, Arc::clone(law)))
+}
+
+fn speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {
+    let own = || vessel.file.models.first().and_then(|model| model.speed_m_s);
+    let speed = asked.or_else(own).or_else(|| vessel.particular("service_speed_m_s"));
+    match speed {
+        Some(speed) if speed > 0.0 && speed < 50.0 => Ok(speed),
+        Some(speed) => {
+            Err(Failure::Call(format!("--speed-m-s {speed} should be above 0 and below 50 m/s")))
+        }
+        None => Err(Failure::Refused(format!(
+            "{}: give `lpp_m` among its particulars, or --speed-m-s",
+            vessel.name()
+        ))),
+    }
+}
+
+fn text(vessel: &Vessel, document: &EstimateDocument<'_>, bands: &EstimateBands) -> String {
+    let head = format!(
+        "{} ({}): ESTIMATED from particulars, law {LAW}, {} m/s, {} 1/s\n",
+        vessel.name(),
+        vessel.file.title,
+        number(document.speed_m_s),
+        document.revolutions_rps.map_or("-".into(), number),
+    );
+    let written =
+        document.out.map_or(String::new(), |out| format!("\nmodel written to {}\n", out.display()));
+    let estimated = estimated_words(&document.model.particulars);
+    let estimated = estimated.map(|words| format!("remark: {words}\n")).unwrap_or_default();
+    format!(
+        "{head}\n{}\n{}\n{estimated}Bands hold 95 % of {} models drawn from the estimate's \
+         covariance; {} of them left the physical range in some manoeuvre.\n{written}",
+        manoeuvres(bands),
+        values(document.values),
+        document.draws,
+        document.failed
+    )
+}
+
+fn manoeuvres(bands: &EstimateBands) -> TextTable {
+    let mut table = TextTable::new(["figure", "unit", "estimate", "low", "high"]);
+    let band = |name: &str| bands.figures.iter().find(|band| band.figure == name);
+    for Figure { name, unit, value, .. } in bands.manoeuvres.figures() {
+        let (low, high) = band(&name)
+            .map_or(("-".into(), "-".into()), |band| (number(band.low), number(band.high)));
+        table.row([name, unit, value.map_or("-".into(), number), low, high]);
+    }
+    table
+}
+
+fn values(spreads: &[Spread]) -> TextTable {
+    let mut table = TextTable::new(["value", "estimate", "deviation", "by"]);
+    for spread in spreads {
+        let by: Vec<&str> = spread.given.keys().map(String::as_str).collect();
+        table.row([
+            spread.name.clone(),
+            number(spread.mean),
+            number(spread.deviation),
+            by.join(", "),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn asked(ship: &str, out: Option<PathBuf>) -> EstimateArguments {
+        EstimateArguments { ship: ship.into(), speed_m_s: None, out, seed: 1, json: true }
+    }
+
+    #[test]
+    fn a_ship_without_a_model_gets_one_that_reads_back() {
+        let zoo = Zoo::embedded().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("pcc.yaml");
+        run(&zoo, &asked("pcc", Some(out.clone()))).unwrap();
+        let (model, _) = named::model(&zoo, out.to_str().unwrap()).unwrap();
+        assert_eq!(model.status, Status::Estimated);
+        assert!(model.posterior().is_some());
+    }
+
+    #[test]
+    fn what_is_missing_is_said() {
+        let zoo = Zoo::embedded().unwrap();
+        let message =
+            |name: &str| run(&zoo, &asked(name, None)).unwrap_err().message().unwrap().to_owned();
+        assert!(message("ferry-140m").contains("beam_m, draught_m"), "{}", message("ferry-140m"));
+        let fast = EstimateArguments { speed_m_s: Some(80.0), ..asked("pcc", None) };
+        assert!(matches!(run(&zoo, &fast), Err(Failure::Call(_))));
+    }
+}

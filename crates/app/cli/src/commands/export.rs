@@ -1,0 +1,103 @@
+//! `sistership export`: a model written down for another tool.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use sistership_export::{Plan, Subject};
+use sistership_jobs::bundle::{BundleError, SigningKey, gather};
+use sistership_model::version::sha256;
+use sistership_model::{Model, Zoo};
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::{Failure, about_file};
+use crate::files::PromisedFile;
+use crate::values::{ExportFormat, export_format};
+use crate::{named, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership export mariner --format c --out mariner.c
+  cc -DSISTERSHIP_EXAMPLE -O2 mariner.c -lm && ./a.out 35 > turn.csv
+  sistership export my-model.yaml --format python --out my_model.py
+  sistership export kvlcc2 --format matlab --out kvlcc2_mmg.m
+  sistership export kvlcc2 --format fmu2 --out kvlcc2.fmu
+  sistership export my-ship --format bundle --sign-key key.pem --data-dir here --out my-ship.bundle
+  sistership import --bundle my-ship.bundle --signed-by key.pub.pem --data-dir there
+
+What is written is what `sistership manoeuvre` sails: the law with the model's effects, the steering
+gear, what was learned beside them, and a current as an input.
+
+A bundle is of a ship in a store: its versions with what they were derived from, trials and reports,
+which another store takes with every hash and all lineage.";
+
+/// Write a model down for another tool.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ExportArguments {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model; of a bundle the
+    /// ship in the store.
+    model: String,
+    /// The format.
+    #[arg(long, value_parser = export_format)]
+    format: ExportFormat,
+    /// The file to write.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Sign a bundle with this Ed25519 key (PEM, as `openssl genpkey -algorithm ed25519` makes it).
+    #[arg(long, value_name = "FILE")]
+    sign_key: Option<PathBuf>,
+    #[command(flatten)]
+    store: StoreArguments,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model cannot be exported, or the file cannot be written.
+pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
+    let format = match asked.format {
+        ExportFormat::Bundle => return bundle(asked),
+        ExportFormat::Model(_) if asked.sign_key.is_some() => {
+            return Err(Failure::Call("--sign-key: only a bundle is signed".to_owned()));
+        }
+        ExportFormat::Model(format) => format,
+    };
+    let (model, law) = named::model(zoo, &asked.model)?;
+    let file = PromisedFile::new(&asked.out, &[PathBuf::from(&asked.model)])?;
+    let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
+    let sha256 = hash(&model)?;
+    let subject = Subject { model: &model, law: &law, version: None, sha256 };
+    let plan = Plan::new(&subject).map_err(|error| refused(&error))?;
+    file.write(&format.write(&plan).map_err(|error| refused(&error))?)?;
+    output::note(&format!("{} as {}: {}", model.name, format.name(), asked.out.display()));
+    Ok(())
+}
+
+fn bundle(asked: &ExportArguments) -> Result<(), Failure> {
+    let file = PromisedFile::new(&asked.out, &[])?;
+    let ship = &asked.model;
+    let key = asked.sign_key.as_deref().map(|path| key(path, SigningKey::from_pem)).transpose()?;
+    let bytes = with_archive(&asked.store, async |archive| {
+        gather(archive, ship).await?.packed(key.as_ref())
+    })?;
+    file.write(&bytes)?;
+    let by = key.map_or_else(String::new, |key| format!(", signed by {}", key.verifying()));
+    output::note(&format!("{ship} with its versions: {}{by}", asked.out.display()));
+    Ok(())
+}
+
+/// Reads a key.
+pub(super) fn key<T>(
+    path: &Path,
+    from_pem: fn(&[u8]) -> Result<T, BundleError>,
+) -> Result<T, Failure> {
+    let text = std::fs::read(path).map_err(|error| about_file(path, error))?;
+    from_pem(&text).map_err(|error| about_file(path, error))
+}
+
+/// The hash of the model's document, as JSON without spaces.
+fn hash(model: &Model) -> Result<String, Failure> {
+    let document = serde_json::to_vec(model)
+        .map_err(|error| Failure::Refused(format!("{}: {error}", model.name)))?;
+    Ok(sha256(&document))
+}

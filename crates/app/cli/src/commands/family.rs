@@ -1,0 +1,245 @@
+//! `sistership family`: ships whose models share a foundation. What takes long is queued, and
+//! workers do it.
+
+use clap::{Args, Subcommand, ValueEnum};
+use serde_json::{Value, json};
+use sistership_jobs::Archive;
+use sistership_jobs::derive::DeriveError;
+use sistership_jobs::fleet::{
+    Asked, OrderError, PriorChoice, Rule, Standing, Start, learn, order_refinement,
+};
+use sistership_store::StoreError;
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::output::{self, count, note};
+use crate::table::{TextTable, number};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership family create tankers --foundation kvlcc2/1 --ship tanker-1 --ship tanker-2 --ship tanker-3
+  sistership family learn tankers
+  sistership family refine tankers --no-worse-than 0.02
+  sistership work & sistership work &
+  sistership family status 0192f3c4-...";
+
+/// Families of ships: make one, learn from it, refine all of it.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct FamilyArguments {
+    #[command(subcommand)]
+    what: FamilyAction,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Print one JSON document.
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum FamilyAction {
+    /// Make a family on a foundation.
+    Create {
+        /// Its name.
+        family: String,
+        /// The version that its models are founded on: `SHIP` (its champion) or `SHIP/NUMBER`.
+        #[arg(long, value_name = "SHIP[/NUMBER]")]
+        foundation: String,
+        /// A member; repeatable.
+        #[arg(long, value_name = "SHIP")]
+        ship: Vec<String>,
+    },
+    /// Add ships to a family.
+    Add {
+        /// The family.
+        family: String,
+        /// The ships.
+        #[arg(required = true)]
+        ships: Vec<String>,
+    },
+    /// Learn how the coefficients vary over the members, and keep it as the family's prior.
+    Learn {
+        /// The family.
+        family: String,
+    },
+    /// Queue the refinement of every member from the statistics of its trials.
+    Refine {
+        /// The family.
+        family: String,
+        /// Where each member starts.
+        #[arg(long, value_enum, default_value_t = StartArgument::Champion)]
+        start: StartArgument,
+        /// What holds the coefficients.
+        #[arg(long, value_enum, default_value_t = PriorArgument::Family)]
+        prior: PriorArgument,
+        /// A refined model becomes champion where no axis' error grows by more than this share;
+        /// without it, none does by itself.
+        #[arg(long, value_name = "SHARE")]
+        no_worse_than: Option<f64>,
+    },
+    /// How far a refinement is.
+    Status {
+        /// Its id.
+        id: String,
+    },
+    /// Cancel what is left of a refinement.
+    Cancel {
+        /// Its id.
+        id: String,
+    },
+    /// Go on with what failed or was cancelled.
+    Retry {
+        /// Its id.
+        id: String,
+    },
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum StartArgument {
+    Champion,
+    Foundation,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum PriorArgument {
+    Family,
+    Foundation,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// What is named is not there, or the store says no.
+pub fn run(family: &FamilyArguments) -> Result<(), Failure> {
+    let (document, text) =
+        with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
+    output::print(family.json, &document, || text)
+}
+
+/// Why what was asked of a family is not done.
+#[derive(Debug, thiserror::Error)]
+enum FamilyError {
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The prior cannot be learned.
+    #[error(transparent)]
+    Derive(#[from] DeriveError),
+    /// The refinement is not queued.
+    #[error("{0}")]
+    NotQueued(OrderError),
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+}
+
+/// What was done, as a document and in words.
+type FamilyResult = Result<(Value, String), FamilyError>;
+
+async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
+    let families = archive.store.families();
+    match what {
+        FamilyAction::Create { family, foundation, ship } => {
+            let version = version(archive, foundation).await?;
+            let family = families.create(family, family, &version).await?.name;
+            added(archive, &family, ship).await
+        }
+        FamilyAction::Add { family, ships } => added(archive, family, ships).await,
+        FamilyAction::Learn { family } => learned(archive, family).await,
+        FamilyAction::Refine { family, start, prior, no_worse_than } => {
+            let asked = Asked {
+                start: match start {
+                    StartArgument::Champion => Start::Champion,
+                    StartArgument::Foundation => Start::Foundation,
+                },
+                prior: match prior {
+                    PriorArgument::Family => PriorChoice::Family,
+                    PriorArgument::Foundation => PriorChoice::Foundation,
+                },
+                rule: Rule { no_worse_than: *no_worse_than },
+                ..Asked::default()
+            };
+            let queued = order_refinement(&archive.store, family, &asked).await;
+            status(archive, &queued.map_err(FamilyError::NotQueued)?.id).await
+        }
+        FamilyAction::Status { id } => status(archive, id).await,
+        FamilyAction::Cancel { id } => {
+            archive.store.bulks().request_cancel(id).await?;
+            status(archive, id).await
+        }
+        FamilyAction::Retry { id } => {
+            archive.store.bulks().retry(id).await?;
+            status(archive, id).await
+        }
+    }
+}
+
+/// The id of the version that a name stands for.
+async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
+    let (ship, rest) = name.split_once('/').unwrap_or((name, "champion"));
+    let number = match rest.parse() {
+        Ok(number) => number,
+        Err(_) => archive.store.aliases().get(ship, rest).await?.version_number,
+    };
+    Ok(archive.store.versions().get(ship, number).await?.head.id)
+}
+
+async fn added(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
+    let new = archive.store.families().add(family, ships).await?;
+    let members = archive.store.families().count(family).await?;
+    let text = format!(
+        "{family}: {new} added, {}",
+        count(usize::try_from(members).unwrap_or(0), "member")
+    );
+    Ok((json!({ "family": family, "added": new, "members": members }), text))
+}
+
+async fn learned(archive: &Archive, family: &str) -> FamilyResult {
+    let told = |fraction: f64, what: &str| {
+        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        true
+    };
+    let prior = learn(archive, family, &told).await?;
+    let document = serde_json::to_string(&prior)?;
+    let kept = archive.store.families().teach(family, &document).await?;
+    let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
+    for axis in &prior.axes {
+        for (j, name) in axis.names.iter().enumerate() {
+            table.row([
+                name.clone(),
+                number(axis.mean[j]),
+                number(axis.deviation[j]),
+                format!("{:.2}", axis.told_by_trials[j]),
+            ]);
+        }
+    }
+    let head = format!(
+        "{family}: prior {} of {}; one sample in {:.1} counts; {:.0} % of the correlations kept\n",
+        kept.revision,
+        count(prior.members.len(), "member"),
+        prior.design_effect,
+        100.0 * prior.correlations_kept
+    );
+    Ok((
+        json!({ "family": family, "revision": kept.revision, "prior": prior }),
+        format!("{head}{table}"),
+    ))
+}
+
+async fn status(archive: &Archive, id: &str) -> FamilyResult {
+    let bulk = archive.store.bulks().get(id).await?;
+    let standing = Standing::of(&archive.store, &bulk).await?;
+    let mut text = format!(
+        "{} of {}: {}, {} of {} ships done",
+        bulk.id, bulk.family, standing.state, standing.done, bulk.ships
+    );
+    standing
+        .outcomes
+        .iter()
+        .for_each(|(outcome, ships)| text.push_str(&format!(", {ships} {outcome}")));
+    if let Some(pace) = standing.ships_per_s {
+        text.push_str(&format!("; {pace:.1} ships/s"));
+    }
+    if let Some(left) = standing.left_s {
+        text.push_str(&format!(", {left:.0} s left"));
+    }
+    Ok((json!({ "id": bulk.id, "family": bulk.family, "standing": standing }), text))
+}

@@ -1,0 +1,66 @@
+//! `sistership fsck`: whether a store is whole.
+
+use clap::Args;
+use sistership_jobs::upkeep::{self, Checked, Fault, Findings};
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::output::{self, count};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership fsck --data-dir /var/lib/sistership
+  sistership fsck --database-url postgres://user@host/sistership --data-dir /var/lib/sistership --json
+
+Checks the hash of every law, version, object and entry of the audit, and every reference between
+ships, trials, versions, aliases, jobs, reports, diagnoses and objects. Changes nothing; servers
+and workers may go on. Exit status 1 when there are faults.";
+
+/// Check every hash and every reference of a store.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct FsckArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The store is not there, does not answer, or has faults.
+pub fn run(fsck: &FsckArguments) -> Result<(), Failure> {
+    let findings = with_archive(&fsck.store, async |archive| upkeep::fsck(archive).await)?;
+    output::print(fsck.json, &findings, || text(&findings))?;
+    if findings.clean { Ok(()) } else { Err(Failure::Told) }
+}
+
+fn text(findings: &Findings) -> String {
+    let Findings { faults, checked, unreferred, unfinished, .. } = findings;
+    let Checked { laws, effects, versions, trials, jobs, diagnoses, objects, audit } = checked;
+    let fault = |fault: &Fault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
+    let mut text: String = faults.iter().map(fault).collect();
+    text += &format!(
+        "looked at {laws} laws, {effects} libraries of effects, {versions} versions, {trials} \
+         trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects, {audit} entries of the \
+         audit: {}\n",
+        if faults.is_empty() { "clean".to_owned() } else { count(faults.len(), "fault") }
+    );
+    if unreferred.objects > 0 {
+        let (objects, bytes) = (count(unreferred.objects, "object"), unreferred.bytes);
+        text += &format!(
+            "{objects} ({bytes} bytes) that no trial refers to; `sistership gc` removes what is \
+             old enough\n"
+        );
+    }
+    if unfinished.objects > 0 {
+        let (puts, bytes) = (count(unfinished.objects, "put"), unfinished.bytes);
+        text += &format!(
+            "{puts} ({bytes} bytes) under way or never ended; `sistership gc` removes what is old \
+             enough\n"
+        );
+    }
+    text
+}

@@ -1,0 +1,58 @@
+//! `sistership gc`: objects that nobody needs.
+
+use std::time::Duration;
+
+use clap::Args;
+use sistership_jobs::upkeep::{self, Collected};
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::output::{self, count};
+use crate::values::hours;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership gc --dry-run
+  sistership gc --grace-h 72 --data-dir /var/lib/sistership
+
+Removes the samples that no trial (deleted ones count) and no version refers to, as refused and
+broken uploads leave them. Servers and workers may go on.";
+
+/// Remove objects that nothing refers to.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct GcArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Hours for which an object is left alone after it was put.
+    #[arg(long, value_name = "HOURS", default_value = "24", value_parser = hours)]
+    grace_h: Duration,
+    /// Only tell what would be removed.
+    #[arg(long)]
+    dry_run: bool,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The store is not there, or does not answer.
+pub fn run(gc: &GcArguments) -> Result<(), Failure> {
+    let collected =
+        with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
+    output::print(gc.json, &collected, || text(&collected))
+}
+
+fn text(collected: &Collected) -> String {
+    let Collected { dry_run, removed, unfinished, bytes, objects } = collected;
+    let lines: String =
+        removed.iter().chain(unfinished).map(|place| format!("{place}\n")).collect();
+    let done = if *dry_run { "would be removed" } else { "removed" };
+    let puts = count(unfinished.len(), "put");
+    format!(
+        "{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n",
+        count(removed.len(), "object")
+    )
+}

@@ -1,0 +1,61 @@
+//! `sistership import --bundle`: a ship of another store.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use sistership_jobs::bundle::{Bundle, Taken, VerifyingKey, take, trusted};
+
+use super::export::key;
+use super::store::{StoreArguments, with_archive};
+use crate::failure::{Failure, about_file};
+use crate::output::{self, count};
+
+/// What was new, and who says so.
+#[derive(Serialize)]
+struct Import {
+    #[serde(flatten)]
+    taken: Taken,
+    /// The SHA-256 of the key that has signed the bundle.
+    signed_by: Option<String>,
+    /// Whether that key was among those that were asked for.
+    known_signer: bool,
+}
+
+/// Takes a bundle into a store.
+///
+/// # Errors
+/// The file is no bundle, is not signed by a key that is asked for, or the store contradicts it;
+/// then nothing is taken.
+pub fn run(
+    path: &Path,
+    signed_by: &[PathBuf],
+    store: &StoreArguments,
+    json: bool,
+) -> Result<(), Failure> {
+    let keys = signed_by.iter().map(|path| key(path, VerifyingKey::from_pem));
+    let keys = keys.collect::<Result<Vec<_>, _>>()?;
+    let bytes = std::fs::read(path).map_err(|error| about_file(path, error))?;
+    let (bundle, signer) = Bundle::unpacked(&bytes).map_err(|error| about_file(path, error))?;
+    trusted(signer.as_ref(), &keys).map_err(|error| about_file(path, error))?;
+    let taken = with_archive(store, async |archive| take(archive, &bundle).await)?;
+    let signed_by = signer.map(|signer| signer.to_string());
+    let import = Import { taken, signed_by, known_signer: !keys.is_empty() };
+    output::print(json, &import, || text(&import))
+}
+
+fn text(import: &Import) -> String {
+    let Taken { ship, ships, versions, trials, known } = &import.taken;
+    let named = |names: &[String]| if names.is_empty() { "none".into() } else { names.join(", ") };
+    let signer = match &import.signed_by {
+        None => "not signed".to_owned(),
+        Some(key) if import.known_signer => format!("signed by {key}"),
+        Some(key) => format!("signed by {key}, which no --signed-by has asked for"),
+    };
+    format!(
+        "{ship}, {signer}\n  new ships: {}\n  new versions: {}\n  {} of them there already\n  {}\n",
+        named(ships),
+        named(versions),
+        count(*known, "version"),
+        count(*trials, "new trial")
+    )
+}

@@ -1,0 +1,175 @@
+//! Long logs: the stretches that become trials, and what is left.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+use sistership_model::manifest::{FileTime, ManifestTrial};
+use sistership_trials::segmentation::{Finder, Found, Sample, Span, Stretch};
+use sistership_trials::{ManifestFile, Steering, scan};
+
+use crate::output::{count, note};
+use crate::table::TextTable;
+
+/// Times are written to so many parts of a second.
+const PARTS: f64 = 10.0;
+
+/// A file of which stretches were taken.
+#[derive(Serialize)]
+pub struct SearchedLog {
+    file: String,
+    rows: u64,
+    duration_s: f64,
+    length_m: f64,
+    speed_m_s: f64,
+    /// Scatter of the rudder in course keeping.
+    rudder_scatter_deg: f64,
+    stretches: Vec<Stretch>,
+    /// Steady course keeping: nothing to fit, but what a model's drift shows in.
+    steady: Vec<Span>,
+}
+
+/// Puts stretches in the place of each file that is a log rather than a trial.
+pub fn searched(
+    manifest: &mut ManifestFile,
+    folder: &Path,
+    length_m: Option<f64>,
+) -> Vec<SearchedLog> {
+    let (mut logs, mut trials, mut sensors) = (Vec::new(), Vec::new(), Vec::new());
+    for (at, trial) in manifest.manifest.trials.iter().enumerate() {
+        let own = manifest.sensors.get(at).cloned().unwrap_or_default();
+        match found(manifest, trial, folder, length_m) {
+            Some(found) if found.is_log() && !found.stretches.is_empty() => {
+                let entries = found.stretches.iter().map(|one| entry(trial, one, found.whole));
+                trials.extend(entries);
+                logs.push(SearchedLog::of(&trial.file, found));
+            }
+            Some(found) if found.is_log() => {
+                let hours = found.whole.duration_s() / 3600.0;
+                note(&format!(
+                    "note: {}: {hours:.1} h, in which neither rudder nor propeller moves beyond \
+                     course keeping",
+                    trial.file
+                ));
+                trials.push(trial.clone());
+            }
+            _ => trials.push(trial.clone()),
+        }
+        sensors.resize(trials.len(), own);
+    }
+    (manifest.manifest.trials, manifest.sensors) = (trials, sensors);
+    logs
+}
+
+/// What is found in a file; what is wrong with it is told when it is read for good.
+fn found(
+    manifest: &ManifestFile,
+    trial: &ManifestTrial,
+    folder: &Path,
+    length_m: Option<f64>,
+) -> Option<Found> {
+    let mut finder = Finder::new(length_m);
+    let each = |steering: &Steering| finder.push(&sample(steering));
+    scan(&folder.join(&trial.file), &manifest.mapping(trial), each).ok()?;
+    finder.finish().ok()
+}
+
+fn sample(steering: &Steering) -> Sample {
+    let Steering { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s } =
+        *steering;
+    Sample { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s }
+}
+
+/// The entry of a stretch; a time that is the file's own first or last is left out.
+fn entry(trial: &ManifestTrial, stretch: &Stretch, whole: Span) -> ManifestTrial {
+    let (from_s, to_s) = ends(stretch.span);
+    let time = |time_s: f64, is_inside: bool| is_inside.then_some(FileTime::Seconds(time_s));
+    ManifestTrial {
+        from: time(from_s, from_s > whole.from_s),
+        to: time(to_s, to_s < whole.to_s),
+        // A name without angles: figures are taken of manoeuvres that are named with theirs.
+        manoeuvre: Some(format!("found: {}", stretch.kind)),
+        ..trial.clone()
+    }
+}
+
+/// Both rounded down, so that neighbours meet and do not overlap.
+fn ends(span: Span) -> (f64, f64) {
+    let down = |time_s: f64| (time_s * PARTS).floor() / PARTS;
+    (down(span.from_s), down(span.to_s))
+}
+
+impl SearchedLog {
+    fn of(file: &str, found: Found) -> Self {
+        Self {
+            file: file.to_owned(),
+            rows: found.rows,
+            duration_s: found.whole.duration_s(),
+            length_m: found.length_m,
+            speed_m_s: found.speed_m_s,
+            rudder_scatter_deg: found.rudder_scatter_rad.to_degrees(),
+            stretches: found.stretches,
+            steady: found.steady,
+        }
+    }
+
+    fn table(&self) -> TextTable {
+        let mut table = TextTable::new([
+            "",
+            "from (s)",
+            "to (s)",
+            "min",
+            "found",
+            "rudder rms",
+            "yaw rms",
+            "speed",
+            "why",
+        ]);
+        for (at, stretch) in self.stretches.iter().enumerate() {
+            let (from_s, to_s) = ends(stretch.span);
+            let excitation = &stretch.excitation;
+            table.row([
+                (at + 1).to_string(),
+                format!("{from_s:.1}"),
+                format!("{to_s:.1}"),
+                format!("{:.1}", stretch.span.duration_s() / 60.0),
+                stretch.kind.to_string(),
+                format!("{:.1} deg", excitation.rudder_rms_deg),
+                format!("{:.2} deg/s", excitation.yaw_rate_rms_deg_s),
+                format!("{:.0} %", 100.0 * excitation.speed_range),
+                stretch.why.clone(),
+            ]);
+        }
+        table
+    }
+}
+
+impl fmt::Display for SearchedLog {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hours = |seconds: f64| seconds / 3600.0;
+        let steady_s: f64 = self.steady.iter().map(Span::duration_s).sum();
+        writeln!(
+            out,
+            "{}: a log of {:.1} h and {} rows; {} stand out of course keeping",
+            self.file,
+            hours(self.duration_s),
+            self.rows,
+            count(self.stretches.len(), "manoeuvre"),
+        )?;
+        writeln!(
+            out,
+            "(lengths of {:.0} m at {:.1} m/s; the rudder scatters by {:.1} deg)\n{}",
+            self.length_m,
+            self.speed_m_s,
+            self.rudder_scatter_deg,
+            self.table()
+        )?;
+        writeln!(
+            out,
+            "{:.1} h ({:.0} %) in {} are steady course keeping: left out of the fit, for drift\n",
+            hours(steady_s),
+            100.0 * steady_s / self.duration_s,
+            count(self.steady.len(), "part"),
+        )
+    }
+}

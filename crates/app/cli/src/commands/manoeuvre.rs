@@ -1,0 +1,205 @@
+//! `sistership manoeuvre`: turning circles, zigzags, stopping, pull-outs and spirals, their figures
+//! and the IMO criteria.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use sistership_assessment::uncertainty::{Bands, Sampling, bands};
+use sistership_model::environment::Environment;
+use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, further};
+
+use super::manoeuvre_document::ManoeuvreDocument;
+use super::manoeuvre_further::FurtherArguments;
+use super::sailed::sail;
+use super::{manoeuvre_text, ready, set_depth};
+use crate::failure::Failure;
+use crate::files::PromisedFile;
+use crate::values::{Integration, positive, rudder_deg, zigzag_deg};
+use crate::{named, output, track};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership manoeuvre --model mariner
+  sistership manoeuvre --model kvlcc2 --turn 35 --turn -35 --json
+  sistership manoeuvre --model my-model.yaml --zigzag 20/20 --speed-m-s 6 --out zigzag.csv
+  sistership manoeuvre --model csl-spirit --stop --reversal-s 30
+  sistership manoeuvre --model esso-tanker --pull-out 20 --pull-out -20 --spiral
+
+Positive rudder turns to starboard. A criterion that is not met is a result: the exit status is 0.
+Exit status 1 when a manoeuvre leaves the physical range, or the law cannot sail what was asked
+for.";
+
+/// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
+/// IMO criteria.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ManoeuvreArguments {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// A turning circle with this rudder; repeatable.
+    #[arg(long, value_name = "DEG", value_parser = rudder_deg, allow_negative_numbers = true, conflicts_with_all = ["zigzag", "all"])]
+    turn: Vec<f64>,
+    /// A zigzag: rudder and change of heading, such as 20/20; repeatable.
+    #[arg(long, value_name = "DEG/DEG", value_parser = zigzag_deg, allow_hyphen_values = true, conflicts_with = "all")]
+    zigzag: Vec<(f64, f64)>,
+    #[command(flatten)]
+    further: FurtherArguments,
+    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, a stop where the
+    /// law can, pull-outs, spirals of an unstable ship, IMO criteria: the default.
+    #[arg(long)]
+    all: bool,
+    /// Approach speed; the model's own where absent.
+    #[arg(long, value_name = "U", value_parser = positive, allow_negative_numbers = true)]
+    speed_m_s: Option<f64>,
+    /// Propeller revolutions per second; those of the approach speed where absent.
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
+    n_rps: Option<f64>,
+    /// Water depth; deep water where absent.
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    depth_m: Option<f64>,
+    /// Longest duration of a manoeuvre; scaled with ship and speed where absent.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    duration_s: Option<f64>,
+    /// Step; 0.1 s where absent, shorter for small models.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    step_s: Option<f64>,
+    /// Integration method.
+    #[arg(long, value_enum, default_value_t)]
+    method: Integration,
+    /// Draw so many models from the posterior of a refined one, for confidence bands of the
+    /// standard manoeuvres.
+    #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag", "stop", "pull_out", "spiral"])]
+    bands: Option<usize>,
+    /// What these draws follow from.
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "bands")]
+    seed: u64,
+    /// Write the track of the single manoeuvre (canonical columns).
+    #[arg(long, value_name = "CSV")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model is refused or a manoeuvre leaves the physical range.
+pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
+    check_single(manoeuvre)?;
+    let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
+    let inputs = [PathBuf::from(&manoeuvre.model)];
+    let file = manoeuvre.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
+    let mut remarks = remarks(manoeuvre, &mut model, &law);
+    let environment = Environment { depth_m: manoeuvre.depth_m, ..Environment::default() };
+    remarks.extend(environment.uncovered(&model).into_iter().map(|one| one.message));
+    let ship = ship(manoeuvre, &model, &law)?;
+    let settings = settings(manoeuvre);
+    let usual = manoeuvre.turn.is_empty() && manoeuvre.zigzag.is_empty();
+    let usual = usual && !manoeuvre.further.any();
+    let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, usual, &settings);
+    let asked = manoeuvre.further.asked(usual);
+    let mut further = further(&model, &law, &ship, &settings, &asked);
+    if !usual && let Some(reason) = further.no_stopping.take() {
+        further.failures.push(format!("stopping: {reason}"));
+    }
+    let tracks = tracks.iter().chain(further.tracks.iter().map(|(_, track)| track));
+    if let (Some(file), Some(track)) = (file, tracks.into_iter().next()) {
+        file.write(&track::csv(track, &law, ship.has_propeller())?)?;
+    }
+    let bands = drawn(manoeuvre, &model, &law)?;
+    let document = ManoeuvreDocument::of(&model, &ship, sailed, further, bands, remarks);
+    output::print(manoeuvre.json, &document, || {
+        manoeuvre_text::text(&document, &model, &law, &ship)
+    })?;
+    if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// A file of a track is that of one manoeuvre.
+fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
+    let tracks = manoeuvre.turn.len() + manoeuvre.zigzag.len() + manoeuvre.further.tracks();
+    if manoeuvre.out.is_some() && tracks != 1 {
+        return Err(Failure::Call(
+            "--out writes the track of a single manoeuvre: give one --turn, --zigzag, --stop or \
+             --pull-out"
+                .into(),
+        ));
+    }
+    Ok(())
+}
+
+/// Moves a law that is expanded about a speed to the speed asked for, and says so.
+fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if let (Some(speed), Some(own), Some(_)) =
+        (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
+        && speed != own
+    {
+        model.set_approach_speed(law, speed);
+        model.revolutions_rps = model.revolutions_rps.map(|n| n * speed / own);
+        remarks.push(format!(
+            "the law is expanded about {speed} m/s here; the model belongs to {own} m/s"
+        ));
+    }
+    let largest = manoeuvre
+        .turn
+        .iter()
+        .chain(manoeuvre.zigzag.iter().map(|(rudder, _)| rudder))
+        .fold(manoeuvre.further.largest_deg(), |a, b| a.max(b.abs()));
+    let ordered = if largest == 0.0 { 35.0 } else { largest };
+    if ordered > model.steering.limit_deg {
+        remarks.push(format!(
+            "{ordered} deg were ordered; the rudder stops at {} deg",
+            model.steering.limit_deg
+        ));
+    }
+    remarks
+}
+
+fn ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship, Failure> {
+    let mut ship = ready(model, law)?;
+    let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+    ship.set_envelope_speed(speed);
+    if ship.has_propeller() && manoeuvre.n_rps.is_none() && ship.revolutions_at(speed) == 0.0 {
+        let message = format!(
+            "law `{}` needs propeller revolutions and {} gives none: add --n-rps",
+            law.name, model.name
+        );
+        return Err(Failure::Refused(message));
+    }
+    if let Some(depth_m) = manoeuvre.depth_m {
+        set_depth(&mut ship, model, law, depth_m)?;
+    }
+    Ok(ship)
+}
+
+fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
+    ManoeuvreSettings {
+        speed_m_s: manoeuvre.speed_m_s,
+        n_rps: manoeuvre.n_rps,
+        duration_s: manoeuvre.duration_s,
+        step_s: manoeuvre.step_s,
+        method: manoeuvre.method.into(),
+        ..ManoeuvreSettings::default()
+    }
+}
+
+/// The bands that are asked for.
+fn drawn(
+    manoeuvre: &ManoeuvreArguments,
+    model: &Model,
+    law: &Law,
+) -> Result<Option<Bands>, Failure> {
+    let Some(samples) = manoeuvre.bands else { return Ok(None) };
+    let sampling =
+        Sampling { samples, seed: manoeuvre.seed, within_steps: true, figures_only: true };
+    sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
+    let none = || {
+        let why = "only a refined model whose coefficients are those that were estimated has one";
+        Failure::Refused(format!("--bands: {} has no posterior to draw from; {why}", model.name))
+    };
+    bands(model, law, &settings(manoeuvre), manoeuvre.depth_m, sampling).ok_or_else(none).map(Some)
+}

@@ -1,0 +1,86 @@
+//! What `sistership manoeuvre` prints.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use sistership_assessment::uncertainty::Bands;
+use sistership_model::Model;
+use sistership_model::validity::Excursion;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{FurtherManoeuvres, StandardManoeuvres};
+use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+
+/// What is printed.
+#[derive(Debug, Serialize)]
+pub struct ManoeuvreDocument {
+    /// The model.
+    pub model: String,
+    /// Its law.
+    pub law: String,
+    /// Whether its figures are published, estimated, transferred or refined.
+    pub status: sistership_model::vessel::Status,
+    /// The approach speed, m/s.
+    pub speed_m_s: f64,
+    /// Turning circles.
+    pub turns: Vec<TurningMetrics>,
+    /// Zigzags.
+    pub zigzags: Vec<ZigzagMetrics>,
+    /// Distance to 10 deg of heading with 10 deg of rudder, the worse side, m.
+    pub initial_turning_m: Option<f64>,
+    /// Stopping, pull-outs and spirals.
+    #[serde(flatten)]
+    pub further: FurtherManoeuvres,
+    /// The IMO criteria.
+    pub imo: Vec<Criterion>,
+    /// Manoeuvres that left the physical range.
+    pub failures: Vec<String>,
+    /// Manoeuvres that left what the model's trials covered.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub outside: BTreeMap<String, Excursion>,
+    /// What a learned branch counted for in each manoeuvre, 0 to 1.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub branch_share: BTreeMap<String, f64>,
+    /// Confidence bands, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands: Option<Bands>,
+    /// What must be known to read the figures.
+    pub remarks: Vec<String>,
+}
+
+impl ManoeuvreDocument {
+    /// Puts together what was sailed.
+    pub fn of(
+        model: &Model,
+        ship: &Ship,
+        sailed: StandardManoeuvres,
+        mut further: FurtherManoeuvres,
+        bands: Option<Bands>,
+        mut remarks: Vec<String>,
+    ) -> Self {
+        let mut failures = sailed.failures;
+        // One list says what failed.
+        failures.append(&mut further.failures);
+        remarks.extend(further.remarks(ship.lpp_m()));
+        let stopping = further.criterion(ship.lpp_m());
+        let mut outside = sailed.outside;
+        for (name, track) in &further.tracks {
+            outside.extend(ship.leaves(track).map(|excursion| (name.clone(), excursion)));
+        }
+        Self {
+            model: model.name.clone(),
+            law: model.law.clone(),
+            status: model.status,
+            speed_m_s: ship.approach_speed_m_s(),
+            turns: sailed.turns,
+            zigzags: sailed.zigzags,
+            initial_turning_m: sailed.initial_turning_m,
+            imo: sailed.imo.into_iter().chain(stopping).collect(),
+            further,
+            failures,
+            outside,
+            branch_share: sailed.branch_share,
+            bands,
+            remarks,
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Stopping, pull-outs and spirals: what a call says of them, and their tables.
+
+use clap::Args;
+use sistership_simulation::manoeuvre::{AskedSpiral, AsternOrder, FurtherAsked, FurtherManoeuvres};
+use sistership_simulation::metrics::{PullOutMetrics, SpiralMetrics, SpiralPoint, StoppingMetrics};
+
+use crate::table::{TextTable, number, optional};
+use crate::values::{not_negative, positive, rudder_deg};
+
+/// Which manoeuvres are sailed beside turns and zigzags.
+#[derive(Debug, Args)]
+pub struct FurtherArguments {
+    /// A full astern stop, where the law is told of a reversed propeller.
+    #[arg(long, conflicts_with = "all")]
+    stop: bool,
+    /// Revolutions astern per second in a stop; as many as ahead where absent.
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
+    astern_rps: Option<f64>,
+    /// The time in which the revolutions are reversed in a stop.
+    #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value = "0", allow_negative_numbers = true)]
+    reversal_s: f64,
+    /// A pull-out: a steady turn with this rudder, then amidships; repeatable.
+    #[arg(long, value_name = "DEG", value_parser = rudder_deg, allow_negative_numbers = true, conflicts_with = "all")]
+    pull_out: Vec<f64>,
+    /// A direct and a reverse spiral.
+    #[arg(long, conflicts_with = "all")]
+    spiral: bool,
+}
+
+impl FurtherArguments {
+    /// How many tracks there will be.
+    pub fn tracks(&self) -> usize {
+        usize::from(self.stop) + self.pull_out.len()
+    }
+
+    /// Whether one of them was asked for.
+    pub fn any(&self) -> bool {
+        self.tracks() > 0 || self.spiral
+    }
+
+    /// The largest rudder angle that is ordered, deg.
+    pub fn largest_deg(&self) -> f64 {
+        self.pull_out.iter().fold(0.0, |most, angle| most.max(angle.abs()))
+    }
+
+    /// What is sailed; the usual ones where `usual` says so.
+    pub fn asked(&self, usual: bool) -> FurtherAsked {
+        let order = AsternOrder { astern_rps: self.astern_rps, reversal_s: self.reversal_s };
+        if usual {
+            return FurtherAsked { stop: Some(order), ..FurtherAsked::usual() };
+        }
+        FurtherAsked {
+            stop: self.stop.then_some(order),
+            pull_outs_deg: self.pull_out.clone(),
+            spiral: if self.spiral { AskedSpiral::Always } else { AskedSpiral::Never },
+        }
+    }
+}
+
+/// The tables of what was sailed, each under its title.
+pub fn tables(further: &FurtherManoeuvres, lpp_m: f64) -> Vec<(String, TextTable)> {
+    let mut tables = Vec::new();
+    if let Some(stop) = &further.stopping {
+        tables.push(("Full astern stop".to_owned(), stopping(stop, lpp_m)));
+    }
+    if !further.pull_outs.is_empty() {
+        let verdict = match further.straight_line_stable {
+            Some(true) => ": stable on a straight course",
+            Some(false) => ": NOT stable on a straight course",
+            None => "",
+        };
+        tables.push((format!("Pull-outs{verdict}"), pull_outs(&further.pull_outs)));
+    }
+    if let Some(spiral) = &further.spiral {
+        tables.push((title(spiral), points(spiral)));
+    }
+    tables
+}
+
+fn stopping(stop: &StoppingMetrics, lpp_m: f64) -> TextTable {
+    let mut table = TextTable::new([
+        "astern 1/s",
+        "track reach m",
+        "L",
+        "head reach m",
+        "L",
+        "to starboard m",
+        "heading deg",
+        "time s",
+    ]);
+    let lengths = |metres: Option<f64>| optional(metres.map(|metres| metres / lpp_m));
+    table.row([
+        number(stop.astern_rps),
+        optional(stop.track_reach_m),
+        lengths(stop.track_reach_m),
+        optional(stop.head_reach_m),
+        lengths(stop.head_reach_m),
+        optional(stop.lateral_deviation_m),
+        optional(stop.heading_change_deg),
+        optional(stop.time_s),
+    ]);
+    table
+}
+
+fn pull_outs(all: &[PullOutMetrics]) -> TextTable {
+    let mut table = TextTable::new(["rudder deg", "turning deg/s", "left deg/s", "left by U/L"]);
+    for one in all {
+        table.row([
+            number(one.rudder_deg),
+            number(one.turning_rate_deg_s),
+            optional(one.residual_rate_deg_s),
+            optional(one.residual_rate_by_length),
+        ]);
+    }
+    table
+}
+
+fn title(spiral: &SpiralMetrics) -> String {
+    format!(
+        "Spirals: loop {:.1} deg wide by the reverse one, {:.1} deg by the direct one, {:.2} deg/s \
+         high; not above {:.1} deg by guidance",
+        spiral.loop_width_deg,
+        spiral.direct_loop_width_deg,
+        spiral.loop_height_deg_s,
+        spiral.width_limit_deg
+    )
+}
+
+fn points(spiral: &SpiralMetrics) -> TextTable {
+    let mut table = TextTable::new([
+        "direct: rudder deg",
+        "rate deg/s",
+        "reverse: rudder deg",
+        "rate deg/s",
+        "not steady",
+    ]);
+    let cells = |point: Option<&SpiralPoint>| {
+        [point.map(|point| point.rudder_deg), point.map(|point| point.rate_deg_s)].map(optional)
+    };
+    for k in 0..spiral.direct.len().max(spiral.reverse.len()) {
+        let (direct, reverse) = (spiral.direct.get(k), spiral.reverse.get(k));
+        let moving = [(direct, "direct"), (reverse, "reverse")]
+            .into_iter()
+            .filter(|(point, _)| point.is_some_and(|point| !point.steady));
+        let moving: Vec<&str> = moving.map(|(_, name)| name).collect();
+        table.row(cells(direct).into_iter().chain(cells(reverse)).chain([moving.join(", ")]));
+    }
+    table
+}

@@ -1,0 +1,148 @@
+//! The manoeuvres of a model in words and tables.
+
+use sistership_assessment::uncertainty::Bands;
+use sistership_model::{Law, Model};
+use sistership_simulation::Ship;
+use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+
+use super::manoeuvre_document::ManoeuvreDocument;
+use super::manoeuvre_further::tables;
+use super::model_line;
+use crate::table::{TextTable, number, optional};
+
+/// Everything that was sailed.
+pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship) -> String {
+    let head = format!(
+        "{}\nlength {} m, approach at {} m/s\n",
+        model_line(model, law),
+        number(ship.lpp_m()),
+        number(document.speed_m_s)
+    );
+    let further = tables(&document.further, ship.lpp_m());
+    let further =
+        further.into_iter().map(|(title, table)| section(&title, false, || table)).collect();
+    let parts: [String; 5] = [
+        section("Turning circles", document.turns.is_empty(), || {
+            turns(&document.turns, ship.lpp_m())
+        }),
+        section("Zigzags", document.zigzags.is_empty(), || zigzags(&document.zigzags)),
+        further,
+        section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || criteria(&document.imo)),
+        document
+            .bands
+            .as_ref()
+            .map_or(String::new(), |bands| section(&title(bands), false, || banded(bands))),
+    ];
+    let lines = |label: &str, lines: &[String]| {
+        lines.iter().map(|line| format!("{label}: {line}\n")).collect::<String>()
+    };
+    let outside: Vec<String> =
+        document.outside.iter().map(|(name, how)| format!("{name}: {}", how.words())).collect();
+    let end = lines("OUTSIDE", &outside)
+        + &lines("remark", &document.remarks)
+        + &lines("FAILED", &document.failures);
+    let gap = if end.is_empty() { "" } else { "\n" };
+    format!("{head}{}{gap}{end}", parts.concat())
+}
+
+fn section(title: &str, is_empty: bool, table: impl FnOnce() -> TextTable) -> String {
+    if is_empty { String::new() } else { format!("\n{title}\n{}", table()) }
+}
+
+fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
+    let mut table = TextTable::new([
+        "rudder deg",
+        "advance m",
+        "L",
+        "transfer m",
+        "L",
+        "tactical diameter m",
+        "L",
+        "steady radius m",
+        "max advance m",
+        "max transfer m",
+        "speed loss m/s",
+    ]);
+    for turn in turns {
+        let mut cells = vec![number(turn.rudder_deg)];
+        for length in [turn.advance_m, turn.transfer_m, turn.tactical_diameter_m] {
+            cells.extend([
+                optional(length),
+                length.map_or_else(|| "-".to_owned(), |m| format!("{:.2}", m / lpp_m)),
+            ]);
+        }
+        cells.push(optional(turn.steady_radius_m));
+        cells.extend([turn.max_advance_m, turn.max_transfer_m, turn.speed_loss_m_s].map(number));
+        table.row(cells);
+    }
+    table
+}
+
+fn zigzags(zigzags: &[ZigzagMetrics]) -> TextTable {
+    let mut table = TextTable::new([
+        "rudder deg",
+        "heading deg",
+        "1st overshoot deg",
+        "2nd overshoot deg",
+        "initial turning s",
+        "period s",
+    ]);
+    for zigzag in zigzags {
+        let known = [
+            zigzag.first_overshoot_deg,
+            zigzag.second_overshoot_deg,
+            zigzag.initial_turning_time_s,
+            zigzag.period_s,
+        ];
+        table.row(
+            [number(zigzag.rudder_deg), number(zigzag.switch_deg)]
+                .into_iter()
+                .chain(known.map(optional)),
+        );
+    }
+    table
+}
+
+fn title(bands: &Bands) -> String {
+    let failed = if bands.failed > 0 {
+        format!(", {} of which left the physical range", bands.failed)
+    } else {
+        String::new()
+    };
+    format!("Bands of 95 % by {} draws from the posterior{failed}", bands.sampling.samples)
+}
+
+fn banded(bands: &Bands) -> TextTable {
+    let mut table = TextTable::new(["figure", "unit", "from", "to", "reached", "met"]);
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    for band in &bands.figures {
+        let met = band.pass.map_or_else(|| "-".to_owned(), percent);
+        table.row([
+            band.figure.clone(),
+            band.unit.clone(),
+            number(band.low),
+            number(band.high),
+            percent(band.reached),
+            met,
+        ]);
+    }
+    table
+}
+
+fn criteria(criteria: &[Criterion]) -> TextTable {
+    let mut table = TextTable::new(["criterion", "value", "limit", "unit", "verdict"]);
+    for criterion in criteria {
+        let verdict =
+            criterion.pass.map_or("not reached", |pass| if pass { "pass" } else { "FAIL" });
+        let value = criterion.value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
+        let limit = format!("{:.2}", criterion.limit);
+        table.row([
+            criterion.criterion.clone(),
+            value,
+            limit,
+            criterion.unit.clone(),
+            verdict.to_owned(),
+        ]);
+    }
+    table
+}

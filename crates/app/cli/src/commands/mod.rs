@@ -1,0 +1,120 @@
+//! One file for each command, and what they share.
+
+pub mod backup;
+pub mod branch;
+mod branch_document;
+mod branch_text;
+mod channels;
+pub mod check;
+pub mod compare;
+mod config_file;
+pub mod derive;
+pub mod diagnose;
+mod diagnose_text;
+pub mod estimate;
+pub mod export;
+pub mod family;
+pub mod fsck;
+pub mod gc;
+pub mod import;
+mod import_bundle;
+mod import_log;
+mod import_text;
+pub mod keys;
+mod log;
+mod log_format;
+pub mod manoeuvre;
+mod manoeuvre_document;
+mod manoeuvre_further;
+mod manoeuvre_text;
+pub mod plan;
+mod plan_text;
+pub mod predict;
+mod predict_orders;
+mod predict_text;
+pub mod refine;
+mod refine_branch;
+mod refine_search;
+mod refine_settings;
+pub(crate) mod refine_text;
+mod running;
+mod sailed;
+pub mod serve;
+pub mod ships;
+pub mod similar;
+pub mod simulate;
+mod simulated;
+pub(crate) mod store;
+pub mod users;
+pub mod validate;
+pub mod verify;
+pub mod work;
+mod written;
+pub mod zoo;
+mod zoo_text;
+
+use sistership_model::vessel::Status;
+use sistership_model::{Law, Model, particulars};
+use sistership_simulation::Ship;
+
+use crate::failure::Failure;
+
+/// A model ready to sail.
+///
+/// # Errors
+/// Names what the model does not give.
+fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
+    Ship::new(model, law).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+/// Puts the ship into shallow water.
+///
+/// # Errors
+/// Its law does not know water depth, or the water is too shallow for it.
+fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
+    if !knows_depth(law) {
+        return Err(Failure::Refused(format!(
+            "law `{}` does not know water depth: it sails in deep water only",
+            law.name
+        )));
+    }
+    check_floats(model, depth_m)?;
+    ship.set_depth(depth_m);
+    Ok(())
+}
+
+/// The ship floats in water of a depth.
+///
+/// # Errors
+/// The water is too shallow for it.
+fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
+    let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
+    if depth_m <= draught_m {
+        return Err(Failure::Refused(format!(
+            "{depth_m} m of water do not float {}, which draws {draught_m} m",
+            model.ship
+        )));
+    }
+    Ok(())
+}
+
+/// Whether a law sails in shallow water.
+fn knows_depth(law: &Law) -> bool {
+    law.inputs.contains_key("depth")
+}
+
+/// A model with what its figures are worth.
+fn model_line(model: &Model, law: &Law) -> String {
+    let note = model.note.as_ref().map_or(String::new(), |note| format!("\nnote: {note}"));
+    format!("{}, law {}: {}{note}", model.name, law.name, worth(model.status))
+}
+
+/// What a model's figures are worth.
+fn worth(status: Status) -> &'static str {
+    match status {
+        Status::Published => "as published",
+        Status::Estimated => "ESTIMATED from particulars: a stopgap, not measured",
+        Status::Transferred => "TRANSFERRED from another ship, not fitted to it",
+        Status::Refined => "refined against trials",
+    }
+}

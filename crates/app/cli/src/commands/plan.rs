@@ -1,0 +1,95 @@
+//! `sistership plan`: the trials that narrow the bands of the IMO criteria most in a given time.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Args;
+use sistership_model::{Effect, Law, Model, Zoo, particulars};
+use sistership_trial_design::{Instruments, Plan, PlanError, PlanRequest, plan};
+
+use super::estimate::{estimate_of, with_speed};
+use super::plan_text;
+use crate::failure::{Failure, both};
+use crate::trials::{self, ReadTrial};
+use crate::values::positive;
+use crate::{named, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership plan --ship my-model.yaml --budget-min 60
+  sistership plan --ship my-ship.yaml --json
+  sistership plan --ship my-model.yaml --trials since.yaml --apart wind --apart current
+
+SHIP is a model that was refined (its posterior says what is open), or a ship: one without a model
+is estimated from its particulars. Times hold the approach of each trial, and how long the ship
+needs until it is steady at its full speed again; both are simulated.";
+
+/// Plan the trials that narrow the bands of the IMO criteria most in a given time.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct PlanArguments {
+    /// The ship or its model: a name in the zoo, a model file, or a vessel file.
+    #[arg(long, value_name = "SHIP")]
+    ship: String,
+    /// Time for all trials, with their approaches.
+    #[arg(long, value_name = "MIN", default_value_t = 60.0, value_parser = positive, allow_negative_numbers = true)]
+    budget_min: f64,
+    /// An effect that is to be told apart from the others named so, as a diagnosis asks for;
+    /// repeatable.
+    #[arg(long, value_name = "EFFECT")]
+    apart: Vec<String>,
+    /// Trials sailed since the model was fitted: what they tell counts, and new ones will be
+    /// recorded like them.
+    #[arg(long, value_name = "TRIALS", num_args = 1..)]
+    trials: Vec<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The ship, a trial or an effect is refused, or nothing fits into the time.
+pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
+    let ((model, law), read) = both(model(zoo, &asked.ship), trials::read(&asked.trials))?;
+    trials::remark_other_ship(&read, &model.ship);
+    let plan = planned(zoo, asked, (&model, &law), &read)?;
+    output::print(asked.json, &plan, || plan_text::text(&plan))
+}
+
+/// The model that a name stands for; of a ship without one, an estimate.
+fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+    match named::ship(zoo, name) {
+        Ok(vessel) if vessel.file.models.is_empty() => {
+            let vessel = with_speed(&vessel, None);
+            let (estimate, law) = estimate_of(zoo, &vessel, None)?;
+            Ok((estimate.model, law))
+        }
+        _ => named::model(zoo, name),
+    }
+}
+
+fn planned(
+    zoo: &Zoo,
+    asked: &PlanArguments,
+    (model, law): (&Model, &Law),
+    read: &[ReadTrial],
+) -> Result<Plan, Failure> {
+    let library: Vec<Arc<Effect>> = zoo.effects().cloned().collect();
+    let lpp_m = particulars::value(&model.particulars, "lpp_m");
+    let request = PlanRequest {
+        model,
+        law,
+        library: &library,
+        budget_s: 60.0 * asked.budget_min,
+        apart: &asked.apart,
+        sailed: &trials::trials(read),
+        instruments: Instruments::of(lpp_m.unwrap_or(f64::INFINITY)),
+    };
+    plan(&request).map_err(|error| match error {
+        PlanError::Budget => Failure::Call(format!("--budget-min: {error}")),
+        PlanError::Effect { .. } => Failure::Call(format!("--apart: {error}")),
+        error => Failure::Refused(error.to_string()),
+    })
+}

@@ -1,0 +1,63 @@
+//! A plan in words and tables.
+
+use sistership_trial_design::{ExpectedBand, Plan, PlannedTrial};
+
+use crate::table::{TextTable, number};
+
+/// Everything that came of it.
+pub fn text(plan: &Plan) -> String {
+    let mut parts = vec![format!("{}\n{}\n", plan.model, summary(plan))];
+    parts.push(format!(
+        "In this order: whoever has to stop early has sailed the best\n{}",
+        trials(&plan.trials)
+    ));
+    parts.push(format!("Bands of 95 %, plus or minus\n{}", bands(&plan.bands)));
+    parts.extend(plan.remarks.iter().map(|remark| format!("remark: {remark}")));
+    parts.join("\n")
+}
+
+/// For whoever has to decide.
+fn summary(plan: &Plan) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let standard: Vec<&str> =
+        plan.standard.trials.iter().map(|trial| trial.manoeuvre.as_str()).collect();
+    format!(
+        "{} trials in {:.0} of {:.0} min. The bands of the IMO criteria are expected to be {} \
+         narrower in the mean;\nafter {} of IMO's manoeuvres in the same time ({}), {} narrower.",
+        plan.trials.len(),
+        plan.takes_min,
+        plan.budget_min,
+        percent(plan.narrower),
+        standard.len(),
+        standard.join(", "),
+        percent(plan.standard.narrower),
+    )
+}
+
+fn trials(trials: &[PlannedTrial]) -> TextTable {
+    let mut table = TextTable::new([
+        "trial",
+        "speed m/s",
+        "heading deg",
+        "manoeuvre min",
+        "in all min",
+        "narrower so far",
+    ]);
+    for trial in trials {
+        let heading = trial.heading_deg.map_or("any".to_owned(), number);
+        let times = [trial.manoeuvre_min, trial.takes_min].map(|min| format!("{min:.1}"));
+        let narrower = format!("{:.0} %", 100.0 * trial.narrower);
+        let first = [trial.manoeuvre.clone(), number(trial.speed_m_s), heading];
+        table.row(first.into_iter().chain(times).chain([narrower]));
+    }
+    table
+}
+
+fn bands(bands: &[ExpectedBand]) -> TextTable {
+    let mut table = TextTable::new(["figure", "unit", "value", "now", "after", "after IMO's"]);
+    for band in bands {
+        let widths = [band.value, band.now, band.after, band.after_standard].map(number);
+        table.row([band.figure.clone(), band.unit.clone()].into_iter().chain(widths));
+    }
+    table
+}

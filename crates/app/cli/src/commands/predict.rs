@@ -1,0 +1,182 @@
+//! `sistership predict`: a model over a horizon from now on, under orders to come.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::{Value, json};
+use sistership_api::Limits;
+use sistership_jobs::line::{CHAMPION, alias};
+use sistership_jobs::predictions::{PredictionRequest, predict};
+use sistership_model::{Law, Model, Zoo};
+
+use super::predict_orders::{self, Orders};
+use super::predict_text;
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::files::PromisedFile;
+use crate::values::{not_negative, number, positive};
+use crate::{named, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership predict --model mariner --rudder-deg 20 --duration-s 120
+  sistership predict --model refined.yaml --orders orders.csv --duration-s 60 --draws 100 --json
+  sistership predict --model my-ship/3 --data-dir here --wind-m-s 15 --wind-from-deg 270 \\
+    --duration-s 300
+
+Orders are a CSV file with the columns t_s, delta_deg or delta_rad, and n_rps; a cell that is empty
+leaves what was ordered before. The answer is that of `POST /v1/predictions` with a horizon.
+Exit status 1 when the motion leaves the physical range.";
+
+/// Sail a model over a horizon under orders to come, in wind and current, with a band.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct PredictArguments {
+    /// The model: a name in the zoo, a model file, a vessel file with a model; else of a store
+    /// `ship` (its champion), `ship/number` or `ship/alias`.
+    #[arg(long)]
+    model: String,
+    /// How far ahead.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    duration_s: f64,
+    /// Orders in time.
+    #[arg(long, value_name = "CSV", conflicts_with_all = ["rudder_deg", "n_rps"])]
+    orders: Option<PathBuf>,
+    /// Rudder angle ordered throughout, positive to starboard.
+    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
+    rudder_deg: Option<f64>,
+    /// Propeller revolutions ordered throughout; those of the speed now where absent.
+    #[arg(long, value_name = "N", value_parser = number, allow_negative_numbers = true)]
+    n_rps: Option<f64>,
+    /// Speed ahead over the ground now; the model's approach speed where absent.
+    #[arg(long, value_name = "U", value_parser = number, allow_negative_numbers = true)]
+    speed_m_s: Option<f64>,
+    /// Heading now, clockwise from north; needs a speed.
+    #[arg(long, value_name = "DEG", value_parser = number, requires = "speed_m_s")]
+    #[arg(allow_negative_numbers = true)]
+    heading_deg: Option<f64>,
+    /// Time between samples.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 0.5)]
+    #[arg(allow_negative_numbers = true)]
+    dt_s: f64,
+    /// Water depth; deep water where absent.
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    depth_m: Option<f64>,
+    /// Speed of a steady wind.
+    #[arg(long, value_name = "M/S", value_parser = not_negative, requires = "wind_from_deg")]
+    #[arg(allow_negative_numbers = true)]
+    wind_m_s: Option<f64>,
+    /// Where it comes from, clockwise from north.
+    #[arg(long, value_name = "DEG", value_parser = number, requires = "wind_m_s")]
+    #[arg(allow_negative_numbers = true)]
+    wind_from_deg: Option<f64>,
+    /// Speed of a steady current.
+    #[arg(long, value_name = "M/S", value_parser = not_negative, requires = "current_towards_deg")]
+    #[arg(allow_negative_numbers = true)]
+    current_m_s: Option<f64>,
+    /// Where it goes, clockwise from north.
+    #[arg(long, value_name = "DEG", value_parser = number, requires = "current_m_s")]
+    #[arg(allow_negative_numbers = true)]
+    current_towards_deg: Option<f64>,
+    /// Draw so many models from the posterior of a refined one, for a band of 95 %.
+    #[arg(long, value_name = "NUMBER")]
+    draws: Option<u32>,
+    /// What these draws follow from.
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "draws")]
+    seed: u64,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Write the track (canonical columns).
+    #[arg(long, value_name = "CSV")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model or an order is refused, or the motion leaves the physical range.
+pub fn run(zoo: &Zoo, asked: &PredictArguments) -> Result<(), Failure> {
+    let orders = orders(asked)?;
+    let (model, law) = model(zoo, asked)?;
+    let inputs: Vec<PathBuf> =
+        asked.orders.iter().cloned().chain([PathBuf::from(&asked.model)]).collect();
+    let file = asked.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
+    let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
+    let request: PredictionRequest =
+        serde_json::from_value(request(asked, &orders)).map_err(|error| refused(&error))?;
+    // As much work as a server takes on for a request.
+    let most = Limits::default().prediction_samples;
+    let mut answer = predict(&request, &model, &law, most).map_err(|error| refused(&error))?;
+    answer["model"] = json!(model.name);
+    answer["law"] = json!(model.law);
+    if let Some(file) = file {
+        file.write(predict_text::csv(&answer, &law).as_bytes())?;
+    }
+    output::print(asked.json, &answer, || predict_text::text(&answer))?;
+    if answer["stopped"].is_null() { Ok(()) } else { Err(Failure::Told) }
+}
+
+fn orders(asked: &PredictArguments) -> Result<Vec<Orders>, Failure> {
+    match &asked.orders {
+        Some(path) => predict_orders::read(path),
+        None => {
+            let delta_rad = asked.rudder_deg.map(f64::to_radians);
+            Ok(vec![Orders { t_s: 0.0, delta_rad, n_rps: asked.n_rps }])
+        }
+    }
+}
+
+/// The request that a server would be sent.
+fn request(asked: &PredictArguments, orders: &[Orders]) -> Value {
+    let steady = |speed: Option<f64>, key: &str, degrees: Option<f64>| {
+        let (speed, degrees) = speed.zip(degrees)?;
+        Some(json!({ "speed_m_s": speed, key: degrees.to_radians() }))
+    };
+    let heading = asked.heading_deg.unwrap_or(0.0).to_radians();
+    let start = asked.speed_m_s.map(|speed| json!({ "u_m_s": speed, "psi_rad": heading }));
+    json!({ "model": "model", "depth_m": asked.depth_m, "horizon": {
+        "start": start,
+        "orders": orders,
+        "duration_s": asked.duration_s,
+        "dt_s": asked.dt_s,
+        "wind": steady(asked.wind_m_s, "from_rad", asked.wind_from_deg),
+        "current": steady(asked.current_m_s, "towards_rad", asked.current_towards_deg),
+        "draws": asked.draws,
+        "seed": asked.draws.map(|_| asked.seed),
+    } })
+}
+
+/// A model of the zoo or of a file; else one of the store, where that is there.
+fn model(zoo: &Zoo, asked: &PredictArguments) -> Result<(Model, Law), Failure> {
+    match named::model(zoo, &asked.model) {
+        Ok((model, law)) => Ok((model, (*law).clone())),
+        Err(unknown) if !asked.store.is_there() => Err(unknown),
+        Err(unknown) if std::path::Path::new(&asked.model).is_file() => Err(unknown),
+        Err(_) => stored(asked),
+    }
+}
+
+fn stored(asked: &PredictArguments) -> Result<(Model, Law), Failure> {
+    let (ship, rest) = asked.model.split_once('/').unwrap_or((&asked.model, CHAMPION));
+    with_archive(&asked.store, async |archive| {
+        let number = match rest.parse() {
+            Ok(number) => number,
+            Err(_) => match alias(&archive.store, ship, rest).await.map_err(told)? {
+                Some(alias) => alias.version_number,
+                None => return Err(format!("the store has no model `{}`", asked.model)),
+            },
+        };
+        let version = archive.store.versions().get(ship, number).await.map_err(told)?;
+        let model = archive.model(&version).await.map_err(told)?;
+        let law = archive.store.laws().get(&model.law).await.map_err(told)?;
+        let law = Law::parse(&law.name, &law.document).map_err(told)?;
+        Ok((model, law))
+    })
+}
+
+fn told(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

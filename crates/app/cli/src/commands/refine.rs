@@ -1,0 +1,364 @@
+//! `sistership refine`: a source model fitted to a ship's trials.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use sistership_identification::refine::{
+    Constraints, Method, Prior, Refinement, Request, Settings, StraightLine, refine,
+};
+use sistership_jobs::derive::with_uncertainty;
+use sistership_model::estimated_particulars::{EstimatedParticular, estimated_particulars};
+use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_model_selection::{Ladder, population};
+use sistership_priors::similarity::RankedSource;
+use sistership_priors::source::{Similarity, best_source, similar};
+use sistership_priors::transfer::{approach_of, blank};
+use sistership_report::{RefinementInput, render_refinement};
+
+use super::refine_branch::TrainedBeside;
+use super::refine_search::{Start, searched};
+use super::refine_settings::{held_out, settings_file};
+use super::refine_text;
+use super::written::{WrittenFiles, guard, model_file, promised};
+use crate::failure::{Failure, both};
+use crate::named;
+use crate::output::{self, count, note};
+use crate::trials::{self, ReadTrial};
+use crate::values::{method, positive, prior};
+use crate::weights;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership refine --ship esso-osaka-3m --trials trials.yaml --out refined.yaml
+  sistership refine --ship my-ship.yaml --source mariner --trials a.csv b.csv c.csv --json
+  sistership refine --ship my-ship.yaml --source kvlcc2 --law low-speed --trials trials.yaml --method weak
+  sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
+
+Without --source, --law and --method, every eligible source is tried under every law that was
+measured, laws without a source, and what the published models of all other ships say. What these
+hold is taken unless something is better on manoeuvres left out at a level of 95 %; else, of what is
+within one standard error of the best there, that which has the least error together with what
+single trials move elsewhere. The most similar ship, refined with the l2 prior, is always among
+them, marked as the reference. With twelve trials and more learned corrections are tried beside what
+is taken, on trials that neither half has seen, and one that is surely better there, no worse at
+other rudder angles and speeds, and no less certain of the standard manoeuvres is taken: its weights
+are written beside the model, m.weights.json for m.yaml.
+The source's coefficients are the prior: with a method named, options go from the source outwards,
+and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
+
+/// Refine a source model against a ship's trials.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct RefineArguments {
+    /// The ship: a name in the zoo or a vessel file.
+    #[arg(long)]
+    ship: String,
+    /// The source: a model's name or file, or `auto`, which it is where absent. Without --law,
+    /// --method, settings and constraints, `auto` tries every eligible source, and none, under
+    /// every law measured; with one of them, it is the most similar eligible ship of the zoo.
+    #[arg(long, value_name = "MODEL|auto")]
+    source: Option<String>,
+    /// The law to fit, such as `low-speed`. With a source of another law, what that says over the
+    /// states of the trials and of its standard manoeuvres becomes the prior; without --source, the
+    /// trials alone make the model.
+    #[arg(long, value_name = "LAW")]
+    law: Option<String>,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
+    trials: Vec<PathBuf>,
+    /// The estimator: `published` (one-step differences), `weak` (integrated over windows),
+    /// `trajectory` (simulated segments) or `cma-es` (simulated segments by a random search, slow).
+    #[arg(long, value_name = "NAME", value_parser = method)]
+    method: Option<Method>,
+    /// What the prior is about: `source`, which it is where absent, `mixture`, the source moved
+    /// towards the estimate from particulars, or `population`, what published models of other ships say.
+    #[arg(long, value_name = "NAME", value_parser = prior)]
+    prior: Option<Prior>,
+    /// Settings of the refinement (YAML); the flags below win over it.
+    #[arg(long, value_name = "FILE.yaml")]
+    settings: Option<PathBuf>,
+    /// Trials kept out of fit and choice altogether, to be judged on.
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    held_out: Vec<String>,
+    /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship
+    /// lengths at the approach speed, and every five where everything is tried.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    restart_s: Option<f64>,
+    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of its
+    /// length.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    difference_s: Option<f64>,
+    /// What the refined model must keep to; bounds of single coefficients go into the settings.
+    #[arg(long, value_name = "WHAT", value_enum, num_args = 1..)]
+    constrain: Vec<Constrain>,
+    /// No coefficient moves further from the source than so many standard deviations of its prior.
+    #[arg(long, value_name = "SD", value_parser = positive, allow_negative_numbers = true)]
+    trust_sd: Option<f64>,
+    /// Write the refined model.
+    #[arg(long, value_name = "MODEL.yaml")]
+    out: Option<PathBuf>,
+    /// Write a report with plots.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Constraints that need no number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Constrain {
+    /// Damped in drift and yaw, turned by the rudder to its side.
+    PhysicalSigns,
+    /// Surge terms brake.
+    Dissipative,
+    /// It keeps a straight line with the rudder amidships.
+    Stable,
+    /// It does not.
+    Unstable,
+}
+
+impl Constrain {
+    fn add_to(self, constraints: &mut Constraints) {
+        match self {
+            Self::PhysicalSigns => constraints.physical_signs = true,
+            Self::Dissipative => constraints.dissipative = true,
+            Self::Stable => constraints.straight_line = Some(StraightLine::Stable),
+            Self::Unstable => constraints.straight_line = Some(StraightLine::Unstable),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct RefineDocument<'a> {
+    #[serde(flatten)]
+    refinement: &'a Refinement,
+    estimated_particulars: Vec<EstimatedParticular>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ranking: Option<&'a [RankedSource]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ladder: Option<&'a Ladder>,
+    #[serde(flatten)]
+    files: WrittenFiles<'a>,
+    /// The weights of the model's learned branch, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weights: Option<&'a Path>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The ship, the source, a trial or the refinement is refused, or a file cannot be written.
+pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
+    let named = arguments.source.as_deref().filter(|source| *source != "auto");
+    let given = named.map(|source| named::foundation(zoo, source)).transpose();
+    let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose();
+    let inputs = named_files(arguments);
+    let beside = arguments.out.as_deref().map(weights::beside);
+    let files = both(
+        both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs)),
+        promised(arguments.report.as_deref(), &inputs),
+    );
+    let target = both(named::ship(zoo, &arguments.ship), settings(arguments));
+    let read = both(files, trials::read(&arguments.trials));
+    let all = both(both(target, both(given, law)), read)?;
+    let (((target, mut settings), (given, law)), (((out, weights), report), read)) = all;
+    let given = given.map(|(model, _)| model);
+    trials::remark_other_ship(&read, target.name());
+    note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
+    let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
+    guard(&files, &read)?;
+    settings.held_out = held_out(&settings.held_out, &read)?;
+    let started = start(zoo, arguments, (given, law), &target, &mut settings, &read)?;
+    let Start { source, law, similarity, ladder, made } = started;
+    let source_law = named::law_of(zoo, &source)?;
+    let law = law.unwrap_or_else(|| source_law.clone());
+    let laws = (&*source_law, &*law);
+    let refinement = match made {
+        Some(made) => made,
+        None => refined(zoo, (&target, &source), laws, &settings, &read)?,
+    };
+    let refinement = calibrated(zoo, refinement, &law, &read);
+    let branch = TrainedBeside::new((zoo, &law), &refinement, ladder.as_ref(), &read)?;
+    if let Some(out) = out {
+        let model = branch.as_ref().map_or(&refinement.model, |branch| &branch.model);
+        // Weights first: a model that is there has them.
+        branch.iter().zip(weights).try_for_each(|(branch, file)| branch.write(file))?;
+        let how = format!("method {}", refinement.method);
+        out.write(model_file(zoo, model, &how)?.as_bytes())?;
+    }
+    if let Some(report) = report {
+        let chosen = (similarity.as_ref(), ladder.as_ref());
+        report.write(&report_html(zoo, &target, &refinement, chosen, &read)?)?;
+    }
+    let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
+    let weights = beside.as_deref().filter(|_| branch.is_some());
+    let ladder = ladder.as_ref();
+    let document = RefineDocument {
+        refinement: &refinement,
+        estimated_particulars: estimated_particulars(&refinement.model.particulars),
+        ranking,
+        ladder,
+        files,
+        weights,
+    };
+    output::print(arguments.json, &document, || {
+        let tried = ladder.map_or(String::new(), refine_text::ladder);
+        let text = refine_text::text(&refinement, &source, ranking, &files);
+        let branch = weights.map_or(String::new(), refine_text::weights);
+        refine_text::warning(&refinement) + &tried + &text + &branch
+    })
+}
+
+/// Where the refinement starts; where nothing is named, the search settles the settings, too.
+fn start(
+    zoo: &Zoo,
+    arguments: &RefineArguments,
+    (given, law): (Option<Model>, Option<Arc<Law>>),
+    target: &Vessel,
+    settings: &mut Settings,
+    read: &[ReadTrial],
+) -> Result<Start, Failure> {
+    match (given, law) {
+        (Some(source), law) => Ok(Start::of(source, law)),
+        (None, None) if is_plain(arguments, settings) => {
+            let (start, explicit) = searched(zoo, target, settings, read)?;
+            *settings = explicit;
+            Ok(start)
+        }
+        (None, Some(law)) if arguments.source.is_none() => {
+            Ok(Start::of(of_law(&law, target, settings, read)?, Some(law)))
+        }
+        (None, law) => {
+            let (source, similarity) = chosen(zoo, target, settings, read)?;
+            Ok(Start { similarity: Some(similarity), ..Start::of(source, law) })
+        }
+    }
+}
+
+/// Whether neither source, law, method nor another prior is named, and nothing that only some
+/// methods keep.
+fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
+    let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
+    unnamed
+        && arguments.method.is_none()
+        && arguments.settings.is_none()
+        && settings.prior == Prior::Source
+        && settings.constraints.is_empty()
+}
+
+fn report_html(
+    zoo: &Zoo,
+    vessel: &Vessel,
+    refinement: &Refinement,
+    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
+    read: &[ReadTrial],
+) -> Result<Vec<u8>, Failure> {
+    let law = named::law_of(zoo, &refinement.model)?;
+    let trials = trials::trials(read);
+    let input = RefinementInput {
+        refinement,
+        law: &law,
+        vessel,
+        trials: &trials,
+        similarity,
+        ladder,
+        version: None,
+    };
+    let rendered = render_refinement(&input)
+        .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+    Ok(rendered.html.into_bytes())
+}
+
+/// Settings from the file, if any, and the flags.
+fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
+    let mut settings =
+        arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
+    settings.method = arguments.method.unwrap_or(settings.method);
+    settings.prior = arguments.prior.unwrap_or(settings.prior);
+    settings.restart_s = arguments.restart_s.or(settings.restart_s);
+    settings.difference_s = arguments.difference_s.or(settings.difference_s);
+    arguments.constrain.iter().for_each(|constrain| constrain.add_to(&mut settings.constraints));
+    settings.constraints.trust_sd = arguments.trust_sd.or(settings.constraints.trust_sd);
+    settings.held_out.extend(arguments.held_out.iter().cloned());
+    Ok(settings.as_ordered())
+}
+
+fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
+    let files = arguments.trials.iter().chain(&arguments.settings).cloned();
+    files.chain([PathBuf::from(&arguments.ship)]).collect()
+}
+
+fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
+    let known = || zoo.laws().map(|law| law.name.as_str()).collect::<Vec<_>>().join(", ");
+    let missing =
+        || Failure::Refused(format!("--law {name}: the zoo has no such law; it has {}", known()));
+    zoo.law(name).cloned().ok_or_else(missing)
+}
+
+/// A law without coefficients, for the approach of the trials that are fitted.
+fn of_law(
+    law: &Law,
+    target: &Vessel,
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<Model, Failure> {
+    let fitted =
+        trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let approach = approach_of(&fitted.collect::<Vec<_>>());
+    blank(law, target, approach).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+/// The best eligible source; trials kept out have no say in it.
+fn chosen(
+    zoo: &Zoo,
+    target: &Vessel,
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<(Model, Similarity), Failure> {
+    note("choosing the source: similarity, and the trend of the trials");
+    let fitted =
+        trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let similarity = similar(zoo, target, None, &fitted.collect::<Vec<_>>());
+    let source = best_source(zoo, &similarity)
+        .map_err(|reasons| Failure::Refused(format!("{reasons}; name one with --source")))?;
+    note(&format!("source: {}", source.name));
+    Ok((source, similarity))
+}
+
+fn refined(
+    zoo: &Zoo,
+    (target, source): (&Vessel, &Model),
+    (source_law, law): (&Law, &Law),
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<Refinement, Failure> {
+    let trials = trials::trials(read);
+    let population = match settings.prior {
+        Prior::Population => population(zoo, target),
+        Prior::Source | Prior::Mixture => Vec::new(),
+    };
+    let request = Request {
+        target,
+        source,
+        source_law: Some(source_law),
+        law,
+        trials: &trials,
+        population: &population,
+        settings,
+    };
+    let told = |fraction: f64, what: &str| {
+        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        true
+    };
+    refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+fn calibrated(zoo: &Zoo, refinement: Refinement, law: &Law, read: &[ReadTrial]) -> Refinement {
+    note("learning what these trials leave open");
+    let effects: Vec<_> = zoo.effects().cloned().collect();
+    with_uncertainty(refinement, law, &effects, &trials::trials(read))
+}

@@ -1,0 +1,234 @@
+//! A refinement in words and tables.
+
+use std::path::Path;
+
+use sistership_assessment::uncertainty::Band;
+use sistership_identification::refine::{
+    CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption,
+};
+use sistership_model::Model;
+use sistership_model_selection::{Ladder, Rung};
+use sistership_priors::similarity::RankedSource;
+use sistership_simulation::manoeuvre::Figure;
+
+use super::channels::CHANNELS;
+use super::written::WrittenFiles;
+use super::{similar, worth};
+use crate::table::{TextTable, number, optional};
+
+/// Everything that came of a refinement.
+pub fn text(
+    refinement: &Refinement,
+    source: &Model,
+    ranking: Option<&[RankedSource]>,
+    files: &WrittenFiles<'_>,
+) -> String {
+    let ranked = ranking
+        .map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
+    let from = match refinement.source == source.name {
+        true => format!("{} ({})", source.name, worth(source.status)),
+        false => refinement.source.clone(),
+    };
+    let head = format!("{} refined from {from} by `{}`\n\n", refinement.ship, refinement.method);
+    let restart = refinement
+        .settings
+        .restart_s
+        .map_or(String::new(), |s| format!(";\nsimulations start anew every {} s", number(s)));
+    let smoothed = refinement.settings.compared_smoothing_s().map_or(String::new(), |s| {
+        format!(";\nmeasured motions are smoothed over {} s", number(s))
+    });
+    let how = format!("Root mean square errors: {}{restart}{smoothed}", refinement.held_out.how);
+    let errors = format!("{how}\n{}\n", errors(&refinement.held_out, has_roll(&refinement.model)));
+    let options = format!("Options, from the source outwards\n{}\n", options(&refinement.options));
+    let coefficients = format!(
+        "Coefficients (moved: in standard deviations of the prior)\n{}\n",
+        coefficients(&refinement.coefficients)
+    );
+    let manoeuvres = format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres));
+    format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
+}
+
+/// What stands in the first line where the trials leave much open.
+pub fn warning(refinement: &Refinement) -> String {
+    let wide = refinement.manoeuvres.wide_band();
+    wide.map_or_else(String::new, |wide| format!("WARNING: {wide}\n\n"))
+}
+
+/// Where the weights of the model's learned branch are.
+pub fn weights(file: &Path) -> String {
+    format!("with a learned branch, weights written to {}\n", file.display())
+}
+
+/// What was tried before the model was chosen.
+pub fn ladder(ladder: &Ladder) -> String {
+    let mut table = TextTable::new([
+        "source",
+        "law",
+        "taken to",
+        "fitted",
+        "error",
+        "std. error",
+        "elsewhere",
+        "s",
+        "taken",
+        "why",
+    ]);
+    for line in &ladder.lines {
+        let source = line.source.clone().unwrap_or_else(|| "none".to_owned());
+        let rung = match line.rung {
+            Rung::CarriedOver => "carried over",
+            Rung::Weak => "weak",
+            Rung::Trajectory => "trajectory",
+        };
+        let figures = [line.error, line.standard_error, line.variance].map(optional);
+        let taken = match (line.chosen, line.reference) {
+            (true, _) => "yes",
+            (false, true) => "reference",
+            (false, false) => "",
+        };
+        let names = [source, line.law.clone(), rung.to_owned(), line.coefficients.to_string()];
+        let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
+        table.row(names.into_iter().chain(figures).chain(end));
+    }
+    let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
+    let branch = ladder.branch.as_ref().map_or("", |choice| &choice.reason);
+    let reference = ladder.reference();
+    format!("Tried: {what}\n{table}\n{reference}\n\nLearned branch: {branch}\n\n")
+}
+
+/// A law without roll leaves roll where it was: its errors would say nothing.
+fn has_roll(model: &Model) -> bool {
+    model.coefficients.keys().any(|name| name.starts_with("K_"))
+}
+
+/// The errors on manoeuvres left out, before and after.
+pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
+    let mut table = TextTable::new(["channel", "unit", "source", "refined", "change"]);
+    for (name, unit, factor) in
+        CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p"))
+    {
+        let of = |errors: &std::collections::BTreeMap<String, f64>| {
+            errors.get(name).filter(|rmse| **rmse != f64::MAX).map(|rmse| rmse * factor)
+        };
+        let (before, after) = (of(&held_out.source), of(&held_out.refined));
+        if before.is_some() || after.is_some() {
+            let change = before
+                .zip(after)
+                .map_or_else(|| "-".to_owned(), |(before, after)| percent(before, after));
+            table.row([
+                name.to_owned(),
+                unit.to_owned(),
+                optional(before),
+                optional(after),
+                change,
+            ]);
+        }
+    }
+    table
+}
+
+fn percent(before: f64, after: f64) -> String {
+    if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { "-".to_owned() }
+}
+
+fn options(options: &[StepOption]) -> TextTable {
+    let mut table = TextTable::new(["step", "least lambda", "error", "taken", "why not"]);
+    for option in options {
+        let least =
+            option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
+        let taken = if option.chosen { "yes" } else { "" };
+        let reason = option.reason.clone().unwrap_or_default();
+        table.row([option.step.clone(), least, optional(option.error), taken.to_owned(), reason]);
+    }
+    table
+}
+
+fn coefficients(coefficients: &[CoefficientChange]) -> TextTable {
+    let mut table = TextTable::new(["name", "unit", "source", "refined", "std. error", "moved"]);
+    for change in coefficients {
+        let figures = [change.source, change.refined, change.standard_error].map(number);
+        let moved = format!("{:.2}", change.moved_sd);
+        table.row(
+            [change.name.clone(), change.unit.clone()].into_iter().chain(figures).chain([moved]),
+        );
+    }
+    table
+}
+
+/// Figures of the standard manoeuvres that are shown.
+const SHOWN: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
+
+fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
+    let mut table = TextTable::new(["figure", "unit", "source", "refined", "from", "to (95 %)"]);
+    let (source, refined) = (manoeuvres.source.figures(), manoeuvres.refined.figures());
+    let shown =
+        |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
+    let all = if refined.len() < source.len() { &source } else { &refined };
+    for Figure { name, unit, .. } in all.iter().filter(|figure| shown(&figure.name)) {
+        let of = |figures: &[Figure]| {
+            optional(figures.iter().find(|other| other.name == *name).and_then(|other| other.value))
+        };
+        let band = manoeuvres.bands.as_ref().and_then(|bands| bands.of(name));
+        let edge = |of: fn(&Band) -> f64| optional(band.map(of));
+        table.row([
+            name.clone(),
+            unit.clone(),
+            of(&source),
+            of(&refined),
+            edge(|band| band.low),
+            edge(|band| band.high),
+        ]);
+    }
+    table
+}
+
+fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
+    let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
+    lines.extend(inseparable(&refinement.collinear_groups));
+    let failures = refinement.manoeuvres.refined.failures.iter();
+    lines.extend(
+        failures.map(|failure| {
+            format!("remark: the refined model fails a standard manoeuvre: {failure}")
+        }),
+    );
+    let bands = refinement.manoeuvres.bands.as_ref();
+    lines.extend(bands.and_then(|bands| Some(bands.next_trial.as_ref()?.words())));
+    let outside = refinement.manoeuvres.refined.outside.iter();
+    lines.extend(outside.map(|(name, how)| format!("OUTSIDE: {name}: {}", how.words())));
+    lines.extend(refinement.remarks.iter().map(|remark| format!("remark: {remark}")));
+    lines.push(match files.out {
+        Some(path) => format!("model written to {}", path.display()),
+        None => "model not written: give --out MODEL.yaml to keep it".to_owned(),
+    });
+    lines.extend(files.report.map(|path| format!("report written to {}", path.display())));
+    lines.join("\n")
+}
+
+/// Groups of coefficients that are listed one by one; more would bury what stands beside them.
+const LISTED: usize = 5;
+
+/// What the trials cannot tell apart.
+fn inseparable(groups: &[Vec<String>]) -> Vec<String> {
+    let line =
+        |group: &Vec<String>| format!("cannot be told apart by these trials: {}", group.join(", "));
+    let mut lines: Vec<String> = groups.iter().take(LISTED).map(line).collect();
+    let (all, more) = (groups.len(), groups.len().saturating_sub(LISTED));
+    let rest =
+        || format!("and {more} more such groups, of {all}; --json and --report have them all");
+    lines.extend((more > 0).then(rest));
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_groups_are_counted() {
+        let group = |k: usize| vec![format!("X_{k}"), format!("Y_{k}")];
+        let lines = |count: usize| inseparable(&(0..count).map(group).collect::<Vec<_>>());
+        assert_eq!(lines(0), Vec::<String>::new());
+        assert_eq!(lines(LISTED).len(), LISTED);
+        assert!(lines(30)[LISTED].starts_with("and 25 more such groups, of 30"));
+    }
+}

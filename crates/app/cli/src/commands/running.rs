@@ -1,0 +1,307 @@
+//! What the commands that run until they are told to stop have in common: how they hold their jobs,
+//! and how they stop.
+
+use std::time::Duration;
+
+use clap::Args;
+use sistership_api::Leases;
+use tokio::sync::oneshot;
+
+use super::config_file::ConfigFile;
+use super::store::runtime;
+use crate::failure::Failure;
+use crate::output;
+
+/// Jobs worked on at a time when nobody says otherwise, and at most.
+const WORKERS: u16 = 1;
+const MOST_WORKERS: u16 = 64;
+
+/// Memory that requests or jobs may be given, MB.
+const LEAST_MEMORY_MB: u64 = 32;
+const MOST_MEMORY_MB: u64 = 1 << 20;
+
+/// How workers hold their jobs.
+#[derive(Debug, Args)]
+pub struct LeaseArguments {
+    /// Seconds without a sign of life after which a job goes to another worker, 0.5 to 3600
+    /// [default: 15].
+    #[arg(long, value_name = "SECONDS", env = "SISTERSHIP_LEASE_S")]
+    lease_s: Option<f64>,
+    /// Seconds for which a job under way goes on when the process is told to stop, 0 to 86400
+    /// [default: 20].
+    #[arg(long, value_name = "SECONDS", env = "SISTERSHIP_DRAIN_S")]
+    drain_s: Option<f64>,
+}
+
+impl LeaseArguments {
+    /// The leases that they and the file ask for.
+    ///
+    /// # Errors
+    /// Names the setting that is out of bounds.
+    pub fn leases(&self, file: &ConfigFile) -> Result<Leases, Failure> {
+        let mut leases = Leases::default();
+        if let Some(lease_s) = self.lease_s.or(file.lease_s) {
+            leases = Leases::of(seconds("lease_s", lease_s, 0.5, Leases::MAX)?);
+        }
+        if let Some(drain_s) = self.drain_s.or(file.drain_s) {
+            leases.drain = seconds("drain_s", drain_s, 0.0, Leases::MAX_DRAIN)?;
+        }
+        Ok(leases)
+    }
+}
+
+fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duration, Failure> {
+    match (least..=most.as_secs_f64()).contains(&value) {
+        true => Ok(Duration::from_secs_f64(value)),
+        false => Err(Failure::Call(format!(
+            "{name} must be from {least} to {} s, not {value}",
+            most.as_secs()
+        ))),
+    }
+}
+
+/// Memory in MB, as the flag or the file asks for, in bytes.
+///
+/// # Errors
+/// Names the setting that is out of bounds.
+pub fn memory(
+    name: &str,
+    given: Option<u64>,
+    file: Option<u64>,
+    default: u64,
+) -> Result<u64, Failure> {
+    let Some(mb) = given.or(file) else { return Ok(default) };
+    match (LEAST_MEMORY_MB..=MOST_MEMORY_MB).contains(&mb) {
+        true => Ok(mb << 20),
+        false => Err(Failure::Call(format!(
+            "{name} must be from {LEAST_MEMORY_MB} to {MOST_MEMORY_MB} MB, not {mb}"
+        ))),
+    }
+}
+
+/// Jobs worked on at a time, as the flag or the file asks for.
+///
+/// # Errors
+/// The number is out of bounds.
+pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usize, Failure> {
+    let workers = given.or(file.workers).unwrap_or(WORKERS);
+    match (least..=MOST_WORKERS).contains(&workers) {
+        true => Ok(usize::from(workers)),
+        false => Err(Failure::Call(format!(
+            "workers must be from {least} to {MOST_WORKERS}, not {workers}"
+        ))),
+    }
+}
+
+/// Runs something until a signal tells it to stop, then `stop`s it; has ended within `bound` after
+/// the signal.
+///
+/// The signal is heard on a thread of its own, and that thread ends the process (exit status 1)
+/// when `bound` has passed or a second signal comes: whatever holds the other threads holds
+/// neither. Computations that nothing waits for any more end with the process.
+///
+/// # Errors
+/// What `start` says, or that signals cannot be heard.
+pub fn run_until_stopped<T>(
+    bound: Duration,
+    start: impl Future<Output = Result<T, Failure>>,
+    stop: impl AsyncFnOnce(T),
+) -> Result<(), Failure> {
+    let runtime = runtime()?;
+    let told = watch(bound)?;
+    let ended = runtime.block_on(async {
+        let unheard = || Failure::Refused("signals cannot be heard".into());
+        let mut told = told;
+        let running = tokio::select! {
+            running = start => running?,
+            told = &mut told => return told.map_err(|_| unheard()),
+        };
+        told.await.map_err(|_| unheard())?;
+        stop(running).await;
+        Ok(())
+    });
+    runtime.shutdown_background();
+    ended
+}
+
+/// Begins to hear signals, on a thread of its own; tells of the first.
+fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
+    let (tell, told) = oneshot::channel();
+    let none = |error| Failure::Refused(format!("no threads: {error}"));
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
+    let mut signals = runtime.block_on(async { StopSignals::hear() })?;
+    let heard = move || {
+        runtime.block_on(async {
+            signals.next().await;
+            // Nobody listens where starting has failed meanwhile.
+            tell.send(()).ok();
+            output::note("stopping; once more to stop at once");
+            if tokio::time::timeout(bound, signals.next()).await.is_err() {
+                output::note(&format!(
+                    "not everything under way has ended within {} s",
+                    bound.as_secs()
+                ));
+            }
+            std::process::exit(i32::from(Failure::Told.status()));
+        });
+    };
+    std::thread::Builder::new().name("signals".into()).spawn(heard).map_err(none)?;
+    Ok(told)
+}
+
+/// Ctrl-C, and SIGTERM where there is one.
+struct StopSignals {
+    #[cfg(unix)]
+    interrupt: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+}
+
+impl StopSignals {
+    #[cfg(unix)]
+    fn hear() -> Result<Self, Failure> {
+        use tokio::signal::unix::{SignalKind, signal};
+        let unheard = |error| Failure::Refused(format!("signals cannot be heard: {error}"));
+        let interrupt = signal(SignalKind::interrupt()).map_err(unheard)?;
+        Ok(Self { interrupt, terminate: signal(SignalKind::terminate()).map_err(unheard)? })
+    }
+
+    #[cfg(not(unix))]
+    fn hear() -> Result<Self, Failure> {
+        Ok(Self {})
+    }
+
+    async fn next(&mut self) {
+        #[cfg(unix)]
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+        #[cfg(not(unix))]
+        drop(tokio::signal::ctrl_c().await);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn flags_come_before_the_file_and_the_file_before_the_default() {
+        let file = ConfigFile {
+            lease_s: Some(30.0),
+            drain_s: Some(1.0),
+            workers: Some(3),
+            ..ConfigFile::default()
+        };
+        let leases = LeaseArguments { lease_s: Some(2.0), drain_s: None }.leases(&file).unwrap();
+        assert_eq!((leases.lease.as_secs(), leases.drain.as_secs()), (2, 1));
+        let none = LeaseArguments { lease_s: None, drain_s: None };
+        assert_eq!(none.leases(&ConfigFile::default()).unwrap(), Leases::default());
+        assert_eq!((workers(Some(5), &file, 1), workers(None, &file, 1)), (Ok(5), Ok(3)));
+        assert_eq!(workers(None, &ConfigFile::default(), 1), Ok(1));
+    }
+
+    #[test]
+    fn memory_is_given_in_megabytes() {
+        assert_eq!(memory("job_memory_mb", None, Some(64), 7), Ok(64 << 20));
+        assert_eq!(memory("job_memory_mb", Some(32), Some(64), 7), Ok(32 << 20));
+        assert_eq!(memory("job_memory_mb", None, None, 7), Ok(7));
+        let wrong = memory("job_memory_mb", Some(8), None, 7).unwrap_err();
+        assert!(wrong.message().unwrap().contains("job_memory_mb must be from 32"));
+    }
+
+    #[test]
+    fn what_is_out_of_bounds_is_named() {
+        let lease = |lease_s| {
+            LeaseArguments { lease_s: Some(lease_s), drain_s: None }.leases(&ConfigFile::default())
+        };
+        for wrong in [0.1, 3601.0, f64::NAN] {
+            assert!(lease(wrong).is_err_and(|why| {
+                why.message().unwrap().contains("lease_s must be from 0.5 to 3600")
+            }));
+        }
+        let file = ConfigFile { drain_s: Some(-1.0), workers: Some(65), ..ConfigFile::default() };
+        assert!(
+            LeaseArguments { lease_s: None, drain_s: None }
+                .leases(&file)
+                .unwrap_err()
+                .message()
+                .unwrap()
+                .contains("drain_s")
+        );
+        assert!(workers(None, &file, 0).is_err() && workers(Some(0), &file, 1).is_err());
+    }
+
+    /// This test's program as another process, which runs one test in earnest.
+    #[cfg(unix)]
+    fn stopped(role: &str, test: &str) -> (Option<i32>, Duration) {
+        use std::io::{BufRead as _, BufReader};
+        use std::process::{Command, Stdio};
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        let name = format!("commands::running::tests::{test}");
+        command.args(["--exact", &name, "--nocapture"]).env(ROLE, role).stdout(Stdio::piped());
+        let mut process = command.spawn().unwrap();
+        let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
+        assert!(lines.any(|line| line.unwrap().contains("begun")));
+        std::thread::sleep(Duration::from_millis(200));
+        let told = std::time::Instant::now();
+        assert!(
+            Command::new("kill")
+                .args(["-TERM", &process.id().to_string()])
+                .status()
+                .unwrap()
+                .success()
+        );
+        let code = process.wait().unwrap().code();
+        (code, told.elapsed())
+    }
+
+    #[cfg(unix)]
+    const ROLE: &str = "SISTERSHIP_TEST_ROLE";
+
+    #[cfg(unix)]
+    #[test]
+    fn a_process_ends_in_time_whatever_holds_its_threads() {
+        let long = || std::thread::sleep(Duration::from_secs(600));
+        let begun = || println!("begun");
+        match std::env::var(ROLE).ok().as_deref() {
+            Some("computes") => {
+                let start = async {
+                    drop(tokio::task::spawn_blocking(long));
+                    begun();
+                    Ok(())
+                };
+                run_until_stopped(Duration::from_secs(60), start, async |()| {}).unwrap();
+                std::process::exit(0);
+            }
+            Some("held") => {
+                let start = async {
+                    for _ in 0..64 {
+                        drop(tokio::spawn(async move { long() }));
+                    }
+                    begun();
+                    Ok(())
+                };
+                let stop = async |()| tokio::task::spawn(async {}).await.unwrap();
+                run_until_stopped(Duration::from_secs(2), start, stop).unwrap();
+                std::process::exit(0);
+            }
+            _ => {
+                let test = "a_process_ends_in_time_whatever_holds_its_threads";
+                let (code, took) = stopped("computes", test);
+                assert!(
+                    code == Some(0) && took < Duration::from_secs(2),
+                    "a blocking thread: {code:?} after {took:?}"
+                );
+                let (code, took) = stopped("held", test);
+                assert!(
+                    code == Some(1) && took < Duration::from_secs(5),
+                    "every thread: {code:?} after {took:?}"
+                );
+            }
+        }
+    }
+}

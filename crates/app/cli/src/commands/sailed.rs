@@ -1,0 +1,65 @@
+//! Sailing what a call asks for.
+
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag,
+};
+use sistership_simulation::{Ship, Trajectory};
+
+/// Sails the turns and zigzags asked for, or the standard set where that is; what diverges is a
+/// failure in the result.
+pub fn sail(
+    ship: &Ship,
+    turns: &[f64],
+    zigzags: &[(f64, f64)],
+    usual: bool,
+    settings: &ManoeuvreSettings,
+) -> (StandardManoeuvres, Vec<Trajectory>) {
+    if usual {
+        return (standard(ship, settings), Vec::new());
+    }
+    let (mut sailed, mut tracks) = (StandardManoeuvres::default(), Vec::new());
+    for rudder in turns {
+        let name = format!("turn {rudder} deg");
+        match turn(ship, *rudder, settings) {
+            Ok(turn) => {
+                sailed.note_outside(&name, ship, &turn.track);
+                sailed.turns.push(turn.metrics);
+                tracks.push(turn.track);
+            }
+            Err(stopped) => sailed.failures.push(format!("{name}: {stopped}")),
+        }
+    }
+    for (rudder, switch) in zigzags {
+        let name = format!("zigzag {rudder}/{switch}");
+        match zigzag(ship, *rudder, *switch, settings) {
+            Ok(zigzag) => {
+                sailed.note_outside(&name, ship, &zigzag.track);
+                sailed.zigzags.push(zigzag.metrics);
+                tracks.push(zigzag.track);
+            }
+            Err(stopped) => sailed.failures.push(format!("{name}: {stopped}")),
+        }
+    }
+    (sailed, tracks)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn what_is_asked_for_is_sailed_and_nothing_else() {
+        let zoo = Zoo::embedded().unwrap();
+        let ship = Ship::new(&zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap()).unwrap();
+        let (sailed, tracks) =
+            sail(&ship, &[35.0, -35.0], &[], false, &ManoeuvreSettings::default());
+        assert_eq!(
+            (sailed.turns.len(), sailed.zigzags.len(), sailed.imo.len(), tracks.len()),
+            (2, 0, 0, 2)
+        );
+        let (all, tracks) = sail(&ship, &[], &[], true, &ManoeuvreSettings::default());
+        assert!(!all.imo.is_empty() && tracks.is_empty());
+    }
+}

@@ -1,0 +1,224 @@
+//! `sistership serve`: the REST server.
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use sistership_api::{
+    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, Running, Server, StartError, TrustedProxies,
+};
+use sistership_auth::openid::OpenIdArguments;
+
+use super::config_file::ConfigFile;
+use super::log::LogArguments;
+use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::store::StoreArguments;
+use crate::failure::{Failure, about_file};
+use crate::output;
+use crate::values::address;
+use crate::zoo::text_of;
+
+/// Holds the API key.
+const KEY: &str = "SISTERSHIP_API_KEY";
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership serve
+  sistership serve --listen 127.0.0.1:9000 --data-dir /var/lib/sistership
+  sistership serve --listen 0.0.0.0:8080 --database-url postgres://user@host/sistership --api-key-file /run/secrets/key
+
+The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could
+see; requests carry it as `Authorization: Bearer KEY`. Without a key or --accounts the server
+listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs under way get --drain-s to end and
+then go back to the queue.";
+
+/// Run the REST server.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ServeArguments {
+    /// Address and port; port 0 takes a free one [default: 127.0.0.1:8080].
+    #[arg(long, value_name = "ADDRESS:PORT", env = "SISTERSHIP_LISTEN", value_parser = address)]
+    listen: Option<SocketAddr>,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// File that holds the API key; wins over SISTERSHIP_API_KEY.
+    #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
+    api_key_file: Option<PathBuf>,
+    /// People sign in by name and password (`sistership users`), and nobody is let in without that
+    /// or a key.
+    #[arg(long, env = "SISTERSHIP_ACCOUNTS")]
+    accounts: bool,
+    /// Jobs worked on at a time, 0 to 64; 0 leaves them to other processes on the same database
+    /// (`sistership work`) [default: 1].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
+    workers: Option<u16>,
+    /// Work on no jobs, whatever --workers says.
+    #[arg(long)]
+    no_worker: bool,
+    /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is
+    /// refused [default: 256].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_REQUEST_MEMORY_MB")]
+    request_memory_mb: Option<u64>,
+    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
+    job_memory_mb: Option<u64>,
+    /// Connections at a time, 16 to 65536 [default: 1024].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS")]
+    connections: Option<u32>,
+    /// Connections of one address at a time; all of them where the clients are behind a proxy
+    /// [default: half of the connections].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
+    connections_per_address: Option<u32>,
+    /// A proxy, by its address or network such as 10.0.0.0/8, whose word for the address of a client
+    /// is taken; may be given several times. Limits and the audit then know the client's.
+    #[arg(long, value_name = "CIDR", env = "SISTERSHIP_TRUSTED_PROXIES", value_delimiter = ',')]
+    trusted_proxy: Vec<String>,
+    /// The header in which these write it, x-forwarded-for or forwarded [default: x-forwarded-for].
+    #[arg(long, value_name = "NAME", env = "SISTERSHIP_FORWARDED_HEADER")]
+    forwarded_header: Option<String>,
+    /// Let webhooks lead into private networks, and speak plain http: their addresses are set by
+    /// admins, and a server asks them.
+    #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
+    webhooks_private: bool,
+    #[command(flatten)]
+    openid: Box<OpenIdArguments>,
+    #[command(flatten)]
+    lease: LeaseArguments,
+    #[command(flatten)]
+    log: LogArguments,
+}
+
+/// Runs the command until it is told to stop.
+///
+/// # Errors
+/// The configuration is refused, or the store or the address cannot be used.
+pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
+    if !zoo.is_empty() {
+        return Err(Failure::Call(
+            "a server keeps its ships and laws in its database: send them to /v1/ships and \
+             /v1/laws, not by --zoo; it diagnoses with the effects of the program"
+                .into(),
+        ));
+    }
+    let file = serve.store.file()?;
+    let config = config(serve, &file)?;
+    serve.log.begin(&file)?;
+    let start = async {
+        let running = Server::start(config.clone()).await.map_err(refused)?;
+        let url = running.url();
+        output::print(false, &(), || format!("sistership listens on {url}"))?;
+        Ok(running)
+    };
+    run_until_stopped(config.stop_bound(), start, Running::stop)
+}
+
+fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = serve.store.place(file)?;
+    let mut config = Config::new(place.data_dir);
+    config.objects = place.objects;
+    config.listen = serve.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN);
+    config.database_url = place.database_url;
+    config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };
+    config.leases = serve.lease.leases(file)?;
+    config.limits = limits(serve, file)?;
+    let limits = &mut config.limits;
+    limits.request_memory = memory(
+        "request_memory_mb",
+        serve.request_memory_mb,
+        file.request_memory_mb,
+        limits.request_memory,
+    )?;
+    limits.job_memory =
+        memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
+    config.api_key = api_key(serve, file)?;
+    config.proxies = proxies(serve, file)?;
+    config.accounts = serve.accounts || file.accounts.unwrap_or(false);
+    config.openid =
+        serve.openid.settings(&file.oidc).map_err(|error| Failure::Call(error.to_string()))?;
+    config.check().map_err(refused)?;
+    Ok(config)
+}
+
+/// The proxies of the flags, else of the file.
+fn proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, Failure> {
+    let named = match serve.trusted_proxy.is_empty() {
+        true => file.trusted_proxies.as_deref().unwrap_or_default(),
+        false => &serve.trusted_proxy,
+    };
+    let wrong = |field: &str, message: String| Failure::Call(format!("{field}: {message}"));
+    let network = |text: &String| text.parse().map_err(|why| wrong("trusted_proxy", why));
+    let header = serve.forwarded_header.as_ref().or(file.forwarded_header.as_ref());
+    Ok(TrustedProxies {
+        networks: named.iter().map(network).collect::<Result<_, _>>()?,
+        header: header
+            .map_or(Ok(ForwardedHeader::default()), |name| name.parse())
+            .map_err(|why| wrong("forwarded_header", why))?,
+    })
+}
+
+/// Bounds on connections.
+fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
+    let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most)
+        .contains(&value)
+    {
+        true => Ok(value as usize),
+        false => Err(Failure::Call(format!("{name} must be from {least} to {most}, not {value}"))),
+    };
+    let mut limits = Limits { webhooks_private: serve.webhooks_private, ..Limits::default() };
+    if let Some(connections) = serve.connections.or(file.connections) {
+        limits.connections = within("connections", connections, 16, 1 << 16)?;
+        limits.connections_per_address = limits.connections / 2;
+    }
+    if let Some(share) = serve.connections_per_address.or(file.connections_per_address) {
+        limits.connections_per_address =
+            within("connections_per_address", share, 1, limits.connections as u32)?;
+    }
+    Ok(limits)
+}
+
+/// The key from the flag's file, from the environment, or from the file that the configuration
+/// names.
+fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, Failure> {
+    if let Some(path) = &serve.api_key_file {
+        return key_of(path).map(Some);
+    }
+    match std::env::var(KEY).ok().filter(|key| !key.is_empty()) {
+        Some(key) => Ok(Some(key)),
+        None => file.api_key_file.as_deref().map(key_of).transpose(),
+    }
+}
+
+fn key_of(file: &Path) -> Result<String, Failure> {
+    let key = text_of(file)?.trim().to_owned();
+    if key.is_empty() { Err(about_file(file, "holds no API key")) } else { Ok(key) }
+}
+
+/// What can be seen in the call alone is a call that is wrong.
+fn refused(error: StartError) -> Failure {
+    match error {
+        StartError::OpenWithoutKey(listen) => Failure::Call(format!(
+            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let \
+             people sign in with --accounts, or listen on 127.0.0.1"
+        )),
+        StartError::Key | StartError::OpenIdWithoutAccounts => Failure::Call(error.to_string()),
+        other => Failure::Refused(other.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_read() {
+        assert_eq!(address("127.0.0.1:8080"), Ok(DEFAULT_LISTEN));
+        assert!(address("8080").is_err_and(|error| error.to_string().contains("127.0.0.1:8080")));
+    }
+
+    #[test]
+    fn an_open_server_is_a_call_that_is_wrong() {
+        let failure = refused(StartError::OpenWithoutKey(([0, 0, 0, 0], 80).into()));
+        assert_eq!(failure.status(), 2);
+        assert!(failure.message().is_some_and(|message| message.contains("--api-key-file")));
+    }
+}

@@ -1,0 +1,97 @@
+//! `sistership ships`: the ships of a store, found by what is known of them.
+
+use clap::Args;
+use serde_json::{Value, json};
+use sistership_jobs::Archive;
+use sistership_jobs::search::{
+    self, FactRange, FoundShip, KnownVectors, MAX_RANGES, Page, Search, ShipSearch,
+};
+use sistership_priors::similarity::Definition;
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::output;
+use crate::table::{TextTable, number};
+use crate::values::definition;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership ships --category tanker --tag own-fleet
+  sistership ships --particular lpp_m:100..200 --metric turn_35.tactical_diameter_m:..900
+  sistership ships --similar-to kvlcc2 --limit 10 --json
+
+Without ranges ships come by name, with ranges by the first of them (particulars before metrics),
+with --similar-to the most similar first. Values are SI; metrics are those of the champion's
+standard manoeuvres, the greater of both sides.";
+
+/// Find ships of a store.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ShipsArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Of this category only.
+    #[arg(long, value_name = "NAME")]
+    category: Option<String>,
+    /// With this tag only.
+    #[arg(long, value_name = "TAG")]
+    tag: Option<String>,
+    /// A range of a particular, either end of which may be left out; may be given several times.
+    #[arg(long, value_name = "NAME:MIN..MAX", value_parser = search::particular)]
+    particular: Vec<FactRange>,
+    /// A range of a metric of the champion, in the same way.
+    #[arg(long, value_name = "NAME:MIN..MAX", value_parser = search::metric)]
+    metric: Vec<FactRange>,
+    /// Ships like this one, of its category.
+    #[arg(long, value_name = "SHIP")]
+    similar_to: Option<String>,
+    /// Definition of the characteristic vector; mei-2019 where the ship has every component of it.
+    #[arg(long, value_name = "NAME", value_parser = definition, requires = "similar_to")]
+    vector: Option<Definition>,
+    /// The most ships to print.
+    #[arg(long, value_name = "N", default_value = "100", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    limit: u32,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The store is not there or does not answer, or there is no ship to be similar to.
+pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
+    let ranges: Vec<FactRange> = ships.particular.iter().chain(&ships.metric).cloned().collect();
+    if ranges.len() > MAX_RANGES {
+        return Err(Failure::Call(format!("at most {MAX_RANGES} ranges can be asked for at once")));
+    }
+    let known = ShipSearch { category: ships.category.clone(), tag: ships.tag.clone(), ranges };
+    let search =
+        Search { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
+    let found = with_archive(&ships.store, async |archive: &Archive| {
+        search::catch_up(archive).await?;
+        let page = Page::first(i64::from(ships.limit));
+        search::ships(archive, &KnownVectors::default(), &search, &page).await
+    })?;
+    let more = found.next.is_some();
+    output::print(ships.json, &document(&found.items, more), || text(&found.items, more))
+}
+
+fn document(ships: &[FoundShip], more: bool) -> Value {
+    let one = |ship: &FoundShip| {
+        let FoundShip { name, title, category, revision, value, .. } = ship;
+        json!({ "ship": name, "title": title, "category": category, "revision": revision,
+            "value": value })
+    };
+    json!({ "ships": ships.iter().map(one).collect::<Vec<_>>(), "more": more })
+}
+
+fn text(ships: &[FoundShip], more: bool) -> String {
+    let mut table = TextTable::new(["ship", "category", "value", "title"]);
+    for ship in ships {
+        let value = ship.value.map_or_else(|| "-".to_owned(), number);
+        table.row([ship.name.clone(), ship.category.clone(), value, ship.title.clone()]);
+    }
+    let rest = if more { "and more; see --limit\n" } else { "" };
+    format!("{table}{rest}")
+}

@@ -1,0 +1,172 @@
+//! `sistership simulate`: recorded trials against a model driven by their rudder and revolutions.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+use sistership_model::trial::Channel;
+use sistership_model::{Law, Model, Zoo};
+use sistership_simulation::error::standard_deviations;
+use sistership_simulation::recorded::{Replay, ReplaySettings};
+
+use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total};
+use crate::failure::{Failure, both};
+use crate::output::{self, count, note};
+use crate::table::{TextTable, number};
+use crate::trials::{self, ReadTrial};
+use crate::values::{Integration, positive};
+use crate::weights::BranchWords;
+use crate::{commands::model_line, folder, named, track};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership simulate --model mariner --trials turn.csv zigzag.csv
+  sistership simulate --model my-model.yaml --trials trials.yaml --restart-s 100 --json
+  sistership simulate --model sr108 --trials trials.yaml --out simulated
+
+Errors are root mean squares; `std. MSE` adds up the squares of those of u, v, r, psi, x and y,
+each divided by the standard deviation of the channel over the trials given. Exit status 1 when a
+simulation leaves the physical range.";
+
+/// Simulate recorded trials with a model and measure its errors.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct SimulateArguments {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
+    trials: Vec<PathBuf>,
+    /// Start anew from the recorded state every so often; never where absent.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    restart_s: Option<f64>,
+    /// Integration method.
+    #[arg(long, value_enum, default_value_t)]
+    method: Integration,
+    /// Longest step; sampling intervals are cut into equal steps no longer than this.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true, default_value_t = 0.5)]
+    step_s: f64,
+    /// Write one CSV per trial of the simulated states at the recorded times into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct SimulateDocument<'a> {
+    model: &'a str,
+    law: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    branch: Option<BranchWords<'a>>,
+    trials: &'a [SimulatedTrial],
+    all: Option<SimulatedTrial>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model or a trial is refused, a channel is missing, or a simulation leaves the physical
+/// range.
+pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
+    let asked = both(named::model(zoo, &simulate.model), trials::read(&simulate.trials));
+    let ((model, law), read) = asked?;
+    trials::remark_other_ship(&read, &model.ship);
+    let files = promised(simulate, &read)?;
+    let runs = simulate_all(simulate, &model, &law, &read)?;
+    let simulated = written(runs, files, &law, &read)?;
+    let document = SimulateDocument {
+        model: &model.name,
+        law: &model.law,
+        branch: model.branch.as_ref().map(BranchWords::of),
+        trials: &simulated,
+        all: total(&simulated),
+    };
+    output::print(simulate.json, &document, || text(simulate, &model, &law, &document))?;
+    if simulated.iter().any(|trial| trial.diverged) { Err(Failure::Told) } else { Ok(()) }
+}
+
+fn promised(
+    simulate: &SimulateArguments,
+    read: &[ReadTrial],
+) -> Result<Vec<folder::PromisedTrack>, Failure> {
+    let Some(out) = &simulate.out else { return Ok(Vec::new()) };
+    let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
+    folder::promise(out, &names, &trials::inputs(read, &simulate.trials))
+}
+
+fn simulate_all(
+    simulate: &SimulateArguments,
+    model: &Model,
+    law: &Law,
+    read: &[ReadTrial],
+) -> Result<Vec<(SimulatedTrial, Replay)>, Failure> {
+    let settings = ReplaySettings {
+        restart_s: simulate.restart_s,
+        method: simulate.method.into(),
+        step_s: simulate.step_s,
+    };
+    let deviations = standard_deviations(&trials::trials(read));
+    let simulator = TrialSimulator { model, law, settings, deviations };
+    note(&format!("simulating {} with {}", count(read.len(), "trial"), model.name));
+    read.iter().map(|read| simulator.run(read)).collect()
+}
+
+/// Writes the states of each trial where files are promised.
+fn written(
+    runs: Vec<(SimulatedTrial, Replay)>,
+    files: Vec<folder::PromisedTrack>,
+    law: &Law,
+    read: &[ReadTrial],
+) -> Result<Vec<SimulatedTrial>, Failure> {
+    let mut files = files.into_iter();
+    let one = |((mut simulated, run), read): ((SimulatedTrial, Replay), &ReadTrial)| {
+        if let Some(promised) = files.next() {
+            promised.file.write(&track::csv(
+                &run.track,
+                law,
+                read.trial.channel(Channel::N).is_some(),
+            )?)?;
+            simulated.out = Some(promised.shown);
+        }
+        Ok(simulated)
+    };
+    runs.into_iter().zip(read).map(one).collect()
+}
+
+fn text(
+    simulate: &SimulateArguments,
+    model: &Model,
+    law: &Law,
+    document: &SimulateDocument<'_>,
+) -> String {
+    let restart = simulate
+        .restart_s
+        .map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
+    let head =
+        format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
+    let mut table = TextTable::new([
+        "trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE",
+    ]);
+    document
+        .trials
+        .iter()
+        .chain(document.all.as_ref().filter(|_| document.trials.len() > 1))
+        .for_each(|trial| table.row(trial.cells()));
+    let diverged = document.trials.iter().filter_map(|trial| {
+        Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?))
+    });
+    let outside = |trial: &SimulatedTrial| {
+        Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()))
+    };
+    let outside: String = document.trials.iter().filter_map(outside).collect();
+    let written = simulate
+        .out
+        .as_ref()
+        .map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
+    let share = document.all.as_ref().and_then(|all| all.branch_share);
+    let branch = document.branch.as_ref().map_or(String::new(), |branch| branch.line(share));
+    format!("{head}{table}{}{outside}{branch}{written}", diverged.collect::<String>())
+}

@@ -1,0 +1,172 @@
+//! One recorded trial simulated by a model, and how far off it is.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::validity::Excursion;
+use sistership_model::{Law, Model};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standardised_mse};
+use sistership_simulation::recorded::{Replay, ReplaySettings, replay};
+
+use crate::commands;
+use crate::failure::Failure;
+use crate::output::note;
+use crate::table::{number, optional};
+use crate::trials::ReadTrial;
+
+/// The channels whose errors every document holds, null where they are unknown.
+const CHANNELS: [Channel; 6] =
+    [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y];
+
+/// Errors of one trial as the `simulate` command prints them.
+#[derive(Debug, Clone, Serialize)]
+pub struct SimulatedTrial {
+    /// The file as it was given.
+    pub file: String,
+    /// From the first to the last sample, s.
+    pub duration_s: f64,
+    /// Root mean square errors by channel, SI; null where the trial lacks the channel or the
+    /// simulation diverged.
+    pub rmse: BTreeMap<&'static str, Option<f64>>,
+    /// Standardised mean squared error; null where the simulation diverged.
+    pub standardised_mse: Option<f64>,
+    /// Whether the simulation left the physical range.
+    pub diverged: bool,
+    /// When and why it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// How the motion left what the model's trials covered, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outside: Option<Excursion>,
+    /// What a learned branch counted for in the mean over the simulation, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub branch_share: Option<f64>,
+    /// The file of simulated states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub out: Option<String>,
+    #[serde(skip)]
+    samples: usize,
+}
+
+/// What is the same for every trial.
+pub struct TrialSimulator<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Its law.
+    pub law: &'a Law,
+    /// How to simulate.
+    pub settings: ReplaySettings,
+    /// Standard deviations of the channels over all trials.
+    pub deviations: BTreeMap<Channel, f64>,
+}
+
+impl TrialSimulator<'_> {
+    /// Simulates a trial.
+    ///
+    /// # Errors
+    /// The model cannot sail, or the trial lacks a channel.
+    pub fn run(&self, read: &ReadTrial) -> Result<(SimulatedTrial, Replay), Failure> {
+        let ship = self.ship(&read.trial)?;
+        let run = replay(&ship, &read.trial, &self.settings);
+        let run = run.map_err(|error| {
+            Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name))
+        })?;
+        let errors = self.errors(&read.file, &read.trial, &run);
+        Ok((SimulatedTrial { branch_share: ship.branch_share(&run.track), ..errors }, run))
+    }
+
+    /// The ship with a range that covers the speeds of a trial; its water depth is an input that
+    /// the replay reads.
+    fn ship(&self, trial: &Trial) -> Result<Ship, Failure> {
+        let mut ship = commands::ready(self.model, self.law)?;
+        let speeds = trial.channel(Channel::U).into_iter().flatten();
+        ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
+        match trial.depth_m.or_else(|| mean(trial.channel(Channel::Depth)?)) {
+            Some(depth_m) if commands::knows_depth(self.law) => {
+                commands::check_floats(self.model, depth_m)?
+            }
+            Some(depth_m) => {
+                let law = &self.law.name;
+                note(&format!(
+                    "warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water \
+                     only",
+                    trial.name
+                ));
+            }
+            None => {}
+        }
+        Ok(ship)
+    }
+
+    fn errors(&self, file: &str, trial: &Trial, run: &Replay) -> SimulatedTrial {
+        let error = SquaredError::of(trial, run);
+        let reason = run.stopped.as_ref().map(ToString::to_string);
+        let known = |value: Option<f64>| value.filter(|_| reason.is_none());
+        let rmse = CHANNELS.map(|channel| (channel.name(), known(error.channel_rmse(channel))));
+        SimulatedTrial {
+            file: file.to_owned(),
+            duration_s: trial.duration_s(),
+            rmse: rmse.into(),
+            standardised_mse: known(Some(standardised_mse(&error, &self.deviations))),
+            diverged: reason.is_some(),
+            reason,
+            outside: run.outside.clone(),
+            branch_share: None,
+            out: None,
+            samples: run.samples.len(),
+        }
+    }
+}
+
+impl SimulatedTrial {
+    /// A row of the table.
+    pub fn cells(&self) -> Vec<String> {
+        let value = |channel: Channel| {
+            let scale =
+                if matches!(channel, Channel::R | Channel::Psi) { 1_f64.to_degrees() } else { 1.0 };
+            optional(self.rmse.get(channel.name()).copied().flatten().map(|value| value * scale))
+        };
+        let mut cells = vec![self.file.clone(), number(self.duration_s)];
+        cells.extend(CHANNELS.map(value));
+        cells.push(optional(self.standardised_mse));
+        cells
+    }
+}
+
+/// The errors over all samples of all trials; none where one diverged.
+pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
+    if trials.iter().any(|trial| trial.diverged) {
+        return None;
+    }
+    let mean = |of: &dyn Fn(&SimulatedTrial) -> Option<f64>| {
+        let pairs = trials.iter().filter_map(|trial| Some((of(trial)?, trial.samples as f64)));
+        let (sum, samples) = pairs.fold((0.0, 0.0), |(sum, all), (value, samples)| {
+            (sum + value * samples, all + samples)
+        });
+        (samples > 0.0).then(|| sum / samples)
+    };
+    let rmse = CHANNELS.map(|channel| {
+        let square = |trial: &SimulatedTrial| {
+            trial.rmse.get(channel.name()).copied().flatten().map(|rmse| rmse * rmse)
+        };
+        (channel.name(), mean(&square).map(f64::sqrt))
+    });
+    Some(SimulatedTrial {
+        file: "all".to_owned(),
+        duration_s: trials.iter().map(|trial| trial.duration_s).sum(),
+        rmse: rmse.into(),
+        standardised_mse: mean(&|trial| trial.standardised_mse),
+        diverged: false,
+        reason: None,
+        outside: None,
+        branch_share: mean(&|trial| trial.branch_share),
+        out: None,
+        samples: trials.iter().map(|trial| trial.samples).sum(),
+    })
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}

@@ -1,0 +1,228 @@
+//! Where the store is: flags and environment that `serve` and `verify` share.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use sistership_jobs::Archive;
+use sistership_store::{Actor, ObjectsPlace};
+
+use super::config_file::{self, ConfigFile};
+use crate::failure::Failure;
+
+/// The data folder when nobody says otherwise.
+const DATA_DIR: &str = "sistership-data";
+
+/// Where the store is, as it is told.
+#[derive(Debug, Default, Args)]
+pub struct StoreArguments {
+    /// YAML file of settings, named as the flags are; flags and environment win over it.
+    #[arg(long, global = true, value_name = "FILE", env = "SISTERSHIP_CONFIG")]
+    config: Option<PathBuf>,
+    /// `sqlite://path/file.db` or `postgres://...`; the file sistership.db in the data folder where
+    /// absent.
+    #[arg(
+        long,
+        global = true,
+        value_name = "URL",
+        env = "SISTERSHIP_DATABASE_URL",
+        hide_env_values = true
+    )]
+    database_url: Option<String>,
+    /// Folder of trial samples, of uploads under way, and of the embedded database [default:
+    /// sistership-data].
+    #[arg(long, global = true, value_name = "DIR", env = "SISTERSHIP_DATA_DIR")]
+    data_dir: Option<PathBuf>,
+    /// `s3://bucket/prefix`: where trial samples are instead, with the credentials that
+    /// AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY or the machine's role give.
+    #[arg(long, global = true, value_name = "URL", env = "SISTERSHIP_OBJECTS_URL")]
+    objects_url: Option<String>,
+    /// The S3-compatible server, such as http://host:9000; Amazon's where absent.
+    #[arg(long, global = true, value_name = "URL", env = "SISTERSHIP_OBJECTS_ENDPOINT")]
+    objects_endpoint: Option<String>,
+    /// The bucket's region [default: AWS_REGION, else us-east-1].
+    #[arg(long, global = true, value_name = "NAME", env = "SISTERSHIP_OBJECTS_REGION")]
+    objects_region: Option<String>,
+}
+
+/// Where the store is.
+#[derive(Debug)]
+pub struct StorePlace {
+    /// The database's URL.
+    pub database_url: String,
+    /// The folder of uploads under way, and of what has no other place.
+    pub data_dir: PathBuf,
+    /// Where the samples are.
+    pub objects: ObjectsPlace,
+}
+
+impl StoreArguments {
+    /// The configuration file, or an empty one where none is named.
+    ///
+    /// # Errors
+    /// It does not read.
+    pub fn file(&self) -> Result<ConfigFile, Failure> {
+        config_file::read(self.config.as_deref())
+    }
+
+    /// Where they and the file say that the store is.
+    ///
+    /// # Errors
+    /// The samples cannot be where they say.
+    pub fn place(&self, file: &ConfigFile) -> Result<StorePlace, Failure> {
+        let data_dir = self
+            .data_dir
+            .as_ref()
+            .or(file.data_dir.as_ref())
+            .map_or(Path::new(DATA_DIR), PathBuf::as_path);
+        let url = self.database_url.as_ref().or(file.database_url.as_ref());
+        let database_url = url.cloned().unwrap_or_else(|| sistership_api::sqlite_url(data_dir));
+        Ok(StorePlace {
+            database_url,
+            objects: self.objects(file, data_dir)?,
+            data_dir: data_dir.to_path_buf(),
+        })
+    }
+
+    fn objects(&self, file: &ConfigFile, data_dir: &Path) -> Result<ObjectsPlace, Failure> {
+        let endpoint = self.objects_endpoint.clone().or_else(|| file.objects_endpoint.clone());
+        let region = self.objects_region.clone().or_else(|| file.objects_region.clone());
+        match self.objects_url.as_ref().or(file.objects_url.as_ref()) {
+            Some(url) => ObjectsPlace::s3(url, endpoint, region)
+                .map_err(|error| Failure::Call(error.to_string())),
+            None if endpoint.is_some() => {
+                Err(Failure::Call("objects_endpoint: say where on it, with objects_url".into()))
+            }
+            None => Ok(ObjectsPlace::Folder(data_dir.to_path_buf())),
+        }
+    }
+}
+
+impl StoreArguments {
+    /// Whether somebody named a store, or there is one where it would be.
+    pub fn is_there(&self) -> bool {
+        let place = self.file().and_then(|file| self.place(&file));
+        self.is_named() || place.is_ok_and(|place| place.must_exist().is_ok())
+    }
+
+    /// Whether somebody named a store.
+    pub fn is_named(&self) -> bool {
+        self.database_url.is_some() || self.data_dir.is_some() || self.config.is_some()
+    }
+}
+
+impl StorePlace {
+    /// Makes sure that there is a store: opening one that is not there would make it.
+    ///
+    /// # Errors
+    /// Names the file or folder that is missing.
+    pub fn must_exist(&self) -> Result<(), Failure> {
+        if let Some(file) = sqlite_file(&self.database_url).filter(|file| !file.is_file()) {
+            return Err(Failure::Refused(format!(
+                "there is no database {}; name it with --database-url or --data-dir",
+                file.display()
+            )));
+        }
+        match self.objects.folder().filter(|folder| !folder.is_dir()) {
+            Some(folder) => Err(Failure::Refused(format!(
+                "there is no data folder {}; name it with --data-dir",
+                folder.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The file of an SQLite URL; none for another database.
+fn sqlite_file(url: &str) -> Option<&Path> {
+    let rest = url.strip_prefix("sqlite:")?;
+    let path = rest.strip_prefix("//").unwrap_or(rest);
+    Some(Path::new(path.split_once('?').map_or(path, |(path, _)| path)))
+}
+
+/// Does something with a store that is there, and closes it.
+///
+/// # Errors
+/// The store is not there or cannot be opened, or what is done with it fails.
+pub fn with_archive<T, E: std::fmt::Display>(
+    store: &StoreArguments,
+    work: impl AsyncFnOnce(&Archive) -> Result<T, E>,
+) -> Result<T, Failure> {
+    let place = store.place(&store.file()?)?;
+    place.must_exist()?;
+    block_on(async {
+        let archive = Archive::open_at(&place.database_url, &place.objects).await;
+        let archive =
+            archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
+        let done = Actor::command_line().acting(work(&archive)).await;
+        archive.store.close().await;
+        done.map_err(|error| Failure::Refused(error.to_string()))
+    })
+}
+
+/// Runs asynchronous work to its end.
+///
+/// # Errors
+/// The work's own, or that no threads can be had.
+pub fn block_on<T>(work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+    runtime()?.block_on(work)
+}
+
+/// Threads for asynchronous work.
+///
+/// # Errors
+/// None can be had.
+pub fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    runtime.map_err(|error| Failure::Refused(format!("no threads: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_of_a_url_is_found() {
+        let file = |url| sqlite_file(url).map(|path| path.display().to_string());
+        assert_eq!(file("sqlite:///var/a.db?mode=rwc").as_deref(), Some("/var/a.db"));
+        assert_eq!(file("sqlite:a.db").as_deref(), Some("a.db"));
+        assert_eq!(file("postgres://host/a"), None);
+    }
+
+    #[test]
+    fn a_store_that_is_not_there_is_not_made() {
+        let arguments = StoreArguments {
+            data_dir: Some("/nowhere/at/all".into()),
+            ..StoreArguments::default()
+        };
+        let Ok(place) = arguments.place(&ConfigFile::default()) else { panic!("a place") };
+        assert!(place.must_exist().is_err_and(|failure| {
+            failure.message().is_some_and(|m| m.contains("there is no database"))
+        }));
+        assert!(!Path::new("/nowhere").exists());
+    }
+
+    #[test]
+    fn samples_may_be_in_a_bucket() {
+        let place = |url: Option<&str>, endpoint: Option<&str>| {
+            let file = ConfigFile { objects_url: url.map(str::to_owned), ..ConfigFile::default() };
+            let arguments = StoreArguments {
+                objects_endpoint: endpoint.map(str::to_owned),
+                ..StoreArguments::default()
+            };
+            arguments.place(&file).map(|place| place.objects.to_string())
+        };
+        assert_eq!(place(None, None), Ok("sistership-data".to_owned()));
+        assert_eq!(
+            place(Some("s3://samples/fleet"), Some("http://localhost:9000")),
+            Ok("s3://samples/fleet".to_owned())
+        );
+        for (url, endpoint, field) in
+            [(Some("samples"), None, "objects_url"), (None, Some("http://a"), "objects_endpoint")]
+        {
+            assert!(
+                place(url, endpoint)
+                    .is_err_and(|failure| failure.message().is_some_and(|m| m.starts_with(field)))
+            );
+        }
+    }
+}

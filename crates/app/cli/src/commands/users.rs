@@ -1,0 +1,239 @@
+//! `sistership users`: who signs in, and what they may do, on the archive's own files.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand, ValueEnum};
+use serde_json::{Value, json};
+use sistership_auth::{Grant, PasswordError, check_name, check_password, hash_password, secret};
+use sistership_jobs::Archive;
+use sistership_store::{GrantRow, MAX_LIMIT, Page, StoreError, User};
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::output;
+use crate::table::TextTable;
+use crate::zoo::text_of;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership users add ann --role engineer --password-file ann.txt
+  sistership users add bob --role reader --role approver@family:tankers
+  sistership users roles ann engineer@ship:kvlcc2
+  sistership users identity ann https://id.example 248289761001
+  sistership users disable ann
+  sistership users second-person on
+
+Roles are reader, engineer, approver and admin, each with the rights of those before it;
+@ship:NAME and @family:NAME limit one. Without --password-file a password is drawn and printed.
+Servers go on; they notice within a second.";
+
+/// Users of the servers on a store: add, list, give roles, disable.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct UsersArguments {
+    #[command(subcommand)]
+    what: UsersAction,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Print one JSON document.
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum UsersAction {
+    /// Create a user.
+    Add {
+        /// The name, for ever.
+        name: String,
+        /// What people call them; the name where absent.
+        #[arg(long)]
+        title: Option<String>,
+        /// A role; repeatable.
+        #[arg(long = "role", value_name = "ROLE[@ship:NAME|@family:NAME]")]
+        roles: Vec<Grant>,
+        /// File that holds the password.
+        #[arg(long, value_name = "FILE")]
+        password_file: Option<PathBuf>,
+    },
+    /// List the users.
+    List,
+    /// Give a user these roles instead of all others.
+    Roles {
+        /// The user.
+        name: String,
+        /// The roles; none takes every right.
+        #[arg(value_name = "ROLE[@ship:NAME|@family:NAME]")]
+        roles: Vec<Grant>,
+    },
+    /// Let an OpenID provider know a user by this subject, and no other; by none where absent.
+    Identity {
+        /// The user.
+        name: String,
+        /// The provider, and its claim `sub`.
+        #[arg(num_args = 2, value_names = ["ISSUER", "SUBJECT"])]
+        identity: Vec<String>,
+    },
+    /// Set a password, and sign the user out everywhere.
+    Password {
+        /// The user.
+        name: String,
+        /// File that holds the password.
+        #[arg(long, value_name = "FILE")]
+        password_file: Option<PathBuf>,
+    },
+    /// Take every right from a user; the name stays taken.
+    Disable {
+        /// The user.
+        name: String,
+    },
+    /// Give a disabled user the rights again that they had.
+    Enable {
+        /// The user.
+        name: String,
+    },
+    /// Whether a version becomes champion only by the word of an approver who has not made it.
+    SecondPerson {
+        /// Shown as it is where absent.
+        set: Option<Switch>,
+    },
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Switch {
+    On,
+    Off,
+}
+
+/// Why what was asked is not done.
+#[derive(Debug, thiserror::Error)]
+enum UsersError {
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error(transparent)]
+    Password(#[from] PasswordError),
+}
+
+type UsersResult = Result<(Value, String), UsersError>;
+
+/// A password as it is to be kept, and as it is to be told where nobody knows it yet.
+struct Chosen {
+    text: String,
+    drawn: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The call is wrong, the store is not there, or it says no.
+pub fn run(users: &UsersArguments) -> Result<(), Failure> {
+    let chosen = match &users.what {
+        UsersAction::Add { name, password_file, .. } => {
+            check_name(name).map_err(|message| Failure::Call(format!("name: {message}")))?;
+            Some(chosen(password_file.as_deref())?)
+        }
+        UsersAction::Password { password_file, .. } => Some(chosen(password_file.as_deref())?),
+        _ => None,
+    };
+    let work = async |archive: &Archive| done(&users.what, chosen.as_ref(), archive).await;
+    let (document, text) = with_archive(&users.store, work)?;
+    output::print(users.json, &document, || text)
+}
+
+fn chosen(file: Option<&Path>) -> Result<Chosen, Failure> {
+    let Some(path) = file else {
+        let text = secret().map_err(|error| Failure::Refused(error.to_string()))?;
+        return Ok(Chosen { text, drawn: true });
+    };
+    let text = text_of(path)?.trim_end_matches(['\r', '\n']).to_owned();
+    check_password(&text).map_err(|message| crate::failure::about_file(path, message))?;
+    Ok(Chosen { text, drawn: false })
+}
+
+async fn done(what: &UsersAction, chosen: Option<&Chosen>, archive: &Archive) -> UsersResult {
+    let users = archive.store.users();
+    match what {
+        UsersAction::Add { name, title, roles, .. } => {
+            let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;
+            let title = title.as_deref().unwrap_or(name);
+            users.create(name, title, hash.as_deref(), &rows(roles)).await?;
+            told(name, "created", chosen)
+        }
+        UsersAction::List => list(archive).await,
+        UsersAction::Roles { name, roles } => {
+            archive.store.grants().replace(&User::principal(name), &rows(roles)).await?;
+            told(name, "has these roles now", None)
+        }
+        UsersAction::Identity { name, identity } => {
+            let pair = |pair: &[String]| (pair[0].clone(), pair[1].clone());
+            let those: Vec<_> = identity.chunks_exact(2).map(pair).collect();
+            archive.store.identities().replace(name, &those).await?;
+            told(name, "is known so by providers now", None)
+        }
+        UsersAction::Password { name, .. } => {
+            let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;
+            users.set_password(name, hash.as_deref().unwrap_or_default()).await?;
+            told(name, "has another password", chosen)
+        }
+        UsersAction::Disable { name } => told(&users.disable(name).await?.name, "disabled", None),
+        UsersAction::Enable { name } => told(&users.enable(name).await?.name, "enabled", None),
+        UsersAction::SecondPerson { set } => second_person(archive, *set).await,
+    }
+}
+
+/// What was done to a user; the password where it was drawn.
+fn told(name: &str, what: &str, chosen: Option<&Chosen>) -> UsersResult {
+    let drawn = chosen.filter(|chosen| chosen.drawn).map(|chosen| &chosen.text);
+    let secret = drawn.map_or_else(String::new, |text| format!("; the password is {text}"));
+    Ok((
+        json!({ "name": name, "done": what, "password": drawn }),
+        format!("{name}: {what}{secret}"),
+    ))
+}
+
+async fn second_person(archive: &Archive, set: Option<Switch>) -> UsersResult {
+    let settings = archive.store.settings();
+    if let Some(set) = set {
+        settings.set_second_person(set == Switch::On).await?;
+    }
+    let on = settings.second_person().await?;
+    let text = if on { "a second person is asked for" } else { "no second person is asked for" };
+    Ok((json!({ "second_person": on }), text.to_owned()))
+}
+
+/// Roles as they are kept.
+pub(super) fn rows(roles: &[Grant]) -> Vec<GrantRow> {
+    let row = |grant: &Grant| {
+        let (kind, name) = grant.scope.parts();
+        let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
+        GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() }
+    };
+    roles.iter().map(row).collect()
+}
+
+/// Roles as they are written.
+pub(super) fn words(rows: &[GrantRow]) -> Vec<String> {
+    let word = |row: &GrantRow| match row.scope_kind.as_str() {
+        "server" => row.role.clone(),
+        kind => format!("{}@{kind}:{}", row.role, row.scope_name),
+    };
+    rows.iter().map(word).collect()
+}
+
+async fn list(archive: &Archive) -> UsersResult {
+    let mut table = TextTable::new(["name", "title", "roles", "state"]);
+    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    loop {
+        let users = archive.store.users().list(&page).await?;
+        for user in users.items {
+            let roles = words(&archive.store.grants().of(&User::principal(&user.name)).await?);
+            let state = if user.is_enabled() { "enabled" } else { "disabled" };
+            table.row([user.name.clone(), user.title.clone(), roles.join(" "), state.to_owned()]);
+            all.push(json!({ "name": user.name, "title": user.title, "roles": roles,
+                "enabled": user.is_enabled() }));
+        }
+        let Some(next) = users.next else { break };
+        page = Page::after(next, MAX_LIMIT);
+    }
+    Ok((json!({ "users": all }), table.to_string()))
+}

@@ -1,0 +1,101 @@
+//! `sistership validate`: a model held against what its ship has sailed, by ITTC 7.5-02-06-03.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use sistership_assessment::uncertainty::{Sampling, draws};
+use sistership_assessment::validation::{TrialOfShip, Validation, validate};
+use sistership_model::Zoo;
+use sistership_report::render_validation;
+
+use crate::failure::{Failure, both};
+use crate::files::PromisedFile;
+use crate::table::{TextTable, number, optional};
+use crate::{named, output, trials};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership validate --model kvlcc2 --ship kvlcc2
+  sistership validate --model my-model.yaml --ship my-ship.yaml --trials kept-out.yaml
+  sistership validate --model my-model.yaml --ship my-ship.yaml --trials kept-out.yaml --report validation.html
+
+The trials must not be those that the model was made from. Repeats of a manoeuvre tell the
+uncertainty of the data. A quantity that is not validated is a result: the exit status is 0.";
+
+/// Validate a model by its ship's trials: comparison error, validation uncertainty, verdict.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ValidateArguments {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// The ship, whose published free-running trials count: a name in the zoo or a vessel file.
+    #[arg(long)]
+    ship: String,
+    /// Trials that the model was not fitted on: manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1..)]
+    trials: Vec<PathBuf>,
+    /// How many models are drawn from the posterior of a refined one.
+    #[arg(long, value_name = "DRAWS", default_value_t = 40)]
+    draws: usize,
+    /// Write the report as a page.
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model, the ship or a trial is refused.
+pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
+    let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
+    let inputs: Vec<PathBuf> = [&asked.model, &asked.ship].map(PathBuf::from).to_vec();
+    let page = asked.report.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose();
+    let sampling = Sampling { samples: asked.draws, ..Sampling::default() };
+    let checked = sampling.check().map_err(|message| Failure::Call(format!("--draws: {message}")));
+    let model = both(named::model(zoo, &asked.model), named::ship(zoo, &asked.ship));
+    let given = both(both(page, checked), trials::read(&asked.trials));
+    let (((model, law), vessel), ((page, ()), read)) = both(model, given)?;
+    let of_ship: Vec<TrialOfShip<'_>> = read
+        .iter()
+        .map(|read| TrialOfShip { name: &read.trial.name, trial: &read.trial, fitted: false })
+        .collect();
+    let drawn = draws(&model, sampling).unwrap_or_default();
+    let done = validate(&vessel, &model, &law, &drawn, &of_ship).map_err(|e| refused(&e))?;
+    if let Some(file) = page {
+        file.write(render_validation(&done).map_err(|e| refused(&e))?.html.as_bytes())?;
+    }
+    output::print(asked.json, &done, || text(&done))
+}
+
+fn text(done: &Validation) -> String {
+    let head = format!("{}, law {}: validation after {}\n", done.model, done.law, done.procedure);
+    let table =
+        if done.quantities.is_empty() { String::new() } else { format!("\n{}", table(done)) };
+    let remarks: String = done.remarks.iter().map(|remark| format!("remark: {remark}\n")).collect();
+    format!("{head}{table}{}{remarks}", if remarks.is_empty() { "" } else { "\n" })
+}
+
+fn table(done: &Validation) -> TextTable {
+    let mut table = TextTable::new([
+        "quantity", "unit", "D", "S", "E % D", "U_V % D", "U_D", "U_SN", "U_input", "verdict",
+    ]);
+    for one in &done.quantities {
+        table.row([
+            one.quantity.clone(),
+            one.unit.clone(),
+            number(one.data),
+            optional(one.simulated),
+            optional(one.comparison_error_percent),
+            optional(one.validation_uncertainty_percent),
+            optional(one.data_uncertainty),
+            optional(one.step_uncertainty),
+            optional(one.input_uncertainty),
+            one.verdict.words().to_owned(),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,71 @@
+//! `sistership work`: workers without a server.
+
+use clap::Args;
+use sistership_api::{Config, Workers};
+
+use super::config_file::ConfigFile;
+use super::log::LogArguments;
+use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::store::StoreArguments;
+use crate::failure::Failure;
+use crate::output;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership work --data-dir /var/lib/sistership
+  sistership work --workers 8 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
+
+Any number of such processes may run beside `sistership serve` (which leaves all work to them with
+--no-worker), on any machines that reach the same database and the same samples. A job belongs to
+one of them at a time; when that one dies, its job goes to another after --lease-s. Stop it with
+Ctrl-C or SIGTERM: jobs under way get --drain-s to end and then go back to the queue.";
+
+/// Work on the jobs that servers queue, without serving.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct WorkArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Jobs worked on at a time, 1 to 64 [default: 1].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
+    workers: Option<u16>,
+    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
+    job_memory_mb: Option<u64>,
+    #[command(flatten)]
+    lease: LeaseArguments,
+    #[command(flatten)]
+    log: LogArguments,
+}
+
+/// Runs the command until it is told to stop.
+///
+/// # Errors
+/// The configuration is refused, or the store cannot be used.
+pub fn run(work: &WorkArguments) -> Result<(), Failure> {
+    let file = work.store.file()?;
+    let config = config(work, &file)?;
+    work.log.begin(&file)?;
+    let start = async {
+        let workers = Workers::start(config.clone())
+            .await
+            .map_err(|error| Failure::Refused(error.to_string()))?;
+        output::print(false, &(), || {
+            format!("sistership works as process {}", std::process::id())
+        })?;
+        Ok(workers)
+    };
+    run_until_stopped(config.stop_bound(), start, Workers::stop)
+}
+
+fn config(work: &WorkArguments, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = work.store.place(file)?;
+    let mut config = Config::new(place.data_dir);
+    config.objects = place.objects;
+    config.database_url = place.database_url;
+    config.workers = workers(work.workers, file, 1)?;
+    config.limits.job_memory =
+        memory("job_memory_mb", work.job_memory_mb, file.job_memory_mb, config.limits.job_memory)?;
+    config.leases = work.lease.leases(file)?;
+    Ok(config)
+}

@@ -1,0 +1,217 @@
+//! `sistership zoo`: what the zoo is worth, and the check of a ship that is to join it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::{Args, Subcommand};
+use serde::Serialize;
+use sistership_assessment::validation::{
+    Appraisal, Dataset, Review, Severity, appraise_vessel, review,
+};
+use sistership_model::{Vessel, Zoo};
+
+use super::zoo_text;
+use crate::failure::{Failure, about_file};
+use crate::files::PromisedFile;
+use crate::zoo::text_of;
+use crate::{named, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership zoo list
+  sistership zoo list kvlcc2 wpcc --json
+  sistership zoo add my-ship.yaml
+  sistership zoo add my-ship.yaml --into zoo --page my-ship.md
+  sistership zoo cite kvlcc2 --json
+  sistership manoeuvre --zoo zoo --model my-ship --all";
+
+/// The zoo: what its models are worth, and a ship that is to join it.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ZooArguments {
+    #[command(subcommand)]
+    what: ZooAction,
+    /// Print one JSON document.
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum ZooAction {
+    /// Every model with its law, its status and the published trials that it is held against.
+    List {
+        /// Ships; all where none is named.
+        #[arg(value_name = "SHIP")]
+        ships: Vec<String>,
+    },
+    /// Check a ship's file: schema, units, particulars, physics, published trials; and say what a
+    /// reviewer should look at.
+    Add {
+        /// The vessel file.
+        file: PathBuf,
+        /// Copy it into `DIR/vessels` where nothing is refused.
+        #[arg(long, value_name = "DIR")]
+        into: Option<PathBuf>,
+        /// Write the ship's page, in Markdown, whether it is taken or not.
+        #[arg(long, value_name = "FILE")]
+        page: Option<PathBuf>,
+    },
+    /// What a ship's figures are taken from and on what terms; with `--json` as schema.org Dataset.
+    Cite {
+        /// Ships, or vessel files; all of the zoo where none is named.
+        #[arg(value_name = "SHIP")]
+        ships: Vec<String>,
+    },
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A file is refused, by its reader or by physics.
+pub fn run(zoo: &Zoo, asked: &ZooArguments) -> Result<(), Failure> {
+    match &asked.what {
+        ZooAction::List { ships } => list(zoo, ships, asked.json),
+        ZooAction::Add { file, into, page } => {
+            add(zoo, file, into.as_deref(), page.as_deref(), asked.json)
+        }
+        ZooAction::Cite { ships } => cite(zoo, ships, asked.json),
+    }
+}
+
+#[derive(Serialize)]
+struct CiteDocument {
+    #[serde(rename = "@graph")]
+    graph: Vec<Dataset>,
+}
+
+fn cite(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
+    let graph = vessels(zoo, ships)?.iter().map(|vessel| Dataset::of(vessel)).collect();
+    let document = CiteDocument { graph };
+    output::print(json, &document, || zoo_text::cited(&document.graph))
+}
+
+fn vessels(zoo: &Zoo, ships: &[String]) -> Result<Vec<Arc<Vessel>>, Failure> {
+    match ships {
+        [] => Ok(zoo.vessels().cloned().collect()),
+        names => names.iter().map(|name| named::ship(zoo, name)).collect(),
+    }
+}
+
+#[derive(Serialize)]
+struct ListDocument {
+    models: Vec<Appraisal>,
+}
+
+fn list(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
+    let mut models = Vec::new();
+    for vessel in vessels(zoo, ships)? {
+        models.extend(appraise_vessel(zoo, &vessel)?);
+    }
+    let document = ListDocument { models };
+    output::print(json, &document, || zoo_text::listed(&document.models))
+}
+
+#[derive(Serialize)]
+struct AddDocument<'a> {
+    #[serde(flatten)]
+    review: &'a Review,
+    taken: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    written: Option<PathBuf>,
+}
+
+fn add(
+    zoo: &Zoo,
+    file: &std::path::Path,
+    into: Option<&std::path::Path>,
+    page: Option<&std::path::Path>,
+    json: bool,
+) -> Result<(), Failure> {
+    let page = page.map(|path| PromisedFile::new(path, &[file.to_owned()])).transpose()?;
+    let vessel = named::vessel_file(zoo, file)?;
+    let review = review(zoo, &vessel)?;
+    if let Some(page) = page {
+        page.write(sistership_report::contributed_ship(&vessel, &review).as_bytes())?;
+    }
+    let taken = review.is_taken();
+    let written = match into.filter(|_| taken) {
+        Some(zoo_folder) => Some(copied(file, zoo_folder, vessel.name())?),
+        None => None,
+    };
+    let document = AddDocument { review: &review, taken, written };
+    output::print(json, &document, || zoo_text::reviewed(&review, document.written.as_deref()))?;
+    let refused = |finding: &&sistership_assessment::validation::Finding| {
+        finding.severity == Severity::Refused
+    };
+    match review.findings.iter().filter(refused).count() {
+        0 => Ok(()),
+        _ => Err(Failure::Told),
+    }
+}
+
+/// The file as a vessel of a zoo of one's own; what stands there already is not replaced.
+fn copied(
+    file: &std::path::Path,
+    zoo_folder: &std::path::Path,
+    name: &str,
+) -> Result<PathBuf, Failure> {
+    let vessels = zoo_folder.join("vessels");
+    std::fs::create_dir_all(&vessels)
+        .map_err(|error| about_file(&vessels, format!("cannot be made a folder: {error}")))?;
+    let path = vessels.join(format!("{name}.yaml"));
+    if path.exists() {
+        return Err(about_file(&path, "is there already; move it away first"));
+    }
+    let text = text_of(file)?;
+    PromisedFile::new(&path, &[])?.write(text.as_bytes())?;
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn asked(what: ZooAction) -> ZooArguments {
+        ZooArguments { what, json: true }
+    }
+
+    #[test]
+    fn a_ship_joins_by_a_file_and_one_that_turns_the_wrong_way_does_not() {
+        let zoo = Zoo::embedded().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("ship.yaml");
+        let into = Some(folder.path().join("own"));
+        let text = zoo.vessel_text("mariner").unwrap().replace("name: mariner", "name: liberty");
+        std::fs::write(&file, &text).unwrap();
+        let page = folder.path().join("liberty.md");
+        let first =
+            ZooAction::Add { file: file.clone(), into: into.clone(), page: Some(page.clone()) };
+        run(&zoo, &asked(first)).unwrap();
+        let page = std::fs::read_to_string(page).unwrap();
+        assert!(page.starts_with("# liberty\n"), "{page}");
+        assert!(page.contains("| lpp_m | 160.93 |"), "{page}");
+        assert!(page.contains("| `abkowitz` | `abkowitz` | published |"), "{page}");
+        let added = folder.path().join("own/vessels/liberty.yaml");
+        assert_eq!(std::fs::read_to_string(&added).unwrap(), text);
+        let again =
+            run(&zoo, &asked(ZooAction::Add { file: file.clone(), into, page: None })).unwrap_err();
+        assert!(again.message().unwrap().contains("is there already"));
+        let wrong = text.replace("rudder_positive: port_turn", "rudder_positive: starboard_turn");
+        assert_ne!(wrong, text);
+        std::fs::write(&file, wrong).unwrap();
+        let elsewhere = Some(folder.path().join("other"));
+        let refused =
+            run(&zoo, &asked(ZooAction::Add { file, into: elsewhere, page: None })).unwrap_err();
+        assert_eq!(refused, Failure::Told);
+        assert!(!folder.path().join("other").exists());
+    }
+
+    #[test]
+    fn the_list_names_unknown_ships() {
+        let zoo = Zoo::embedded().unwrap();
+        let refused =
+            run(&zoo, &asked(ZooAction::List { ships: vec!["marinr".into()] })).unwrap_err();
+        assert!(refused.message().unwrap().contains("did you mean `mariner`"));
+    }
+}

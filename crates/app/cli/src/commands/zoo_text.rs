@@ -1,0 +1,99 @@
+//! The zoo and a contributed ship, for people.
+
+use std::path::Path;
+
+use sistership_assessment::validation::{Appraisal, Comparison, Dataset, Review, Severity, Work};
+use sistership_report::numbers::hundredths;
+
+use crate::table::TextTable;
+
+/// Models with their status and manoeuvres, and the published trials that they are held against.
+pub fn listed(models: &[Appraisal]) -> String {
+    format!("{}{}", table(models), trials(models))
+}
+
+fn table(models: &[Appraisal]) -> String {
+    let mut table = TextTable::new([
+        "model",
+        "law",
+        "status",
+        "advance L",
+        "tactical L",
+        "10/10 deg",
+        "20/20 deg",
+    ]);
+    for model in models {
+        table.row([
+            model.model.clone(),
+            model.law.clone(),
+            model.standing.word().to_owned(),
+            hundredths(model.turn_lengths(|turn| turn.advance_m)),
+            hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+            hundredths(model.first_overshoot_deg(10.0)),
+            hundredths(model.first_overshoot_deg(20.0)),
+        ]);
+    }
+    table.to_string()
+}
+
+fn trials(models: &[Appraisal]) -> String {
+    let mut table =
+        TextTable::new(["model", "published trial", "unit", "published", "sailed", "allowed", ""]);
+    let mut any = false;
+    for model in models {
+        for one in &model.comparisons {
+            any = true;
+            table.row(trial(model, one));
+        }
+    }
+    if any { format!("\n{table}") } else { String::new() }
+}
+
+fn trial(model: &Appraisal, one: &Comparison) -> [String; 7] {
+    [
+        model.model.clone(),
+        one.figure.clone(),
+        one.unit.to_owned(),
+        hundredths(Some(one.published)),
+        hundredths(one.sailed),
+        hundredths(Some(one.limit)),
+        if one.is_within() { "met" } else { "missed" }.to_owned(),
+    ]
+}
+
+/// What was found of a contributed ship.
+pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
+    let mut text = format!("{}: {}\n\n{}", review.ship, review.title, listed(&review.models));
+    for (severity, head) in
+        [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
+    {
+        let of = review.findings.iter().filter(|finding| finding.severity == severity);
+        let lines: Vec<String> =
+            of.map(|finding| format!("  {}: {}", finding.about, finding.message)).collect();
+        if !lines.is_empty() {
+            text.push_str(&format!("\n{head}\n{}\n", lines.join("\n")));
+        }
+    }
+    if review.findings.is_empty() {
+        text.push_str("\nNothing found.\n");
+    }
+    if let Some(path) = written {
+        text.push_str(&format!("\nwritten to {}\n", path.display()));
+    }
+    text
+}
+
+/// Ships with what their figures are taken from.
+pub fn cited(graph: &[Dataset]) -> String {
+    let one = |ship: &Dataset| {
+        let works: String = ship.sources.iter().map(work).collect();
+        format!("{}: {}\n{works}", ship.identifier, ship.name)
+    };
+    graph.iter().map(one).collect::<Vec<String>>().join("\n")
+}
+
+fn work(work: &Work) -> String {
+    let url = work.url.as_ref().map_or(String::new(), |url| format!("\n    {url}"));
+    let terms = work.license.as_deref().or(work.usage).unwrap_or("not known");
+    format!("  {}: {}{url}\n    licence: {terms}\n", work.alternate_name, work.name)
+}

@@ -1,0 +1,241 @@
+//! `sistership demo`: the whole loop through the real server, on an embedded database, ending in a
+//! report.
+
+mod client;
+pub mod sea_trials;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+use serde_json::{Value, json};
+use sistership_api::{Config, Running, Server};
+use sistership_identification::refine::HeldOut;
+use sistership_model::{Trial, Zoo};
+use sistership_simulation::Ship;
+use sistership_trials::samples::to_csv;
+
+use self::client::ApiClient;
+use self::sea_trials::{TrialManoeuvre, record};
+use crate::commands::refine_text;
+use crate::commands::store::block_on;
+use crate::failure::{Failure, about_file};
+use crate::output;
+
+/// The ship of the demonstration: particulars only, nobody has a model of it.
+const SHIP: &str = include_str!("ship.yaml");
+const NAME: &str = "northern-star";
+/// Who sails the trials: a ship with roll, propeller and rudder of their own, by a law that no
+/// other ship of the zoo has.
+const TRUTH: &str = "sr108";
+const SPEED_M_S: f64 = 10.47;
+const SEED: u64 = 1;
+/// What is sailed; the last two are kept out of fit and choice, to judge the model on.
+const PROGRAMME: [TrialManoeuvre; 8] = [
+    TrialManoeuvre::Zigzag(10.0, 10.0),
+    TrialManoeuvre::Zigzag(-10.0, 5.0),
+    TrialManoeuvre::Zigzag(20.0, 20.0),
+    TrialManoeuvre::Turn(12.0),
+    TrialManoeuvre::Turn(-15.0),
+    TrialManoeuvre::Turn(30.0),
+    TrialManoeuvre::Turn(-20.0),
+    TrialManoeuvre::Zigzag(15.0, 15.0),
+];
+const JUDGED: usize = 2;
+
+const ABOUT: &str = "\
+Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source,
+refines, queries the champion, prints the errors before and after, and writes FOLDER/report.html.
+The trials are sailed by the four-degree-of-freedom ship SR108 with sensor noise; it is taken out
+of the zoo first, so that no model of its law can be chosen.";
+
+/// Show the whole loop: ship, trials, source, refinement, champion, report.
+#[derive(Debug, Args)]
+#[command(after_help = ABOUT)]
+pub struct DemoArguments {
+    /// Where the database, the samples and the report go; emptied first.
+    #[arg(long, value_name = "FOLDER", default_value = "demo-out")]
+    out: PathBuf,
+}
+
+/// Runs the demonstration.
+///
+/// # Errors
+/// What the server refuses, or a file that cannot be written.
+pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
+    let trials = sail(zoo)?;
+    empty(&demo.out)?;
+    block_on(async {
+        let mut config = Config::new(demo.out.join("data"));
+        config.listen.set_port(0);
+        let running =
+            Server::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
+        let told = tell(&running, &trials, &demo.out).await;
+        running.stop().await;
+        told
+    })
+}
+
+/// The trials of the unknown ship.
+fn sail(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
+    output::note(
+        "1/8  sailing the trials: SR108 with roll, by Son and Nomoto's law, and noisy instruments",
+    );
+    let model = zoo.model(TRUTH).map_err(|error| Failure::Refused(error.to_string()))?;
+    let law = zoo
+        .law(&model.law)
+        .ok_or_else(|| Failure::Refused(format!("there is no law `{}`", model.law)))?;
+    let ship = Ship::new(&model, law).map_err(|error| Failure::Refused(error.to_string()))?;
+    record(&ship, SPEED_M_S, &PROGRAMME, SEED)
+        .map_err(|stopped| Failure::Refused(stopped.to_string()))
+}
+
+/// An old demonstration goes; a folder that holds anything else is left alone.
+fn empty(folder: &Path) -> Result<(), Failure> {
+    let ours = |name: &std::ffi::OsStr| name == "data" || name == "report.html";
+    let failed = |error: std::io::Error| about_file(folder, error.to_string());
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        if !ours(&entry.file_name()) {
+            return Err(about_file(folder, "holds other files; name an empty folder with --out"));
+        }
+    }
+    for (name, is_folder) in [("data", true), ("report.html", false)] {
+        let path = folder.join(name);
+        if path.exists() {
+            if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
+                .map_err(failed)?;
+        }
+    }
+    Ok(())
+}
+
+async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Failure> {
+    let api = ApiClient::new(running.url());
+    output::note(&format!(
+        "2/8  server on {} with an embedded database in {}",
+        running.url(),
+        out.display()
+    ));
+    api.delete(&format!("/v1/ships/{TRUTH}")).await?;
+    output::note(
+        "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the \
+         trials",
+    );
+    api.post_yaml("/v1/ships", SHIP.to_owned()).await?;
+    upload(&api, trials).await?;
+    let job = refine(&api, trials).await?;
+    let champion = api.get(&format!("/v1/ships/{NAME}/model")).await?;
+    output::note(&format!("7/8  champion: {}", described(&champion)));
+    let report =
+        job["report"].as_str().ok_or_else(|| Failure::Refused("the job names no report".into()))?;
+    let path = out.join("report.html");
+    let html = api.text(&format!("/v1/reports/{report}"), "text/html").await?;
+    std::fs::write(&path, html).map_err(|error| about_file(&path, error.to_string()))?;
+    let held_out: HeldOut = serde_json::from_value(job["held_out"].clone())
+        .map_err(|error| Failure::Refused(error.to_string()))?;
+    output::note(&format!("8/8  report written to {}\n", path.display()));
+    output::print(false, &job, || {
+        format!(
+            "Root mean square errors, {}\n{}",
+            held_out.how,
+            refine_text::errors(&held_out, false)
+        )
+    })
+}
+
+async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
+    let mut files = Vec::new();
+    let mut entries = Vec::new();
+    for trial in trials {
+        let mut bytes = Vec::new();
+        to_csv(&mut bytes, trial).map_err(|error| Failure::Refused(error.to_string()))?;
+        entries.push(json!({ "file": trial.name, "manoeuvre": trial.manoeuvre }));
+        files.push((trial.name.clone(), bytes));
+    }
+    // JSON is YAML.
+    let manifest = json!({ "kind": "trials", "ship": NAME, "trials": entries }).to_string();
+    let uploaded = api.upload(manifest, files).await?;
+    let rows: i64 = uploaded["trials"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|trial| trial["rows"].as_i64())
+        .sum();
+    output::note(&format!(
+        "4/8  uploaded {} trials, {rows} samples, every check passed",
+        trials.len()
+    ));
+    Ok(())
+}
+
+/// Asks for a refinement and follows its job.
+async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
+    let held_out: Vec<&str> =
+        trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
+    let request = json!({ "ship": NAME, "source": "auto", "settings": { "held_out": held_out } });
+    let queued = api.post_json("/v1/refinements", &request).await?;
+    let id = queued["id"].as_str().unwrap_or_default().to_owned();
+    output::note(&format!(
+        "5/8  refinement job {id}; kept out to judge on: {}",
+        held_out.join(", ")
+    ));
+    let mut last = String::new();
+    loop {
+        let job = api.get(&format!("/v1/jobs/{id}")).await?;
+        let message = job["message"].as_str().unwrap_or_default();
+        if message != last {
+            output::note(&format!(
+                "     {:3.0} % {message}",
+                100.0 * job["progress"].as_f64().unwrap_or(0.0)
+            ));
+            message.clone_into(&mut last);
+        }
+        match job["state"].as_str() {
+            Some("succeeded") => return chosen(&job["result"]),
+            Some("failed" | "cancelled") => {
+                return Err(Failure::Refused(format!("the job ended: {}", job["error"])));
+            }
+            _ => tokio::time::sleep(Duration::from_millis(100)).await,
+        }
+    }
+}
+
+/// Says which source was selected, and why others fell.
+fn chosen(result: &Value) -> Result<Value, Failure> {
+    let from = result["from"].as_str().unwrap_or_default();
+    output::note(&format!("6/8  refined from {from}"));
+    for ranked in result["ranking"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter(|ranked| ranked["model"].is_string())
+    {
+        let correlation =
+            ranked["correlation"].as_f64().map_or("?".to_owned(), |r| format!("{r:+.3}"));
+        let reasons: Vec<&str> =
+            ranked["reasons"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+        let verdict = if ranked["eligible"] == true { "eligible" } else { "not eligible" };
+        output::note(&format!(
+            "     {:<12} {correlation} {verdict}: {}",
+            ranked["ship"].as_str().unwrap_or("?"),
+            reasons.join("; ")
+        ));
+    }
+    Ok(result.clone())
+}
+
+fn described(champion: &Value) -> String {
+    let version = &champion["version"];
+    let text = |value: &Value| value.as_str().unwrap_or("?").to_owned();
+    let coefficients =
+        champion["model"]["coefficients"].as_object().map_or(0, serde_json::Map::len);
+    let hash: String = text(&version["sha256"]).chars().take(12).collect();
+    format!(
+        "version {} of {}, law {}, {coefficients} coefficients, sha256 {hash}",
+        version["number"],
+        text(&version["model"]),
+        text(&version["law"])
+    )
+}

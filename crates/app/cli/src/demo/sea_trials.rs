@@ -1,0 +1,120 @@
+//! Sea trials of a ship that only the sea knows: sailed by its own law, recorded with the noise of
+//! real instruments.
+
+use std::collections::BTreeMap;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha12Rng;
+use rand_distr::{Distribution, Normal};
+use sistership_model::Trial;
+use sistership_model::trial::Channel;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::at;
+use sistership_simulation::{Ship, Stopped, Trajectory};
+
+/// A manoeuvre of the programme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TrialManoeuvre {
+    /// A turning circle with a rudder angle, deg.
+    Turn(f64),
+    /// A zigzag with a rudder angle and a change of heading, deg.
+    Zigzag(f64, f64),
+}
+
+impl TrialManoeuvre {
+    /// What people call it.
+    pub fn name(self) -> String {
+        match self {
+            Self::Turn(rudder_deg) => format!("turn {rudder_deg:+}"),
+            Self::Zigzag(rudder_deg, switch_deg) => format!("zigzag {rudder_deg}/{switch_deg}"),
+        }
+    }
+
+    /// The name of its file, such as `turn-port-15.csv`.
+    fn file_name(self) -> String {
+        let side = |rudder_deg: f64| if rudder_deg < 0.0 { "port" } else { "starboard" };
+        match self {
+            Self::Turn(rudder_deg) => format!("turn-{}-{}.csv", side(rudder_deg), rudder_deg.abs()),
+            Self::Zigzag(rudder_deg, switch_deg) => {
+                format!("zigzag-{}-{}-{switch_deg}.csv", side(rudder_deg), rudder_deg.abs())
+            }
+        }
+    }
+}
+
+/// How long each trial is recorded, s, and when the rudder is first executed.
+const DURATION_S: f64 = 650.0;
+const EXECUTE_S: f64 = 60.0;
+/// One sample of so many steps of 0.1 s: 2 Hz.
+const STRIDE: usize = 5;
+
+/// What is recorded, and the standard deviation of its instrument: differential GNSS, Doppler log,
+/// gyros, feedback units.
+const INSTRUMENTS: [(Channel, usize, f64); 9] = [
+    (Channel::X, at::X, 0.3),
+    (Channel::Y, at::Y, 0.3),
+    (Channel::Psi, at::PSI, 5e-4),
+    (Channel::U, at::U, 3e-3),
+    (Channel::V, at::V, 3e-3),
+    (Channel::R, at::R, 5e-5),
+    (Channel::P, at::P, 2e-4),
+    (Channel::Phi, at::PHI, 5e-4),
+    (Channel::Delta, at::DELTA, 5e-4),
+];
+const REVOLUTIONS_NOISE_RPS: f64 = 1e-3;
+
+/// Sails a programme and records it; the same seed gives the same noise.
+///
+/// # Errors
+/// Says when and why the ship left the physical range.
+pub fn record(
+    ship: &Ship,
+    speed_m_s: f64,
+    programme: &[TrialManoeuvre],
+    seed: u64,
+) -> Result<Vec<Trial>, Stopped> {
+    let mut noise = ChaCha12Rng::seed_from_u64(seed);
+    let settings = ManoeuvreSettings {
+        speed_m_s: Some(speed_m_s),
+        duration_s: Some(DURATION_S - EXECUTE_S),
+        run_in_s: EXECUTE_S,
+        ..ManoeuvreSettings::default()
+    };
+    let sail = |manoeuvre: &TrialManoeuvre| match *manoeuvre {
+        TrialManoeuvre::Turn(rudder_deg) => {
+            turn(ship, rudder_deg, &settings).map(|turn| turn.track)
+        }
+        TrialManoeuvre::Zigzag(rudder_deg, switch_deg) => {
+            zigzag(ship, rudder_deg, switch_deg, &settings).map(|zigzag| zigzag.track)
+        }
+    };
+    programme
+        .iter()
+        .map(|manoeuvre| Ok(recorded(*manoeuvre, &sail(manoeuvre)?, &mut noise)))
+        .collect()
+}
+
+fn recorded(manoeuvre: TrialManoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -> Trial {
+    let sampled = |values: Vec<f64>, deviation: f64, noise: &mut ChaCha12Rng| -> Vec<f64> {
+        let values = values.into_iter().step_by(STRIDE);
+        values
+            .map(|value| {
+                value + Normal::new(0.0, deviation).map_or(0.0, |normal| normal.sample(noise))
+            })
+            .collect()
+    };
+    let mut channels: BTreeMap<Channel, Vec<f64>> = INSTRUMENTS
+        .iter()
+        .map(|&(channel, index, deviation)| {
+            (channel, sampled(track.column(index), deviation, noise))
+        })
+        .collect();
+    channels.insert(Channel::N, sampled(track.n_rps.clone(), REVOLUTIONS_NOISE_RPS, noise));
+    Trial {
+        name: manoeuvre.file_name(),
+        t_s: track.t_s.iter().copied().step_by(STRIDE).collect(),
+        channels,
+        manoeuvre: Some(manoeuvre.name()),
+        ..Trial::default()
+    }
+}

@@ -1,0 +1,75 @@
+//! Which categories of ships are compared with each other: data of the zoo.
+
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+const TEXT: &str = include_str!("../../../../models/categories.yaml");
+
+static GROUPS: LazyLock<Vec<CategoryGroup>> = LazyLock::new(|| {
+    serde_yaml::from_str::<CategoriesFile>(TEXT).map(|file| file.groups).unwrap_or_default()
+});
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CategoriesFile {
+    #[serde(rename = "kind")]
+    _kind: CategoriesKind,
+    groups: Vec<CategoryGroup>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum CategoriesKind {
+    Categories,
+}
+
+/// Categories that are compared with each other.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CategoryGroup {
+    /// What they have in common.
+    pub name: String,
+    /// The categories.
+    pub categories: BTreeSet<String>,
+}
+
+/// The group of a category; none where it stands in no group.
+pub fn group_of(category: &str) -> Option<&'static CategoryGroup> {
+    GROUPS.iter().find(|group| group.categories.contains(category))
+}
+
+/// Whether ships of two categories are compared.
+pub fn comparable(one: &str, other: &str) -> bool {
+    one == other || group_of(one).is_some_and(|group| group.categories.contains(other))
+}
+
+/// Every category that stands in a group.
+pub fn known_categories() -> Vec<&'static str> {
+    GROUPS.iter().flat_map(|group| &group.categories).map(String::as_str).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::Zoo;
+
+    #[test]
+    fn full_form_ships_are_compared_with_each_other() {
+        assert!(comparable("tanker", "bulk-carrier"));
+        assert!(comparable("hovercraft", "hovercraft"));
+        assert!(!comparable("tanker", "dry-cargo"));
+        assert!(!comparable("hovercraft", "tanker"));
+    }
+
+    #[test]
+    fn a_category_stands_in_one_group_and_the_zoo_has_no_other() {
+        let known = known_categories();
+        assert_eq!(known.len(), known.iter().collect::<BTreeSet<_>>().len());
+        for vessel in Zoo::embedded().unwrap().vessels() {
+            assert!(group_of(&vessel.file.category).is_some(), "{}", vessel.name());
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! The zoo: laws, effects and vessels by name, embedded in the program and extended at run time.
+
+mod entries;
+
+use std::sync::Arc;
+
+use include_dir::{Dir, include_dir};
+
+use crate::effect::Effect;
+use crate::error::FileError;
+use crate::law::Law;
+use crate::model::Model;
+use crate::vessel::Vessel;
+use entries::Entries;
+
+static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models");
+
+/// Laws, effects and vessels by name. What the program carries is read when it is first asked for:
+/// most calls need one law and one ship.
+#[derive(Debug, Clone)]
+pub struct Zoo {
+    laws: Entries<Law>,
+    effects: Entries<Effect>,
+    vessels: Entries<Vessel>,
+}
+
+impl Default for Zoo {
+    fn default() -> Self {
+        Self {
+            laws: Entries::new(Law::parse),
+            effects: Entries::new(Effect::parse),
+            vessels: Entries::new(Vessel::parse),
+        }
+    }
+}
+
+impl Zoo {
+    /// The laws, effects and vessels that the program carries. A test reads them all and checks
+    /// every model ([`Zoo::check`]); one that does not read would be missing.
+    ///
+    /// # Errors
+    /// A file that is no text.
+    pub fn embedded() -> Result<Self, FileError> {
+        Ok(Self {
+            laws: Entries::embedded(MODELS.get_dir("laws"), Law::parse)?,
+            effects: Entries::embedded(MODELS.get_dir("effects"), Effect::parse)?,
+            vessels: Entries::embedded(MODELS.get_dir("vessels"), Vessel::parse)?,
+        })
+    }
+
+    /// Reads everything, and checks each model against its law.
+    ///
+    /// # Errors
+    /// The first file that does not read or fit.
+    pub fn check(&self) -> Result<(), FileError> {
+        let faults = [self.laws.fault(), self.effects.fault(), self.vessels.fault()];
+        if let Some(fault) = faults.into_iter().flatten().next() {
+            return Err(fault.clone());
+        }
+        self.vessels().try_for_each(|vessel| self.check_models(vessel))
+    }
+
+    /// Adds a law, or replaces the one of the same name.
+    ///
+    /// # Errors
+    /// As [`Law::parse`].
+    pub fn add_law(&mut self, file: &str, text: &str) -> Result<Arc<Law>, FileError> {
+        let law = Arc::new(Law::parse(file, text)?);
+        self.laws.keep(&law.name, text, Arc::clone(&law));
+        Ok(law)
+    }
+
+    /// Adds an effect, or replaces the one of the same name.
+    ///
+    /// # Errors
+    /// As [`Effect::parse`].
+    pub fn add_effect(&mut self, file: &str, text: &str) -> Result<Arc<Effect>, FileError> {
+        let effect = Arc::new(Effect::parse(file, text)?);
+        self.effects.keep(&effect.name, text, Arc::clone(&effect));
+        Ok(effect)
+    }
+
+    /// Adds a vessel, or replaces the one of the same name; each of its models is checked against
+    /// its law.
+    ///
+    /// # Errors
+    /// As [`Vessel::parse`] and [`Model::published`].
+    pub fn add_vessel(&mut self, file: &str, text: &str) -> Result<Arc<Vessel>, FileError> {
+        let vessel = Arc::new(Vessel::parse(file, text)?);
+        let in_file = |error| FileError { file: file.to_owned(), ..error };
+        self.check_models(&vessel).map_err(in_file)?;
+        self.vessels.keep(vessel.name(), text, Arc::clone(&vessel));
+        Ok(vessel)
+    }
+
+    /// Checks that each model of a vessel fits its law.
+    ///
+    /// # Errors
+    /// Names the model and the field.
+    pub fn check_models(&self, vessel: &Vessel) -> Result<(), FileError> {
+        vessel
+            .file
+            .models
+            .iter()
+            .try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
+    }
+
+    /// A published model of a vessel, by default its first.
+    ///
+    /// # Errors
+    /// Says which law, model, parameter or coefficient is missing.
+    pub fn published(&self, vessel: &Vessel, name: Option<&str>) -> Result<Model, FileError> {
+        let models = &vessel.file.models;
+        let wanted = name
+            .map_or_else(|| models.first(), |name| models.iter().find(|model| model.name == name));
+        let law_name = wanted.map_or("", |model| model.law.as_str());
+        match self.laws.get(law_name) {
+            Some(law) => Model::published(vessel, name, law),
+            None if wanted.is_none() => Model::published(vessel, name, &Law::empty()),
+            None => Err(FileError {
+                file: vessel.name().to_owned(),
+                line: None,
+                field: "models.law".into(),
+                message: format!(
+                    "there is no law `{law_name}`; there are {}",
+                    self.laws.names().join(", ")
+                ),
+                further: Vec::new(),
+            }),
+        }
+    }
+
+    /// A model by `ship` or `ship/model`.
+    ///
+    /// # Errors
+    /// Says what is not in the zoo, and what is.
+    pub fn model(&self, name: &str) -> Result<Model, FileError> {
+        let (ship, model) =
+            name.split_once('/').map_or((name, None), |(ship, model)| (ship, Some(model)));
+        let vessel = self.vessels.get(ship).ok_or_else(|| self.no_ship(ship))?;
+        self.published(vessel, model)
+    }
+
+    /// The refusal of a ship that is not here.
+    pub fn no_ship(&self, name: &str) -> FileError {
+        let message = format!(
+            "there is no such ship in the zoo and no such file; the zoo has {}",
+            self.vessels.names().join(", ")
+        );
+        FileError {
+            file: name.to_owned(),
+            line: None,
+            field: String::new(),
+            message,
+            further: Vec::new(),
+        }
+    }
+
+    /// A law by name.
+    pub fn law(&self, name: &str) -> Option<&Arc<Law>> {
+        self.laws.get(name)
+    }
+
+    /// An effect by name.
+    pub fn effect(&self, name: &str) -> Option<&Arc<Effect>> {
+        self.effects.get(name)
+    }
+
+    /// A vessel by name.
+    pub fn vessel(&self, name: &str) -> Option<&Arc<Vessel>> {
+        self.vessels.get(name)
+    }
+
+    /// Every law, by name.
+    pub fn laws(&self) -> impl Iterator<Item = &Arc<Law>> {
+        self.laws.all()
+    }
+
+    /// Every effect, by name.
+    pub fn effects(&self) -> impl Iterator<Item = &Arc<Effect>> {
+        self.effects.all()
+    }
+
+    /// Every vessel, by name.
+    pub fn vessels(&self) -> impl Iterator<Item = &Arc<Vessel>> {
+        self.vessels.all()
+    }
+
+    /// The text of a law's file.
+    pub fn law_text(&self, name: &str) -> Option<&str> {
+        self.laws.text(name)
+    }
+
+    /// The text of an effect's file.
+    pub fn effect_text(&self, name: &str) -> Option<&str> {
+        self.effects.text(name)
+    }
+
+    /// The text of a vessel's file.
+    pub fn vessel_text(&self, name: &str) -> Option<&str> {
+        self.vessels.text(name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_embedded_file_reads_by_the_name_of_its_document() {
+        let zoo = Zoo::embedded().unwrap();
+        zoo.check().unwrap_or_else(|error| panic!("{error}"));
+        for (folder, known) in [
+            ("laws", zoo.laws().map(|law| law.name.clone()).collect::<Vec<_>>()),
+            ("effects", zoo.effects().map(|effect| effect.name.clone()).collect()),
+            ("vessels", zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()),
+        ] {
+            let yaml = MODELS.get_dir(folder).unwrap().files().filter(|file| {
+                file.path().extension().is_some_and(|extension| extension == "yaml")
+            });
+            assert_eq!(known.len(), yaml.count());
+            for name in known {
+                let path = format!("{folder}/{name}.yaml");
+                assert!(MODELS.get_file(&path).is_some(), "{name} should be {path}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_fault_of_a_file_is_found_by_the_check() {
+        let mut zoo = Zoo::embedded().unwrap();
+        let text = zoo.vessel_text("mariner").unwrap().replace("law: abkowitz", "law: none-such");
+        assert!(zoo.add_vessel("m.yaml", &text).unwrap_err().to_string().contains("none-such"));
+        let text = zoo.law_text("low-speed").unwrap().replace("name: low-speed", "name: abkowitz");
+        zoo.add_law("law.yaml", &text).unwrap();
+        assert!(zoo.check().is_err());
+    }
+}

@@ -1,0 +1,248 @@
+//! What every format writes down: the operations of a model's equations of motion, and names.
+
+use std::borrow::Cow;
+use std::sync::LazyLock;
+
+use sistership_model::effect::{AppliedEffect, qualified};
+use sistership_model::law::Input;
+use sistership_model::quantity::Quantity;
+use sistership_model::{Effect, FileError, Law, Model};
+use sistership_simulation::envelope::Envelope;
+use sistership_simulation::equations::{Coefficients, EquationsOfMotion};
+use sistership_simulation::gear::Gear;
+use sistership_simulation::plant::Listed;
+use sistership_simulation::validity::distance;
+use sistership_simulation::{Plant, PlantError, Ship};
+
+use crate::correction::corrected;
+use crate::error::ExportError;
+use crate::identifier::{identifier, identifiers};
+use crate::outside::{CURRENT, Outside};
+use crate::subject::Subject;
+
+/// A coefficient of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coefficient {
+    /// Its name.
+    pub name: String,
+    /// The name that programs use.
+    pub identifier: String,
+    /// Its value.
+    pub value: f64,
+    /// Its SI unit; `1` in a prime system.
+    pub unit: String,
+    /// The key of its source.
+    pub source: String,
+    /// Its standard error, where one is known.
+    pub standard_error: Option<f64>,
+}
+
+/// What an input of the tape is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operand {
+    /// A state, by its place in the state vector.
+    State(usize),
+    /// Something from outside, by its place among [`Plan::outside`].
+    Outside(usize),
+    /// A coefficient, by its place among [`Plan::coefficients`].
+    Coefficient(usize),
+}
+
+/// The states by name, unit and meaning, in the order of the state vector.
+pub const STATES: [(&str, &str, &str); 9] = [
+    ("u", "m/s", "surge velocity over the ground"),
+    ("v", "m/s", "sway velocity over the ground, to starboard"),
+    ("r", "rad/s", "yaw rate, to starboard"),
+    ("p", "rad/s", "roll rate, to starboard"),
+    ("phi", "rad", "roll angle, to starboard"),
+    ("psi", "rad", "heading, clockwise from north"),
+    ("x", "m", "position north"),
+    ("y", "m", "position east"),
+    ("delta", "rad", "rudder angle, positive turns the ship to starboard"),
+];
+
+/// The place of the rudder among the states.
+pub const DELTA: usize = 8;
+
+/// A model's equations of motion, ready to be written down.
+#[derive(Debug)]
+pub struct Plan {
+    /// The model's name.
+    pub name: String,
+    /// The name that programs use.
+    pub identifier: String,
+    /// Lines that say what it is and where its figures come from.
+    pub provenance: Vec<String>,
+    /// The SHA-256 of what was exported.
+    pub sha256: String,
+    /// What it takes from outside, besides the ordered rudder.
+    pub outside: Vec<Outside>,
+    /// Its coefficients.
+    pub coefficients: Vec<Coefficient>,
+    /// What the inputs of the tape are.
+    pub operands: Vec<Operand>,
+    /// The steering gear, where the law has one rudder.
+    pub gear: Option<Gear>,
+    /// Half of the gear's dead band, rad: an order within it is not followed.
+    pub band_rad: f64,
+    /// The range outside which a simulation is not believed.
+    pub envelope: Envelope,
+    /// Whether the law has roll.
+    pub has_roll: bool,
+    /// Length between perpendiculars, m.
+    pub lpp_m: f64,
+    /// The approach speed that the model belongs to, m/s.
+    pub speed_m_s: f64,
+    plant: Plant,
+}
+
+impl Plan {
+    /// Of a model, with a current as a further input.
+    ///
+    /// # Errors
+    /// Says why the model cannot be exported.
+    pub fn new(subject: &Subject<'_>) -> Result<Self, ExportError> {
+        let model = with_current(subject.model)?;
+        let law = corrected(&model, dressed(&model, subject.law)?)?;
+        let equations = EquationsOfMotion::of_law(&model, Cow::Borrowed(&law));
+        let known = equations.names();
+        let is_known = |name: &str| known.iter().any(|known| known == name);
+        let distance = model.validity.as_ref().map(|region| distance(region, &is_known));
+        let plant = Plant::with_distance(&equations, Coefficients::Names, distance.as_ref())?;
+        let ship = Ship::new(subject.model, subject.law)?;
+        let delta = law.inputs.get_index_of("delta");
+        let band = plant.bands().iter().find(|(place, _)| Some(*place) == delta);
+        let outside = taken(&model, &law, &plant);
+        let coefficients = coefficients(&model, subject.law)?;
+        let operands = operands(&law, &outside, coefficients.len());
+        Ok(Self {
+            name: model.name.clone(),
+            identifier: identifier(&model.name),
+            provenance: subject.provenance(),
+            sha256: subject.sha256.clone(),
+            gear: law.inputs.contains_key("delta").then(|| ship.gear()),
+            band_rad: band.map_or(0.0, |(_, half)| *half),
+            envelope: *ship.envelope(),
+            has_roll: ship.has_roll(),
+            lpp_m: ship.lpp_m(),
+            speed_m_s: ship.approach_speed_m_s(),
+            outside,
+            coefficients,
+            operands,
+            plant,
+        })
+    }
+
+    /// The operations.
+    pub fn listed(&self) -> Listed<'_> {
+        self.plant.listed()
+    }
+
+    /// The places of the states that move.
+    pub fn states(&self) -> impl Iterator<Item = usize> {
+        let moves = |place: &usize| match place {
+            3 | 4 => self.has_roll,
+            &DELTA => self.gear.is_some(),
+            _ => true,
+        };
+        (0..STATES.len()).filter(moves)
+    }
+
+    /// The longest step by which our own manoeuvres are sailed, s: 0.1 s, or a fiftieth of the time
+    /// in which the ship sails its length.
+    pub fn step_s(&self) -> f64 {
+        0.1_f64.min(0.02 * self.lpp_m / self.speed_m_s)
+    }
+}
+
+/// The current of the library of effects.
+static CURRENT_EFFECT: LazyLock<Result<Effect, FileError>> = LazyLock::new(|| {
+    Effect::parse("current.yaml", include_str!("../../../../models/effects/current.yaml"))
+});
+
+/// The model with a current at rest, where it carries none.
+fn with_current(model: &Model) -> Result<Model, ExportError> {
+    let mut model = model.clone();
+    let (name, form, parameters) = CURRENT;
+    if model.effects.iter().any(|effect| effect.name == name) {
+        return Ok(model);
+    }
+    let refused = |message: String| ExportError::Effect { field: name.to_owned(), message };
+    let current = CURRENT_EFFECT.as_ref().map_err(|error| refused(error.to_string()))?;
+    let form = current.forms.iter().find(|known| known.file.name == form);
+    let form = form.ok_or_else(|| refused("has no such form".to_owned()))?;
+    let still = parameters.map(|parameter| (parameter.to_owned(), Quantity::new(0.0, "")));
+    model.effects.push(AppliedEffect {
+        name: name.to_owned(),
+        acts_on: current.acts_on,
+        parameters: still.into(),
+        form: form.file.clone(),
+    });
+    Ok(model)
+}
+
+/// The law with the effects; the velocity of the current is an input.
+fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
+    let mut law = law
+        .with_effects(model)
+        .map_err(|(field, message)| ExportError::Effect { field, message })?;
+    if let Some((input, _)) = law.dressing.lags.iter().find(|(input, _)| input != "delta") {
+        return Err(ExportError::Lag { model: model.name.clone(), input: input.clone() });
+    }
+    if let Some((input, _)) = law.dressing.bands.iter().find(|(input, _)| input != "delta") {
+        return Err(ExportError::Band { model: model.name.clone(), input: input.clone() });
+    }
+    let (effect, form, parameters) = CURRENT;
+    for name in parameters.map(|parameter| qualified(effect, form, parameter)) {
+        let Some(value) = law.dressing.parameters.remove(&name) else { continue };
+        let dimension = law.parameters[&name].dimension;
+        law.inputs.insert(name, Input { dimension, default: Some(value) });
+    }
+    Ok(law)
+}
+
+/// The inputs of the law but for the rudder; what no operation reads is left out.
+fn taken(model: &Model, law: &Law, plant: &Plant) -> Vec<Outside> {
+    use sistership_simulation::tape::{Instruction, Op};
+    let first = sistership_model::law::STATES.len();
+    let reads = |place: usize| {
+        let input = Instruction::Op(Op::Input((first + place) as u32));
+        plant.listed().tape.instructions().contains(&input)
+    };
+    let inputs = law.inputs.iter().enumerate();
+    inputs
+        .filter(|(place, (name, _))| name.as_str() != "delta" && reads(*place))
+        .map(|(_, (name, input))| Outside::of(model, name, input))
+        .collect()
+}
+
+/// What each input of the tape is. An input that no operation reads stands for nothing: any operand
+/// does.
+fn operands(law: &Law, outside: &[Outside], coefficients: usize) -> Vec<Operand> {
+    let states = sistership_model::law::STATES.len();
+    let of_input = |name: &String| match outside.iter().position(|known| known.name == *name) {
+        Some(place) => Operand::Outside(place),
+        None => Operand::State(DELTA),
+    };
+    (0..states)
+        .map(Operand::State)
+        .chain(law.inputs.keys().map(of_input))
+        .chain((0..coefficients).map(Operand::Coefficient))
+        .collect()
+}
+
+fn coefficients(model: &Model, law: &Law) -> Result<Vec<Coefficient>, ExportError> {
+    let names = identifiers(model.coefficients.keys().map(String::as_str));
+    let one = |((name, quantity), identifier): ((&String, &Quantity), String)| {
+        let unit = law.coefficient_dimension(name).map_err(PlantError::from)?.to_string();
+        Ok(Coefficient {
+            name: name.clone(),
+            identifier,
+            value: quantity.value,
+            unit,
+            source: quantity.source.clone(),
+            standard_error: quantity.standard_error,
+        })
+    };
+    model.coefficients.iter().zip(names).map(one).collect()
+}

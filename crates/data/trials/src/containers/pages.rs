@@ -1,0 +1,318 @@
+//! The pages of a Parquet file's columns, measured by their headers before anything is
+//! decompressed.
+//!
+//! The library allocates what a page's header declares, and gives gzip whatever it grows to:
+//! headers are read here first, by Thrift's compact protocol, and gzip is let run to its end
+//! without keeping any of it.
+
+use std::io::{self, Read};
+
+use flate2::read::MultiGzDecoder;
+use parquet::basic::Compression;
+use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::file::reader::ChunkReader;
+
+use crate::containers::parquet_format::{self, FieldKind, Format};
+
+/// Structures within structures of a page header; the format has two.
+const DEPTH: usize = 4;
+/// The same of what a file says of itself; the format has eight.
+const FOOTER_DEPTH: usize = 16;
+/// Bytes of a page header, its statistics included.
+const HEADER_BYTES: u64 = 64 << 10;
+
+/// What reading a column holds at a time, bytes: its dictionary, and a page as it lies in the file
+/// and as it is in memory.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Held {
+    dictionary: u64,
+    page: u64,
+}
+
+impl Held {
+    /// Bytes in all.
+    pub fn bytes(self) -> u64 {
+        self.dictionary + self.page
+    }
+
+    /// The larger of each.
+    pub fn max(self, other: Self) -> Self {
+        Self { dictionary: self.dictionary.max(other.dictionary), page: self.page.max(other.page) }
+    }
+}
+
+/// Goes through the pages of a column.
+///
+/// # Errors
+/// A page is larger than `most` bytes, or not what its header says.
+pub fn held<R: ChunkReader>(
+    input: &R,
+    chunk: &ColumnChunkMetaData,
+    most: usize,
+) -> Result<Held, String> {
+    if matches!(chunk.compression(), Compression::LZ4) {
+        return Err(
+            "is compressed by the old LZ4, whose size is not bounded; write it with zstd, \
+            snappy or LZ4_RAW"
+                .into(),
+        );
+    }
+    let (mut at, length) = chunk.byte_range();
+    let end =
+        at.checked_add(length).filter(|end| *end <= input.len()).ok_or("lies outside the file")?;
+    let mut held = Held::default();
+    while at < end {
+        let header = Header::read(input, at)
+            .map_err(|error| format!("has a page that cannot be read: {error}"))?;
+        let next = at.saturating_add(header.length).saturating_add(header.compressed);
+        if next > end {
+            return Err("has a page that ends outside of it".into());
+        }
+        if header.uncompressed.max(header.compressed) > most as u64 {
+            let size = header.uncompressed.max(header.compressed);
+            return Err(format!(
+                "has a page of {size} bytes, more than the {most} that are read; write smaller \
+                 pages"
+            ));
+        }
+        if matches!(chunk.compression(), Compression::GZIP(_)) {
+            header
+                .unpacked(input, at)
+                .map_err(|error| format!("has a page that cannot be unpacked: {error}"))?;
+        }
+        let one = match header.is_dictionary {
+            // It is decoded as a whole.
+            true => Held { dictionary: 2 * header.uncompressed + header.compressed, page: 0 },
+            false => Held { dictionary: 0, page: header.uncompressed + header.compressed },
+        };
+        held = held.max(one);
+        at = next;
+    }
+    Ok(held)
+}
+
+/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library
+/// believes the length of each list, and goes on for seconds over one that is said to have two
+/// thousand million entries in a file of fifty bytes.
+///
+/// # Errors
+/// It holds less than it says, or is nested too deeply.
+pub fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
+    let at = input.len().checked_sub(bytes + 8).ok_or_else(|| invalid("it is too short"))?;
+    let reader = input.get_read(at).map_err(io::Error::other)?.take(bytes);
+    let mut thrift = Thrift { reader, format: parquet_format::footer, read: 0 };
+    thrift.structure(FOOTER_DEPTH, &mut |_, _| ())
+}
+
+/// What is read of a page header.
+#[derive(Debug, Default)]
+struct Header {
+    is_dictionary: bool,
+    uncompressed: u64,
+    compressed: u64,
+    /// Bytes before what is compressed: the levels of the second form of data pages.
+    levels: u64,
+    /// Its own bytes.
+    length: u64,
+}
+
+impl Header {
+    fn read<R: ChunkReader>(input: &R, at: u64) -> io::Result<Self> {
+        let reader = input.get_read(at).map_err(io::Error::other)?.take(HEADER_BYTES);
+        let mut thrift = Thrift { reader, format: parquet_format::page_header, read: 0 };
+        let (mut header, mut wrong) = (Self::default(), false);
+        thrift.structure(DEPTH, &mut |path: &[i16], value: i64| {
+            let mut positive = || {
+                wrong = wrong || value < 0;
+                u64::try_from(value).unwrap_or(0)
+            };
+            match path {
+                [1] => header.is_dictionary = value == 2,
+                [2] => header.uncompressed = positive(),
+                [3] => header.compressed = positive(),
+                [8, 5 | 6] => header.levels += positive(),
+                _ => {}
+            }
+        })?;
+        header.length = thrift.read;
+        if wrong { Err(invalid("a size is negative")) } else { Ok(header) }
+    }
+
+    /// Runs gzip to its end, or to more than the header says.
+    fn unpacked<R: ChunkReader>(&self, input: &R, at: u64) -> io::Result<()> {
+        let packed = input.get_read(at + self.length + self.levels).map_err(io::Error::other)?;
+        let packed = packed.take(self.compressed.saturating_sub(self.levels));
+        let most = self.uncompressed.saturating_sub(self.levels);
+        let size = io::copy(&mut MultiGzDecoder::new(packed).take(most + 1), &mut io::sink())?;
+        if size > most { Err(invalid("it is larger than its header says")) } else { Ok(()) }
+    }
+}
+
+fn invalid(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
+}
+
+/// A reader of Thrift's compact protocol that keeps integers only.
+struct Thrift<R> {
+    reader: R,
+    format: Format,
+    read: u64,
+}
+
+/// Told the path of fields and the value of an integer.
+type Take<'a> = &'a mut dyn FnMut(&[i16], i64);
+
+impl<R: Read> Thrift<R> {
+    fn structure(&mut self, depth: usize, take: Take<'_>) -> io::Result<()> {
+        self.fields(&mut Vec::new(), depth, take)
+    }
+
+    fn fields(&mut self, path: &mut Vec<i16>, depth: usize, take: Take<'_>) -> io::Result<()> {
+        let deeper = depth.checked_sub(1).ok_or_else(|| invalid("it is nested too deeply"))?;
+        let mut id = 0_i16;
+        loop {
+            let byte = self.byte()?;
+            if byte == 0 {
+                return Ok(());
+            }
+            id = match byte >> 4 {
+                0 => {
+                    i16::try_from(self.integer()?).map_err(|_| invalid("a field has no number"))?
+                }
+                delta => id
+                    .checked_add(i16::from(delta))
+                    .ok_or_else(|| invalid("a field has no number"))?,
+            };
+            path.push(id);
+            self.value(byte & 15, path, deeper, take)?;
+            path.pop();
+        }
+    }
+
+    /// A field's value, which is of the kind that the format says.
+    fn value(
+        &mut self,
+        kind: u8,
+        path: &mut Vec<i16>,
+        depth: usize,
+        take: Take<'_>,
+    ) -> io::Result<()> {
+        let expected = (self.format)(path);
+        if expected.is_some_and(|expected| !expected.is(kind)) {
+            return Err(invalid("a field is of another kind than the format says"));
+        }
+        match kind {
+            9 => self.list(path, depth, expected, take),
+            _ => self.entry(kind, path, depth, take),
+        }
+    }
+
+    fn entry(
+        &mut self,
+        kind: u8,
+        path: &mut Vec<i16>,
+        depth: usize,
+        take: Take<'_>,
+    ) -> io::Result<()> {
+        match kind {
+            // Truth is in the kind.
+            1 | 2 => Ok(()),
+            3 => self.byte().map(drop),
+            4..=6 => {
+                let value = self.integer()?;
+                take(path, value);
+                Ok(())
+            }
+            7 => self.skip(8),
+            8 => {
+                let length = self.varint()?;
+                self.skip(length)
+            }
+            9 | 10 => self.list(path, depth, None, take),
+            12 => self.fields(path, depth, take),
+            _ => Err(invalid("it holds what no Parquet file holds")),
+        }
+    }
+
+    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in
+    /// neither a footer nor a page header, and the library passes over one without reading a byte
+    /// of it, however long it says to be.
+    fn list(
+        &mut self,
+        path: &mut Vec<i16>,
+        depth: usize,
+        expected: Option<FieldKind>,
+        take: Take<'_>,
+    ) -> io::Result<()> {
+        let deeper = depth.checked_sub(1).ok_or_else(|| invalid("it is nested too deeply"))?;
+        let head = self.byte()?;
+        let (entries, count) = (head & 15, u64::from(head >> 4));
+        let count = if count == 15 { self.varint()? } else { count };
+        if count > 0 && expected.is_some_and(|expected| !expected.holds(entries)) {
+            return Err(invalid("a list is of another kind than the format says"));
+        }
+        for _ in 0..count {
+            match entries {
+                1 | 2 => return Err(invalid("it holds what no Parquet file holds")),
+                kind => self.entry(kind, path, deeper, take)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn byte(&mut self) -> io::Result<u8> {
+        let mut byte = [0];
+        self.reader.read_exact(&mut byte)?;
+        self.read += 1;
+        Ok(byte[0])
+    }
+
+    fn varint(&mut self) -> io::Result<u64> {
+        let mut value = 0_u64;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            value |= u64::from(byte & 127) << shift;
+            if byte < 128 {
+                return Ok(value);
+            }
+        }
+        Err(invalid("a number does not end"))
+    }
+
+    /// Signs alternate.
+    fn integer(&mut self) -> io::Result<i64> {
+        let value = self.varint()?;
+        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
+    }
+
+    fn skip(&mut self, bytes: u64) -> io::Result<()> {
+        let skipped = io::copy(&mut self.reader.by_ref().take(bytes), &mut io::sink())?;
+        self.read += skipped;
+        if skipped == bytes { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use bytes::Bytes;
+
+    use super::*;
+
+    #[test]
+    fn what_is_no_page_header_ends_in_an_error() {
+        let read = |bytes: &'static [u8]| {
+            Header::read(&Bytes::from_static(bytes), 0).map(|header| header.length)
+        };
+        assert!(read(b"").is_err() && read(&[0x15]).is_err() && read(&[0x15, 0xff, 0xff]).is_err());
+        // Structures within structures without an end, a list, a binary longer than there is.
+        assert!(
+            read(&[0x1c; 4096]).is_err()
+                && read(&[0x19, 0xff]).is_err()
+                && read(&[0x18, 0xff, 0x7f]).is_err()
+        );
+        // A negative size.
+        assert!(read(&[0x15, 0, 0x15, 0x01, 0]).is_err());
+        assert_eq!(read(&[0x15, 0, 0x15, 2, 0x15, 2, 0]).unwrap(), 7);
+    }
+}

@@ -1,0 +1,163 @@
+//! How much memory reading a trial takes, found before it is read.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use crate::containers::archive;
+
+use crate::csv_file;
+use crate::declarations::SensorFile;
+use crate::mapping::Mapping;
+use crate::mat_file;
+use crate::nmea_file;
+use crate::parquet_file;
+use crate::samples::GROUP_ROWS;
+use crate::source::{Content, Source};
+
+/// Bytes that what a Parquet file says of itself takes in memory, by each that it has in the file:
+/// an assumption on the safe side, since numbers of a few bytes become fields of eight.
+const BY_FOOTER: u64 = 12;
+/// Bytes that a workbook takes, by each that it has when unpacked: shared strings of a few bytes
+/// take three times as many, and each number of twenty characters is one of eight bytes beside its
+/// row.
+const UNPACKED: u64 = 3;
+/// What every file takes: buffers, findings, counts of digits.
+const EVERY: u64 = 1 << 20;
+
+/// What reading a trial takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Demand {
+    /// Rows, at most.
+    pub rows: usize,
+    /// Columns that are kept, time among them.
+    pub columns: usize,
+    /// Bytes of memory, from opening the file to writing its samples.
+    pub bytes: u64,
+}
+
+/// What [`demand`] itself takes, bytes.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn measuring(path: &Path) -> io::Result<u64> {
+    let mut file = File::open(path)?;
+    let mut end = [0; 8];
+    let footer = match file.seek(SeekFrom::End(-8)).and_then(|_| file.read_exact(&mut end)) {
+        Ok(()) if end.ends_with(b"PAR1") => {
+            u64::from(u32::from_le_bytes([end[0], end[1], end[2], end[3]]))
+        }
+        _ => 0,
+    };
+    Ok(EVERY / 4 + BY_FOOTER * footer.min(crate::Limits::default().footer_bytes as u64))
+}
+
+/// What [`crate::read_trial`] takes of a file, and then [`crate::samples::write_parquet`]. Of a
+/// file that will be refused it says what finding this out takes.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
+    let (size, holding) = match Source::open("", path)?.content {
+        Content::Csv(input) => {
+            (csv_file::measure(input, mapping), 4 * mapping.limits.line_bytes as u64)
+        }
+        Content::ParquetFile(file) => of_parquet(&file, mapping),
+        Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
+        Content::Workbook(mut input) => {
+            // What is damaged is refused before anything is unpacked.
+            let claimed = archive::claimed(&mut input).unwrap_or(0);
+            (None, UNPACKED * claimed.min(mapping.limits.unpacked_bytes as u64))
+        }
+        Content::Matlab(input) => (mat_file::measure(input, mapping), 0),
+        Content::Nmea(input) => (nmea_file::measure(input, mapping), 0),
+        Content::Other(_) => (None, 0),
+    };
+    let (rows, columns) = size.unwrap_or_default();
+    let rows = rows.min(mapping.limits.rows);
+    // Numbers, the row of each, whether the ship has way ahead, and one column more: the steps of
+    // time while their median is found, later a smoothed column before it takes the other's place.
+    let row = 8 * columns as u64 + 5 + 8 + deriving(mapping);
+    // A column as it is compressed.
+    let writing = 8 * rows.min(GROUP_ROWS) as u64;
+    Ok(Demand {
+        rows,
+        columns,
+        bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing,
+    })
+}
+
+/// As [`demand`], of a file with the sensors' that belong to the same trial: all are held until
+/// they are on one time base.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn demand_of_trial(
+    path: &Path,
+    mapping: &Mapping,
+    sensors: &[(SensorFile, PathBuf)],
+) -> io::Result<Demand> {
+    let mut whole = demand(path, mapping)?;
+    for (sensor, path) in sensors {
+        let own = demand(path, &mapping.of_sensor(sensor))?;
+        // Its columns by its own rows, and once more by the trial's.
+        whole.bytes += own.bytes + 8 * (own.columns * whole.rows) as u64;
+        whole.columns += own.columns;
+    }
+    Ok(whole)
+}
+
+/// Bytes for each row that deriving channels takes: a state and its covariance, what is smoothed of
+/// three quantities, and values and variances of what comes of it.
+fn deriving(mapping: &Mapping) -> u64 {
+    match mapping.declared.derive.len() as u64 {
+        0 => 0,
+        channels => 8 * (12 + 3 * 4 + 2 + 2 * channels),
+    }
+}
+
+fn of_parquet<R: parquet::file::reader::ChunkReader + 'static>(
+    input: &R,
+    mapping: &Mapping,
+) -> (Option<(usize, usize)>, u64) {
+    match parquet_file::measure(input, mapping) {
+        Some((rows, columns, holding)) => (Some((rows, columns)), holding),
+        None => (None, 0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::samples::to_parquet;
+    use sistership_model::trial::{Channel, Trial};
+
+    fn at(content: &[u8]) -> Demand {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), content).unwrap();
+        demand(file.path(), &Mapping::canonical()).unwrap()
+    }
+
+    #[test]
+    fn rows_and_columns_are_counted_before_they_are_read() {
+        let csv = at(b"t_s,u_m_s,note\r\n0,1,a\r\n1,1,b\n2,1,\"c\nd\"\n");
+        assert_eq!(csv.columns, 2);
+        assert!((3..=6).contains(&csv.rows), "{csv:?}");
+        let t_s: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let channels =
+            [Channel::U, Channel::V, Channel::R].map(|channel| (channel, vec![1.0; t_s.len()]));
+        let parquet =
+            at(&to_parquet(&Trial { t_s, channels: channels.into(), ..Trial::default() }).unwrap());
+        assert_eq!((parquet.rows, parquet.columns), (100_000, 4));
+        assert!((100_000 * 45..100_000 * 45 + (6 << 20)).contains(&parquet.bytes), "{parquet:?}");
+    }
+
+    #[test]
+    fn what_will_be_refused_takes_little() {
+        for content in [&b""[..], b"PAR1", b"a,b\n1,2\n", b"PAR1\xff\xff\xff\x7fPAR1"] {
+            let demand = at(content);
+            assert!(demand.bytes < 32 << 20 && demand.columns == 0, "{demand:?}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Trial files in: CSV, Parquet, Excel, MATLAB 5 and NMEA 0183; units and signs converted once at
+//! the door, checked, optionally smoothed.
+//!
+//! [`read_trial`] turns a [`Source`] into a [`Trial`](sistership_model::trial::Trial) in canonical
+//! units, or refuses it with findings that name row and column; [`read_in_full`] tells the variance
+//! of derived channels, too, and [`check`] the findings without the samples. [`load_path`] reads
+//! what a command line names: a manifest or a single file. [`propose`] writes a manifest for files,
+//! and [`lacking`] names what a law needs that a trial does not have. [`samples`] keeps trials as
+//! Parquet and writes them as CSV.
+
+mod blanks;
+mod bridge;
+mod calendar;
+mod cells;
+mod checks;
+mod clock;
+pub mod containers;
+mod convert;
+mod csv_file;
+mod decimals;
+mod declarations;
+mod demand;
+mod derived;
+mod derived_channel;
+mod exclusion;
+mod faults;
+mod file_set;
+mod findings;
+mod ground;
+mod layout;
+mod limits;
+mod load;
+mod magic;
+mod manifest;
+mod manifest_file;
+mod mapping;
+mod mat_file;
+mod metered;
+mod names;
+mod needs;
+mod nmea_file;
+mod nmea_sentence;
+mod number;
+mod open_dates;
+mod outcome;
+mod pairs;
+mod parquet_cells;
+mod parquet_file;
+mod parquet_footer;
+mod parts;
+mod position;
+mod preview;
+mod propose;
+mod read;
+mod recording;
+mod resolve;
+mod rows;
+pub mod samples;
+mod sampling;
+mod scan;
+pub mod segmentation;
+mod series;
+mod shape;
+mod smoother;
+pub mod smoothing;
+mod source;
+mod stamp;
+mod stats;
+mod stream;
+mod stretches;
+mod table;
+mod taker;
+#[cfg(test)]
+mod testing;
+mod units;
+mod water;
+mod workbook;
+mod written_time;
+
+pub use declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
+pub use demand::{Demand, demand_of_trial, measuring};
+pub use derived_channel::DerivedChannel;
+pub use exclusion::{Exclusion, RowRanges};
+pub use limits::Limits;
+pub use load::{Loaded, check_path, find_faults, load_path};
+pub use manifest::read_manifest_file;
+pub use manifest_file::ManifestFile;
+pub use mapping::Mapping;
+pub use needs::{Lack, lacking};
+pub use outcome::{CheckOutcome, Refusal, TrialReading};
+pub use propose::{Guess, Proposal, ProposalRequest, propose, propose_files};
+pub use read::{check, read_in_full, read_trial};
+pub use scan::{Steering, scan};
+pub use sistership_columns::{GivenColumn, Role};
+pub use source::Source;
+pub use stretches::Stretch;

@@ -1,0 +1,229 @@
+//! Parquet, by the low-level column readers: no Arrow.
+
+use std::ops::Range;
+
+use parquet::basic::{ConvertedType, LogicalType, Type};
+use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::metadata::RowGroupMetaData;
+use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
+
+use crate::clock::Clock;
+use crate::containers::pages::{Held, held};
+use crate::findings::Findings;
+use crate::limits::{Limits, too_many};
+use crate::mapping::Mapping;
+use crate::number::Fault;
+use crate::parquet_cells::{BATCH, Cells, group_rows};
+use crate::parquet_footer::{FileRefusal, guarded, metadata, names};
+use crate::resolve::resolve;
+use crate::stream;
+use crate::table::{Column, Table, width};
+use crate::taker::{RowsFile, Taker, time_at};
+
+/// Reads the mapped columns; nothing after errors that leave nothing to check.
+///
+/// Rows are counted as in a CSV file: the first row of data is row 2.
+pub(crate) fn read<R: ChunkReader + 'static>(
+    input: R,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Table> {
+    let file = ParquetRows::open(input, mapping, findings)?;
+    if file.rows > mapping.limits.rows {
+        let refused = FileRefusal::Rows { found: file.rows, most: mapping.limits.rows };
+        findings.error(None, None, refused.to_string());
+        return None;
+    }
+    stream::whole(file, mapping, findings)
+}
+
+/// The rows of a Parquet file.
+pub(crate) struct ParquetRows<R: ChunkReader + 'static> {
+    reader: SerializedFileReader<R>,
+    columns: Vec<Column>,
+    clock: Clock,
+    rows: usize,
+    most: usize,
+    /// Why it cannot be read on.
+    stopped: Option<String>,
+}
+
+impl<R: ChunkReader + 'static> ParquetRows<R> {
+    /// Reads what the file says of itself; nothing after errors. Rows are counted by who holds
+    /// them.
+    pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
+        let limits = Limits { rows: usize::MAX, ..mapping.limits };
+        let Mapped { columns, rows, .. } = mapped(&input, mapping, limits, findings)?;
+        let opened = guarded(|| SerializedFileReader::new(input)).map_err(|error| {
+            findings.error(None, None, FileRefusal::unreadable(error).to_string());
+        });
+        let (reader, clock) = (opened.ok()?, Clock::of(&columns));
+        Some(Self { reader, columns, clock, rows, most: mapping.limits.rows, stopped: None })
+    }
+
+    fn groups(&mut self, taker: &mut impl Taker) -> ParquetResult<()> {
+        let mut row = 1;
+        for index in 0..self.reader.num_row_groups() {
+            let group = self.reader.get_row_group(index)?;
+            let cells = self.columns.iter().map(|column| Cells::new(&*group, column.index));
+            let mut cells: Vec<Cells> = cells.collect::<Result<_, _>>()?;
+            let rows = group_rows(&*group)?;
+            for start in (0..rows).step_by(BATCH) {
+                let count = BATCH.min(rows - start);
+                cells.iter_mut().try_for_each(|cells| cells.next(count))?;
+                batch_rows(&self.columns, &mut self.clock, row..row + count, &cells, taker);
+                row += count;
+                if taker.held() > self.most {
+                    return Err(ParquetError::General(too_many(self.most)));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<R: ChunkReader + 'static> RowsFile for ParquetRows<R> {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn room(&self) -> usize {
+        self.rows
+    }
+
+    fn each(&mut self, taker: &mut impl Taker) {
+        let outcome = guarded(|| self.groups(taker));
+        self.stopped = outcome.err().map(|error| format!("the file is damaged: {error}"));
+    }
+
+    fn finish(&mut self, _: bool, table: &mut Table, findings: &mut Findings) {
+        if let Some(message) = &self.stopped {
+            findings.error(None, None, message.clone());
+        }
+        self.clock.finish(table, findings);
+    }
+}
+
+/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be
+/// refused.
+pub(crate) fn measure<R: ChunkReader + 'static>(
+    input: &R,
+    mapping: &Mapping,
+) -> Option<(usize, usize, u64)> {
+    let mapped = mapped(input, mapping, mapping.limits, &mut Findings::default())?;
+    Some((mapped.rows, width(&mapped.columns), mapped.holding))
+}
+
+/// What is read of a file.
+struct Mapped {
+    columns: Vec<Column>,
+    rows: usize,
+    /// Bytes that pages take at a time.
+    holding: u64,
+}
+
+/// Finds the columns to read, and holds their pages against the limits before any is decompressed.
+fn mapped<R: ChunkReader + 'static>(
+    input: &R,
+    mapping: &Mapping,
+    limits: Limits,
+    findings: &mut Findings,
+) -> Option<Mapped> {
+    let opened =
+        metadata(input, limits).map_err(|refused| findings.error(None, None, refused.to_string()));
+    let (meta, rows) = opened.ok()?;
+    let schema = meta.file_metadata().schema_descr();
+    let mut columns = resolve(&names(schema), mapping, findings)?;
+    if mapping.unidentified.is_some() {
+        columns.retain(|column| is_number(&schema.column(column.index)));
+    }
+    check_types(schema, &columns, findings);
+    let mut holding = 0;
+    for column in columns.iter().filter(|_| !findings.has_errors()).collect::<Vec<_>>() {
+        let of_group = |group: &RowGroupMetaData| {
+            held(input, group.column(column.index), mapping.limits.page_bytes)
+        };
+        let parts: Result<Vec<Held>, String> = meta.row_groups().iter().map(of_group).collect();
+        match parts {
+            Ok(parts) => holding += parts.into_iter().fold(Held::default(), Held::max).bytes(),
+            Err(message) => findings.error(None, Some(&column.header), message),
+        }
+    }
+    (!findings.has_errors()).then_some(Mapped { columns, rows, holding })
+}
+
+fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Findings) {
+    for column in columns {
+        let found = schema.column(column.index);
+        if !is_number(&found) {
+            let message = format!(
+                "holds {} values; write the column as DOUBLE, FLOAT, INT32 or INT64",
+                type_name(&found)
+            );
+            findings.error(Some(1), Some(&column.header), message);
+        }
+    }
+}
+
+/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to
+/// be a number is refused.
+fn is_number(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
+    let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
+        && matches!(
+            column.converted_type(),
+            C::NONE
+                | C::INT_8
+                | C::INT_16
+                | C::INT_32
+                | C::INT_64
+                | C::UINT_8
+                | C::UINT_16
+                | C::UINT_32
+                | C::UINT_64
+        );
+    plain
+        && column.max_rep_level() == 0
+        && matches!(column.physical_type(), Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64)
+}
+
+fn type_name(column: &ColumnDescriptor) -> String {
+    match column.logical_type_ref() {
+        _ if column.max_rep_level() > 0 => "repeated".into(),
+        Some(logical) => format!("{logical:?}"),
+        None => column.physical_type().to_string(),
+    }
+}
+
+/// Gives rows that have been decoded, by the numbers of those before them.
+fn batch_rows<T: Taker>(
+    columns: &[Column],
+    clock: &mut Clock,
+    before: Range<usize>,
+    cells: &[Cells],
+    taker: &mut T,
+) {
+    let time = time_at(columns).filter(|_| T::TIMED);
+    let number =
+        |k: usize, at: usize| cells[at].values.get(k).copied().filter(|value| value.is_finite());
+    for (k, before) in before.enumerate() {
+        let row = before + 1;
+        if let Some(at) = time {
+            let si = number(k, at).map(|time| time * columns[at].to_si);
+            let t_s = si.and_then(|si| clock.since_start(si));
+            if !taker.wants(row, t_s, clock) {
+                continue;
+            }
+        }
+        taker.row(row, |position, _| number(k, position).ok_or(Fault::NotANumber));
+    }
+}
+
+#[cfg(test)]
+#[path = "parquet_file_tests.rs"]
+mod tests;
+
+#[cfg(test)]
+#[path = "pages_tests.rs"]
+mod pages_tests;

@@ -1,0 +1,107 @@
+//! What a Parquet file says of itself, at its end: held against the limits before anything of it is
+//! decoded.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::containers::pages;
+use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+use parquet::schema::types::SchemaDescriptor;
+
+use crate::limits::Limits;
+
+/// The library asserts some of what a file says of itself; on a file that lies, such a panic
+/// becomes an error.
+pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResult<T> {
+    let contradiction = |_| Err(ParquetError::General("it contradicts itself".into()));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(contradiction)
+}
+
+/// Why a file is not read at all.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FileRefusal {
+    #[error("not a Parquet file that can be read: {0}")]
+    Unreadable(String),
+    #[error("{found} bytes about the file at its end are more than the {most} that are read")]
+    Footer { found: u64, most: usize },
+    #[error(
+        "{found} rows are more than the {most} that are read; split the file, or let `sistership \
+             import` find the stretches of it that matter"
+    )]
+    Rows { found: usize, most: usize },
+    #[error("{found} columns are more than the {most} that are read")]
+    Columns { found: usize, most: usize },
+}
+
+impl FileRefusal {
+    pub(crate) fn unreadable(error: impl ToString) -> Self {
+        Self::Unreadable(error.to_string())
+    }
+}
+
+/// Opens the file and holds it against the limits before any sample is decoded.
+pub(crate) fn open<R: ChunkReader + 'static>(
+    input: R,
+    limits: Limits,
+) -> Result<SerializedFileReader<R>, FileRefusal> {
+    metadata(&input, limits)?;
+    guarded(|| SerializedFileReader::new(input)).map_err(FileRefusal::unreadable)
+}
+
+/// What the file says of itself, as far as that is within the limits, and its rows.
+pub(crate) fn metadata<R: ChunkReader + 'static>(
+    input: &R,
+    limits: Limits,
+) -> Result<(ParquetMetaData, usize), FileRefusal> {
+    let footer = footer_bytes(input).map_err(FileRefusal::unreadable)?;
+    if footer > limits.footer_bytes as u64 {
+        return Err(FileRefusal::Footer { found: footer, most: limits.footer_bytes });
+    }
+    pages::footer(input, footer).map_err(FileRefusal::unreadable)?;
+    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input))
+        .map_err(FileRefusal::unreadable)?;
+    let columns = meta.file_metadata().schema_descr().num_columns();
+    let mut chunks = meta.row_groups().iter().flat_map(|group| group.columns());
+    if chunks.any(|chunk| {
+        chunk.compressed_size() < 0
+            || chunk.data_page_offset() < 0
+            || chunk.dictionary_page_offset().is_some_and(|at| at < 0)
+    }) {
+        return Err(FileRefusal::unreadable("a column lies outside the file"));
+    }
+    // The groups are what is read, so they are counted, not the file's own total.
+    let groups = meta.row_groups().iter().map(|group| group.num_rows());
+    let counted: Option<Vec<usize>> =
+        groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
+    let counted = counted
+        .ok_or_else(|| FileRefusal::unreadable("a row group has a negative number of rows"))?;
+    let rows = counted.into_iter().fold(0, usize::saturating_add);
+    if rows > limits.rows {
+        return Err(FileRefusal::Rows { found: rows, most: limits.rows });
+    }
+    if columns > limits.columns {
+        return Err(FileRefusal::Columns { found: columns, most: limits.columns });
+    }
+    Ok((meta, rows))
+}
+
+/// Bytes of what the file says of itself; its last eight bytes hold their number and a mark.
+fn footer_bytes<R: ChunkReader>(input: &R) -> ParquetResult<u64> {
+    let at = input
+        .len()
+        .checked_sub(8)
+        .ok_or_else(|| ParquetError::General("it is too short".into()))?;
+    let end = input.get_bytes(at, 8)?;
+    Ok(end.first_chunk().map_or(0, |bytes| u64::from(u32::from_le_bytes(*bytes))))
+}
+
+/// Dotted names of the columns of an opened file.
+pub(crate) fn headers<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>) -> Vec<String> {
+    names(reader.metadata().file_metadata().schema_descr())
+}
+
+/// Dotted names of the columns of a schema.
+pub(crate) fn names(schema: &SchemaDescriptor) -> Vec<String> {
+    schema.columns().iter().map(|column| column.path().string()).collect()
+}

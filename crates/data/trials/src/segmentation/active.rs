@@ -1,0 +1,114 @@
+//! Where controls move, and how long the ship answers them.
+
+use std::ops::Range;
+
+use crate::segmentation::cells::Cells;
+use crate::segmentation::level::Levels;
+use crate::segmentation::thresholds::StretchThresholds;
+
+/// Judges cells one by one.
+pub(crate) struct Activity<'a> {
+    cells: &'a Cells,
+    levels: &'a Levels,
+    limits: &'a StretchThresholds,
+    /// Cells in which the ship sails its length.
+    lag: usize,
+}
+
+impl<'a> Activity<'a> {
+    pub(crate) fn new(cells: &'a Cells, levels: &'a Levels) -> Self {
+        Self { cells, levels, limits: &cells.limits, lag: cells.count(1.0) }
+    }
+
+    /// Cells from the first movement of a control to the last answer of the ship, in order.
+    pub(crate) fn manoeuvres(&self) -> Vec<Range<usize>> {
+        let mut found: Vec<Range<usize>> = Vec::new();
+        let apart = self.cells.count(self.limits.join);
+        let mut at = 0;
+        while at < self.cells.all.len() {
+            if !self.is_moved(at) {
+                at += 1;
+                continue;
+            }
+            let end = self.answered(self.run(at));
+            match found
+                .last_mut()
+                .filter(|last| at <= last.end + apart && self.is_whole(last.end, at))
+            {
+                Some(last) => last.end = end,
+                None => found.push(at..end),
+            }
+            at = end;
+        }
+        found.retain(|range| self.is_answered(range));
+        found
+    }
+
+    /// The end of the cells in which controls go on moving.
+    fn run(&self, from: usize) -> usize {
+        let next = |at: &usize| self.cells.follows(*at) && self.is_moved(*at);
+        (from + 1..self.cells.all.len()).take_while(next).last().map_or(from + 1, |last| last + 1)
+    }
+
+    /// The end of the cells in which the ship still answers.
+    fn answered(&self, from: usize) -> usize {
+        let last = (from + self.cells.count(self.limits.follow)).min(self.cells.all.len());
+        let next = |at: &usize| self.cells.follows(*at) && self.answers(*at);
+        (from..last).take_while(next).last().map_or(from, |last| last + 1)
+    }
+
+    fn is_whole(&self, from: usize, to: usize) -> bool {
+        (from..=to).all(|at| self.cells.follows(at))
+    }
+
+    /// How far the rudder must be from its level.
+    pub(crate) fn rudder_limit(&self, at: usize) -> f64 {
+        (self.limits.controls * self.levels.at(at).rudder_scatter).max(self.limits.rudder_rad)
+    }
+
+    /// Whether the rudder is off its level, or the revolutions have changed.
+    fn is_moved(&self, at: usize) -> bool {
+        let (cell, steady) = (&self.cells.all[at], self.levels.at(at));
+        (cell.rudder - steady.rudder).abs() > self.rudder_limit(at) || self.is_throttled(at)
+    }
+
+    fn is_throttled(&self, at: usize) -> bool {
+        let Some(before) = at.checked_sub(self.lag).filter(|&from| self.is_whole(from + 1, at))
+        else {
+            return false;
+        };
+        let (now, then) = (self.cells.all[at].revolutions, self.cells.all[before].revolutions);
+        let least = self.limits.revolutions * now.abs().max(then.abs());
+        let scatter = self.limits.controls * self.levels.at(at).revolutions_scatter;
+        (now - then).abs() > least.max(scatter)
+    }
+
+    fn answers(&self, at: usize) -> bool {
+        self.is_turning(at, self.limits.answer) || self.is_changing_speed(at, self.limits.answer)
+    }
+
+    /// Whether the yaw rate is off its level by so many scatters.
+    fn is_turning(&self, at: usize, scatters: f64) -> bool {
+        let off = self.cells.all[at].yaw - self.levels.at(at).yaw;
+        off.abs() > self.yaw_limit(at, scatters)
+    }
+
+    pub(crate) fn yaw_limit(&self, at: usize, scatters: f64) -> f64 {
+        let scatter = scatters * self.levels.at(at).yaw_scatter;
+        scatter.max(self.limits.yaw / self.cells.scale.time_s)
+    }
+
+    fn is_changing_speed(&self, at: usize, scatters: f64) -> bool {
+        let Some(before) = at.checked_sub(self.lag) else { return false };
+        let change = (self.cells.all[at].speed - self.cells.all[before].speed).abs();
+        let scatter = scatters * self.levels.at(at).speed_scatter;
+        change > scatter.max(self.limits.speed * self.cells.scale.speed_m_s)
+    }
+
+    /// Whether the ship answered beyond what it does in course keeping: a rudder that is tried
+    /// alongside moves no ship.
+    fn is_answered(&self, range: &Range<usize>) -> bool {
+        let (k, mut all) = (self.limits.controls, range.clone());
+        all.any(|at| self.is_turning(at, k) || self.is_changing_speed(at, k))
+    }
+}

@@ -1,0 +1,104 @@
+//! The intervals that a log is judged by: about half of the time in which the ship sails its
+//! length.
+
+use crate::segmentation::blocks::{Blocks, joined};
+use crate::segmentation::thresholds::StretchThresholds;
+
+/// Gravity, m/s2.
+const GRAVITY: f64 = 9.81;
+
+/// Means over an interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Cell {
+    pub from_s: f64,
+    pub to_s: f64,
+    pub rudder: f64,
+    pub rudder_square: f64,
+    pub rudder_low: f64,
+    pub rudder_high: f64,
+    pub revolutions: f64,
+    pub speed: f64,
+    pub yaw: f64,
+}
+
+/// A log as cells, and the scale of time that they were made by.
+#[derive(Debug)]
+pub(crate) struct Cells {
+    pub all: Vec<Cell>,
+    /// Of most cells, s.
+    pub width_s: f64,
+    pub scale: Scale,
+    pub limits: StretchThresholds,
+}
+
+/// The ship's length, speed, and the time in which it sails its length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scale {
+    pub length_m: f64,
+    pub speed_m_s: f64,
+    pub time_s: f64,
+}
+
+impl Scale {
+    /// Without a length that of a ship whose Froude number is usual.
+    fn of(length_m: Option<f64>, speed_m_s: f64, froude: f64) -> Self {
+        let usual = || (speed_m_s / froude).powi(2) / GRAVITY;
+        let length_m = length_m.unwrap_or_else(usual);
+        Self { length_m, speed_m_s, time_s: length_m / speed_m_s }
+    }
+}
+
+impl Cells {
+    /// Nothing where the ship never has way.
+    pub(crate) fn of(
+        blocks: &Blocks,
+        length_m: Option<f64>,
+        limits: StretchThresholds,
+    ) -> Option<Self> {
+        let scale = Scale::of(length_m, speed_under_way(blocks)?, limits.froude);
+        let times = (limits.cell * scale.time_s / blocks.width_s).floor().clamp(1.0, 1e9);
+        let width_s = times * blocks.width_s;
+        let cell = |block: crate::segmentation::blocks::Block| {
+            let from_s = blocks.first_s + f64::from(block.at) * width_s;
+            let to_s = from_s + width_s;
+            Cell {
+                from_s,
+                to_s,
+                rudder: f64::from(block.rudder),
+                rudder_square: f64::from(block.rudder_square),
+                rudder_low: f64::from(block.rudder_low),
+                rudder_high: f64::from(block.rudder_high),
+                revolutions: f64::from(block.revolutions),
+                speed: f64::from(block.speed),
+                yaw: f64::from(block.turned) / width_s.min(blocks.last_s - from_s + 1e-9),
+            }
+        };
+        let all = joined(&blocks.done, times as u32).into_iter().map(cell).collect();
+        Some(Self { all, width_s, scale, limits })
+    }
+
+    /// So many times the scale of time, in cells.
+    pub(crate) fn count(&self, times: f64) -> usize {
+        (times * self.scale.time_s / self.width_s).ceil() as usize
+    }
+
+    /// Whether nothing is missing between a cell and the one before.
+    pub(crate) fn follows(&self, at: usize) -> bool {
+        at > 0 && self.all[at].from_s - self.all[at - 1].to_s < 0.5 * self.width_s
+    }
+}
+
+/// The median speed where the ship has way: more than a tenth of the highest hundredth.
+fn speed_under_way(blocks: &Blocks) -> Option<f64> {
+    let speeds = blocks.done.iter().map(|block| f64::from(block.speed).abs());
+    let mut speeds: Vec<f64> = speeds.filter(|speed| speed.is_finite()).collect();
+    let high = quantile(&mut speeds, 0.99)?;
+    let mut moving: Vec<f64> = speeds.into_iter().filter(|speed| *speed > 0.1 * high).collect();
+    quantile(&mut moving, 0.5).filter(|speed| *speed > 0.0)
+}
+
+/// The value that so many of all are below; reorders them.
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
+    let at = ((values.len() as f64 * share) as usize).min(values.len().checked_sub(1)?);
+    Some(*values.select_nth_unstable_by(at, f64::total_cmp).1)
+}

@@ -1,0 +1,68 @@
+//! How much a stretch excites: what a fit can tell of the model depends on it.
+
+use serde::Serialize;
+
+use crate::segmentation::cells::Cell;
+use crate::segmentation::level::Steady;
+
+/// Figures of a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Excitation {
+    /// Root mean square of the rudder about its steady level, deg.
+    pub rudder_rms_deg: f64,
+    /// Lowest and highest rudder angle, deg.
+    pub rudder_low_deg: f64,
+    /// See `rudder_low_deg`.
+    pub rudder_high_deg: f64,
+    /// How often the rudder was put over to the other side.
+    pub rudder_reversals: usize,
+    /// Root mean square of the yaw rate, deg/s.
+    pub yaw_rate_rms_deg_s: f64,
+    /// Highest yaw rate to either side, deg/s.
+    pub yaw_rate_max_deg_s: f64,
+    /// From the lowest heading to the highest, deg.
+    pub heading_range_deg: f64,
+    /// From the highest speed to the lowest, by the ship's usual speed, dimensionless.
+    pub speed_range: f64,
+}
+
+impl Excitation {
+    /// Of cells, about the steady level.
+    pub(crate) fn of(cells: &[Cell], steady: &Steady, reversals: usize, speed_m_s: f64) -> Self {
+        let count = cells.len().max(1) as f64;
+        let mean = |of: &dyn Fn(&Cell) -> f64| cells.iter().map(of).sum::<f64>() / count;
+        let level = steady.rudder;
+        let square =
+            mean(&|cell| cell.rudder_square - 2.0 * level * cell.rudder + level * level).max(0.0);
+        let yaw = mean(&|cell| cell.yaw * cell.yaw);
+        let fastest = cells.iter().map(|cell| cell.yaw.abs()).fold(0.0, f64::max);
+        let (slow, fast) = range(cells.iter().map(|cell| cell.speed));
+        Self {
+            rudder_rms_deg: square.sqrt().to_degrees(),
+            rudder_low_deg: range(cells.iter().map(|cell| cell.rudder_low)).0.to_degrees(),
+            rudder_high_deg: range(cells.iter().map(|cell| cell.rudder_high)).1.to_degrees(),
+            rudder_reversals: reversals,
+            yaw_rate_rms_deg_s: yaw.sqrt().to_degrees(),
+            yaw_rate_max_deg_s: fastest.to_degrees(),
+            heading_range_deg: heading(cells).to_degrees(),
+            speed_range: (fast - slow) / speed_m_s,
+        }
+    }
+}
+
+/// Lowest and highest.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    })
+}
+
+/// From the lowest heading to the highest, rad.
+pub(crate) fn heading(cells: &[Cell]) -> f64 {
+    let mut psi = 0.0;
+    let (low, high) = range(cells.iter().map(|cell| {
+        psi += cell.yaw * (cell.to_s - cell.from_s);
+        psi
+    }));
+    if cells.is_empty() { 0.0 } else { high.max(0.0) - low.min(0.0) }
+}

@@ -1,0 +1,146 @@
+//! The whole: rows in, stretches and steady spans out.
+
+use std::ops::Range;
+
+use crate::segmentation::active::Activity;
+use crate::segmentation::blocks::Blocks;
+use crate::segmentation::cells::Cells;
+use crate::segmentation::level::Levels;
+use crate::segmentation::sample::Sample;
+use crate::segmentation::spans::Span;
+use crate::segmentation::stretch::Stretch;
+use crate::segmentation::thresholds::{StretchThresholds, THRESHOLDS};
+
+/// Takes the rows of a log in order.
+#[derive(Debug)]
+pub struct Finder {
+    length_m: Option<f64>,
+    limits: StretchThresholds,
+    blocks: Blocks,
+}
+
+/// What was found in a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// In order of time; none overlaps another.
+    pub stretches: Vec<Stretch>,
+    /// Steady course keeping between them.
+    pub steady: Vec<Span>,
+    /// From the first row to the last.
+    pub whole: Span,
+    /// Rows that were looked at.
+    pub rows: u64,
+    /// The length by which time is measured, m: as given, or by the speed.
+    pub length_m: f64,
+    /// The median speed under way, m/s.
+    pub speed_m_s: f64,
+    /// Scatter of the rudder in course keeping, rad.
+    pub rudder_scatter_rad: f64,
+}
+
+/// Why a log cannot be searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NotSearched {
+    /// There is no row with a rudder angle.
+    #[error("no row has a time and a rudder angle")]
+    Rudder,
+    /// There is no speed.
+    #[error("no column of the speed: map `u`, or `speed` over ground")]
+    Speed,
+    /// There is nothing that tells how the ship turns.
+    #[error("no column of the yaw rate or the heading: map `r` or `psi`")]
+    Yaw,
+    /// The ship lies still.
+    #[error("the ship never has way")]
+    Still,
+}
+
+impl Finder {
+    /// For a ship of a length, m; without one it is guessed by the speed.
+    pub fn new(length_m: Option<f64>) -> Self {
+        Self { length_m, limits: THRESHOLDS, blocks: Blocks::new() }
+    }
+
+    /// Takes the next row.
+    #[inline]
+    pub fn push(&mut self, sample: &Sample) {
+        self.blocks.push(sample);
+    }
+
+    /// The stretches, after the last row.
+    ///
+    /// # Errors
+    /// The log lacks a channel without which nothing can be told.
+    pub fn finish(self) -> Result<Found, NotSearched> {
+        let blocks = self.blocks.finish();
+        match blocks.has {
+            _ if blocks.rows == 0 => return Err(NotSearched::Rudder),
+            has if !has.speed => return Err(NotSearched::Speed),
+            has if !has.yaw => return Err(NotSearched::Yaw),
+            _ => {}
+        }
+        let cells = Cells::of(&blocks, self.length_m, self.limits).ok_or(NotSearched::Still)?;
+        let levels = Levels::of(&cells);
+        let activity = Activity::new(&cells, &levels);
+        let whole = Span { from_s: blocks.first_s, to_s: blocks.last_s };
+        let ranges = activity.manoeuvres();
+        let spans = spans(&cells, &ranges, whole);
+        let stretches = ranges
+            .iter()
+            .zip(&spans)
+            .map(|(range, &span)| Stretch::of(&cells, &levels, &activity, range, span));
+        Ok(Found {
+            stretches: stretches.collect(),
+            steady: Span::between(whole, &spans, cells.limits.steady * cells.scale.time_s),
+            whole,
+            rows: blocks.rows,
+            length_m: cells.scale.length_m,
+            speed_m_s: cells.scale.speed_m_s,
+            rudder_scatter_rad: levels.rudder_scatter(),
+        })
+    }
+}
+
+impl Found {
+    /// Whether it is a log rather than a trial: much longer, and most of it steady.
+    pub fn is_log(&self) -> bool {
+        let long = THRESHOLDS.log * self.length_m / self.speed_m_s;
+        let moved: f64 = self.stretches.iter().map(|stretch| stretch.span.duration_s()).sum();
+        self.whole.duration_s() > long && moved <= THRESHOLDS.most * self.whole.duration_s()
+    }
+
+    /// Time in steady course keeping, s.
+    pub fn steady_s(&self) -> f64 {
+        self.steady.iter().map(Span::duration_s).sum()
+    }
+}
+
+/// With the approach and the time to settle; where two would overlap they meet halfway.
+fn spans(cells: &Cells, ranges: &[Range<usize>], whole: Span) -> Vec<Span> {
+    let time_s = cells.scale.time_s;
+    // A movement may begin at the end of the cell before that in which it is seen.
+    let lead_s = cells.limits.lead * time_s + cells.width_s;
+    let core =
+        |range: &Range<usize>| (cells.all[range.start].from_s, cells.all[range.end - 1].to_s);
+    let mut spans: Vec<Span> = ranges
+        .iter()
+        .map(core)
+        .map(|(from_s, to_s)| Span {
+            from_s: (from_s - lead_s).max(whole.from_s),
+            to_s: (to_s + cells.limits.settle * time_s).min(whole.to_s),
+        })
+        .collect();
+    for at in 1..spans.len() {
+        if spans[at].from_s < spans[at - 1].to_s {
+            let (_, end) = core(&ranges[at - 1]);
+            let (start, _) = core(&ranges[at]);
+            let middle = 0.5 * (end + start);
+            (spans[at - 1].to_s, spans[at].from_s) = (middle, middle);
+        }
+    }
+    spans
+}
+
+#[cfg(test)]
+#[path = "finder_tests.rs"]
+mod tests;

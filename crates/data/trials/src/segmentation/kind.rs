@@ -1,0 +1,137 @@
+//! What was sailed in a stretch, by its controls and the answer to them.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::segmentation::cells::Cell;
+use crate::segmentation::excitation::heading;
+use crate::segmentation::level::Steady;
+use crate::segmentation::thresholds::KINDS;
+
+/// What a stretch most resembles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The rudder goes from side to side.
+    Zigzag,
+    /// The rudder is held for half a turn or more.
+    Turn,
+    /// The rudder goes amidships while the ship turns on.
+    PullOut,
+    /// The propeller stops or is reversed, and the ship loses its way.
+    Stop,
+    /// The revolutions change, the rudder does not.
+    SpeedChange,
+    /// Less than half a turn.
+    CourseChange,
+    /// The rudder moves, and the heading returns.
+    RudderMovement,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Zigzag => "zigzag",
+            Self::Turn => "turn",
+            Self::PullOut => "pull-out",
+            Self::Stop => "stop",
+            Self::SpeedChange => "speed change",
+            Self::CourseChange => "course change",
+            Self::RudderMovement => "rudder movement",
+        })
+    }
+}
+
+/// Cells in which the rudder is held to one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hold {
+    pub from: usize,
+    pub to: usize,
+    pub to_starboard: bool,
+}
+
+/// Runs of cells with much rudder, one for each change of side.
+pub(crate) fn holds(cells: &[Cell], level: f64, limit: f64) -> Vec<Hold> {
+    let largest = cells.iter().map(|cell| (cell.rudder - level).abs()).fold(0.0, f64::max);
+    if largest <= limit {
+        return Vec::new();
+    }
+    let least = limit.max(KINDS.hold * largest);
+    let mut holds: Vec<Hold> = Vec::new();
+    for (at, cell) in cells.iter().enumerate() {
+        let angle = cell.rudder - level;
+        if angle.abs() <= least {
+            continue;
+        }
+        let to_starboard = angle > 0.0;
+        match holds.last_mut().filter(|hold| hold.to_starboard == to_starboard) {
+            Some(hold) => hold.to = at + 1,
+            None => holds.push(Hold { from: at, to: at + 1, to_starboard }),
+        }
+    }
+    holds
+}
+
+/// What is known of the cells of a manoeuvre.
+pub(crate) struct Observed<'a> {
+    pub cells: &'a [Cell],
+    pub holds: &'a [Hold],
+    pub steady: Steady,
+    /// Yaw rate beyond which the ship turns, rad/s.
+    pub yaw_limit: f64,
+    /// Angle up to which the rudder is amidships, rad.
+    pub rudder_limit: f64,
+    /// Speed and revolutions before.
+    pub speed: f64,
+    pub revolutions: f64,
+    /// Cells for which the rudder is amidships in a pull-out.
+    pub pull_out: usize,
+}
+
+impl Observed<'_> {
+    pub(crate) fn kind(&self) -> Kind {
+        if self.is_stop() {
+            return Kind::Stop;
+        }
+        match self.holds.len() {
+            0 => Kind::SpeedChange,
+            holds if holds >= KINDS.zigzag => Kind::Zigzag,
+            _ => self.one_sided(),
+        }
+    }
+
+    fn one_sided(&self) -> Kind {
+        let turned = heading(self.cells);
+        if turned > KINDS.course_rad && self.is_pull_out() {
+            Kind::PullOut
+        } else if turned >= KINDS.turn_rad {
+            Kind::Turn
+        } else if turned >= KINDS.course_rad {
+            Kind::CourseChange
+        } else {
+            Kind::RudderMovement
+        }
+    }
+
+    /// Whether the propeller is stopped or reversed, and most of the speed is lost.
+    fn is_stop(&self) -> bool {
+        let slowest = self.cells.iter().map(|cell| cell.speed).fold(f64::INFINITY, f64::min);
+        let least = self.cells.iter().map(|cell| cell.revolutions * self.revolutions.signum());
+        let least = least.fold(f64::INFINITY, f64::min);
+        slowest < KINDS.stopped * self.speed && least < 0.1 * self.revolutions.abs()
+    }
+
+    /// Whether the ship goes on turning to the side of the rudder while that is amidships.
+    fn is_pull_out(&self) -> bool {
+        let Some(hold) = self.holds.first() else { return false };
+        let side = if hold.to_starboard { 1.0 } else { -1.0 };
+        let turns_on = |cell: &&Cell| {
+            (cell.rudder - self.steady.rudder).abs() <= self.rudder_limit
+                && side * (cell.yaw - self.steady.yaw) > self.yaw_limit
+        };
+        // The rudder passes through in the first cell.
+        let after = self.cells[hold.to..].iter().skip(1).take_while(turns_on).count();
+        after >= self.pull_out
+    }
+}

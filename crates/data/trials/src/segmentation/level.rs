@@ -1,0 +1,109 @@
+//! What is steady in course keeping: the level of rudder and yaw rate and their scatter, hour by
+//! hour from the log itself, since weather and load change.
+
+use crate::segmentation::cells::{Cell, Cells, quantile};
+use crate::segmentation::thresholds::StretchThresholds;
+
+/// Level and scatter of what is watched.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Steady {
+    pub rudder: f64,
+    pub rudder_scatter: f64,
+    pub yaw: f64,
+    pub yaw_scatter: f64,
+    /// Of the change of revolutions and of speed within the time of a length sailed.
+    pub revolutions_scatter: f64,
+    pub speed_scatter: f64,
+}
+
+/// The steady level at each cell.
+#[derive(Debug)]
+pub(crate) struct Levels {
+    each: Vec<Steady>,
+    step: usize,
+}
+
+impl Levels {
+    pub(crate) fn of(cells: &Cells) -> Self {
+        let step = (cells.count(cells.limits.level) / 2).max(1);
+        let starts = (0..cells.all.len()).step_by(step);
+        let own: Vec<Steady> = starts
+            .map(|start| {
+                let from = start.saturating_sub(step / 2);
+                let to = (start + step + step / 2).min(cells.all.len());
+                steady(&cells.all[from..to], cells.count(1.0), &cells.limits)
+            })
+            .collect();
+        Self { each: (0..own.len()).map(|k| with_neighbours(&own, k)).collect(), step }
+    }
+
+    pub(crate) fn at(&self, cell: usize) -> Steady {
+        self.each[(cell / self.step).min(self.each.len() - 1)]
+    }
+
+    /// The scatter of the rudder in most of the log.
+    pub(crate) fn rudder_scatter(&self) -> f64 {
+        let mut scatters: Vec<f64> = self.each.iter().map(|steady| steady.rudder_scatter).collect();
+        quantile(&mut scatters, 0.5).unwrap_or(0.0)
+    }
+}
+
+/// The scatter is the largest nearby: where the sea gets up, half of a window is calm.
+fn with_neighbours(own: &[Steady], at: usize) -> Steady {
+    let near = &own[at.saturating_sub(1)..(at + 2).min(own.len())];
+    let most = |of: fn(&Steady) -> f64| near.iter().map(of).fold(0.0, f64::max);
+    Steady {
+        rudder_scatter: most(|steady| steady.rudder_scatter),
+        yaw_scatter: most(|steady| steady.yaw_scatter),
+        revolutions_scatter: most(|steady| steady.revolutions_scatter),
+        speed_scatter: most(|steady| steady.speed_scatter),
+        ..own[at]
+    }
+}
+
+fn steady(cells: &[Cell], lag: usize, limits: &StretchThresholds) -> Steady {
+    let level = |values: &mut dyn Iterator<Item = f64>| level(values, limits);
+    let (rudder, rudder_scatter) = level(&mut cells.iter().map(|cell| cell.rudder));
+    let (yaw, yaw_scatter) = level(&mut cells.iter().map(|cell| cell.yaw));
+    let changes = |of: fn(&Cell) -> f64| {
+        let pairs = cells.iter().zip(cells.iter().skip(lag));
+        level(&mut pairs.map(|(before, after)| of(after) - of(before))).1
+    };
+    Steady {
+        rudder,
+        rudder_scatter,
+        yaw,
+        yaw_scatter,
+        revolutions_scatter: changes(|cell| cell.revolutions),
+        speed_scatter: changes(|cell| cell.speed),
+    }
+}
+
+/// The median, and the standard deviation of a normal distribution whose inner part is as wide.
+fn level(values: &mut dyn Iterator<Item = f64>, limits: &StretchThresholds) -> (f64, f64) {
+    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    let middle = quantile(&mut values, 0.5).unwrap_or(0.0);
+    values.iter_mut().for_each(|value| *value = (*value - middle).abs());
+    let inner = quantile(&mut values, limits.share).unwrap_or(0.0);
+    (middle, inner / limits.normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::segmentation::thresholds::THRESHOLDS;
+    use rand::{RngExt, SeedableRng};
+    use rand_distr::StandardNormal;
+
+    #[test]
+    fn scatter_is_a_standard_deviation_and_manoeuvres_hardly_count() {
+        let mut rng = rand_chacha::ChaCha12Rng::seed_from_u64(1);
+        let mut values: Vec<f64> =
+            (0..4000).map(|_| 0.1 + 0.5 * rng.sample::<f64, _>(StandardNormal)).collect();
+        let (middle, scatter) = level(&mut values.iter().copied(), &THRESHOLDS);
+        assert!((middle - 0.1).abs() < 0.05 && (scatter - 0.5).abs() < 0.06, "{middle} {scatter}");
+        values.iter_mut().step_by(2).for_each(|value| *value = value.signum() * 20.0);
+        let (_, scatter) = level(&mut values.into_iter(), &THRESHOLDS);
+        assert!(scatter < 2.0, "{scatter}");
+    }
+}

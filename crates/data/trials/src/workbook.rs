@@ -1,0 +1,249 @@
+//! Excel workbooks (.xlsx): a sheet is read as lines of text, cell by cell, in the same way as CSV.
+
+use std::io::{self, Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use calamine::{Data, DataRef, ExcelDateTime, Reader, Xlsx, XlsxCellReader, XlsxError};
+
+use crate::containers::archive;
+use crate::csv_file;
+use crate::findings::Findings;
+use crate::layout;
+use crate::limits::Limits;
+use crate::mapping::Mapping;
+use crate::table::Table;
+
+/// What files are read from that are not read from start to end.
+pub(crate) trait ReadSeek: Read + Seek {}
+impl<T: Read + Seek> ReadSeek for T {}
+
+/// Bytes of a sheet's start by which the one with the table is found.
+const START: u64 = 32 << 10;
+/// Sheets among which the table is looked for.
+const SHEETS: usize = 20;
+/// Unpacked bytes of a workbook beyond which only the first sheet is looked at: many names may
+/// stand for one large sheet.
+const SEARCHED: u64 = 32 << 20;
+
+/// Reads the sheet that is declared, or the one in whose first lines most names are known.
+pub(crate) fn read(
+    mut input: Box<dyn ReadSeek + '_>,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Table> {
+    let unpacked = checked(&mut input, mapping.limits)
+        .map_err(|message| findings.error(None, None, message))
+        .ok()?;
+    // The library asserts some of what a file says of itself.
+    let read = catch_unwind(AssertUnwindSafe(|| {
+        let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
+        let sheet = sheet(&mut book, looked_at(unpacked), mapping)?;
+        let others = book.sheet_names().len() - 1;
+        let mut lines = Lines::of(&mut book, &sheet, mapping).map_err(|error| error.to_string())?;
+        Ok::<_, String>((csv_file::read(&mut lines, mapping, findings), sheet, others))
+    }));
+    match read.unwrap_or_else(|_| Err("it contradicts itself".into())) {
+        Ok((table, sheet, others)) => {
+            if others > 0 && mapping.declared.sheet.is_none() {
+                let message =
+                    format!("the sheet `{sheet}` is read; declare `sheet` if another is meant");
+                findings.warning(None, None, message);
+            }
+            table
+        }
+        Err(message) => {
+            findings.error(None, None, format!("the workbook cannot be read: {message}"));
+            None
+        }
+    }
+}
+
+fn checked(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> Result<u64, String> {
+    let claimed = archive::claimed(input)?;
+    archive::check(input, claimed.min(limits.unpacked_bytes as u64))?;
+    input.rewind().map_err(|error| error.to_string())?;
+    Ok(claimed)
+}
+
+fn looked_at(unpacked: u64) -> usize {
+    if unpacked > SEARCHED { 1 } else { SHEETS }
+}
+
+/// The first lines of each sheet.
+pub(crate) fn starts(
+    mut input: Box<dyn ReadSeek + '_>,
+    limits: Limits,
+) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let unpacked = checked(&mut input, limits)?;
+    let mapping = Mapping { limits, ..Mapping::canonical() };
+    let read = catch_unwind(AssertUnwindSafe(|| {
+        let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
+        let names = book.sheet_names().into_iter().take(looked_at(unpacked));
+        Ok(names.map(|name| (name.clone(), start(&mut book, &name, &mapping))).collect())
+    }));
+    read.unwrap_or_else(|_| Err("the workbook contradicts itself".into()))
+}
+
+/// The first lines of a sheet; nothing of a chart, which is a sheet, too.
+fn start(book: &mut Book, sheet: &str, mapping: &Mapping) -> Vec<u8> {
+    let mut start = Vec::new();
+    if let Ok(lines) = Lines::of(book, sheet, mapping) {
+        // What is wrong with the sheet is told when it is read.
+        let _ = lines.take(START).read_to_end(&mut start);
+    }
+    start
+}
+
+type Book<'a> = Xlsx<Box<dyn ReadSeek + 'a>>;
+
+fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String, String> {
+    let names = book.sheet_names();
+    if let Some(wanted) = &mapping.declared.sheet {
+        let listed = || names.iter().take(SHEETS).cloned().collect::<Vec<_>>().join(", ");
+        let missing = || format!("there is no sheet `{wanted}`; there are {}", listed());
+        return names.iter().find(|name| *name == wanted).cloned().ok_or_else(missing);
+    }
+    let mut best = (0, names.first().cloned().ok_or("it has no sheet")?);
+    for name in names.into_iter().take(looked_at) {
+        let start = start(book, &name, mapping);
+        let known = layout::known_names(&start, mapping);
+        if known > best.0 {
+            best = (known, name);
+        }
+    }
+    Ok(best.1)
+}
+
+/// A sheet as text: cells apart by tabs, one line for each row, empty rows too, so that lines are
+/// Excel's rows.
+struct Lines<'a, 'b> {
+    cells: XlsxCellReader<'a, Box<dyn ReadSeek + 'b>>,
+    /// The cell that was read, but belongs to a row that is not begun.
+    next: Option<(usize, usize, String)>,
+    row: usize,
+    /// Columns of the widest row so far: rows end after their last cell that is not empty.
+    width: usize,
+    text: io::Cursor<Vec<u8>>,
+    rows: usize,
+    columns: usize,
+}
+
+impl<'a, 'b> Lines<'a, 'b> {
+    fn of(book: &'a mut Book<'b>, sheet: &str, mapping: &Mapping) -> Result<Self, XlsxError> {
+        let (rows, columns) = (mapping.limits.rows.saturating_add(1000), mapping.limits.columns);
+        let cells = book.worksheet_cells_reader(sheet)?;
+        let text = io::Cursor::new(Vec::new());
+        let mut lines = Self { cells, next: None, row: 0, width: 0, text, rows, columns };
+        lines.next = lines.cell().map_err(XlsxError::Io)?;
+        Ok(lines)
+    }
+
+    /// The next cell that is not empty.
+    fn cell(&mut self) -> io::Result<Option<(usize, usize, String)>> {
+        let invalid = |message: String| io::Error::new(io::ErrorKind::InvalidData, message);
+        loop {
+            let cell = self.cells.next_cell().map_err(|error| invalid(error.to_string()))?;
+            let Some(cell) = cell else { return Ok(None) };
+            let (row, column) = cell.get_position();
+            let text = text(cell.get_value());
+            if text.is_empty() {
+                continue;
+            }
+            let (row, column) = (row as usize, column as usize);
+            if column >= self.columns || row >= self.rows {
+                let message = format!(
+                    "a cell in row {}, column {} is beyond what is read",
+                    row + 1,
+                    column + 1
+                );
+                return Err(invalid(message));
+            }
+            return Ok(Some((row, column, text)));
+        }
+    }
+
+    /// The text of the next row; none after the last.
+    fn line(&mut self) -> io::Result<Option<String>> {
+        let Some((row, ..)) = self.next else { return Ok(None) };
+        let (mut line, mut column) = (String::new(), 0);
+        while let Some((_, at, text)) = self.next.take_if(|(of, ..)| *of == self.row) {
+            if at < column {
+                return Err(out_of_order(self.row));
+            }
+            line.extend(std::iter::repeat_n('\t', at - column));
+            line += &text;
+            column = at;
+            self.next = self.cell()?;
+        }
+        if row < self.row {
+            return Err(out_of_order(row));
+        }
+        self.width = self.width.max(column);
+        if !line.is_empty() {
+            line.extend(std::iter::repeat_n('\t', self.width - column));
+        }
+        self.row += 1;
+        line.push('\n');
+        Ok(Some(line))
+    }
+}
+
+fn out_of_order(row: usize) -> io::Error {
+    let message = format!("cells of row {} are out of order", row + 1);
+    io::Error::new(io::ErrorKind::InvalidData, message)
+}
+
+impl Read for Lines<'_, '_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let read = self.text.read(buffer)?;
+            if read > 0 || buffer.is_empty() {
+                return Ok(read);
+            }
+            match self.line()? {
+                Some(line) => self.text = io::Cursor::new(line.into_bytes()),
+                None => return Ok(0),
+            }
+        }
+    }
+}
+
+fn text(value: &DataRef) -> String {
+    match Data::from(value.clone()) {
+        Data::Int(value) => value.to_string(),
+        Data::Float(value) => value.to_string(),
+        Data::String(text) | Data::DateTimeIso(text) | Data::DurationIso(text) => in_line(&text),
+        Data::Bool(value) => value.to_string(),
+        Data::DateTime(instant) => date(&instant),
+        Data::Error(error) => error.to_string(),
+        Data::Empty => String::new(),
+    }
+}
+
+/// Text without what has a meaning between cells.
+fn in_line(text: &str) -> String {
+    let plain = |c: char| match c {
+        '\t' | '\n' | '\r' => ' ',
+        '"' => '\'',
+        other => other,
+    };
+    text.trim().chars().map(plain).collect()
+}
+
+/// Date and time of day; a time of day alone where no day is counted; seconds of a duration.
+fn date(instant: &ExcelDateTime) -> String {
+    let days = instant.as_f64();
+    if instant.is_duration() {
+        return (days * 86_400.0).to_string();
+    }
+    let (year, month, day, hour, minute, second, millisecond) = instant.to_ymd_hms_milli();
+    let date = match days {
+        _ if (0.0..1.0).contains(&days) => String::new(),
+        _ => format!("{year:04}-{month:02}-{day:02}T"),
+    };
+    format!("{date}{hour:02}:{minute:02}:{second:02}.{millisecond:03}")
+}
+
+#[cfg(test)]
+#[path = "workbook_tests.rs"]
+mod tests;

@@ -1,0 +1,90 @@
+//! What a process knows of credentials beside its store.
+
+use std::sync::Arc;
+
+use sistership_auth::Attempts;
+use sistership_auth::openid::Provider;
+use sistership_jobs::budget;
+use sistership_store::Store;
+use sistership_web_support::api_key::ApiKey;
+use sistership_web_support::known::Known;
+use sistership_web_support::problem::{Problem, Result};
+use tokio::sync::Semaphore;
+
+/// What a process knows of credentials beside its store.
+pub struct Credentials {
+    key: Option<ApiKey>,
+    people: bool,
+    provider: Option<Provider>,
+    pub(crate) known: Known,
+    pub(crate) attempts: Attempts,
+    /// Passwords that are hashed at a time.
+    seats: Arc<Semaphore>,
+}
+
+/// The accounts of a store, as a process knows them.
+#[derive(Clone, Copy)]
+pub struct Accounts<'a> {
+    pub(crate) credentials: &'a Credentials,
+    pub(crate) store: &'a Store,
+}
+
+impl Credentials {
+    /// Of a server with its one key or without, which lets `people` sign in or not; by a provider,
+    /// too, where there is one. Passwords are hashed on `seats`.
+    pub fn new(
+        key: Option<&str>,
+        people: bool,
+        provider: Option<Provider>,
+        seats: Arc<Semaphore>,
+    ) -> Self {
+        let key = key.map(ApiKey::new);
+        let (known, attempts) = (Known::default(), Attempts::default());
+        Self { key, people, provider, known, attempts, seats }
+    }
+
+    /// The accounts of a store.
+    pub fn of<'a>(&'a self, store: &'a Store) -> Accounts<'a> {
+        Accounts { credentials: self, store }
+    }
+
+    /// The server's one key.
+    pub fn key(&self) -> Option<&ApiKey> {
+        self.key.as_ref()
+    }
+
+    /// Whether people sign in.
+    pub fn has_people(&self) -> bool {
+        self.people
+    }
+
+    /// Whether nobody is asked who they are: without a key, on this machine's own interface.
+    pub fn is_open(&self) -> bool {
+        self.key.is_none() && !self.people
+    }
+
+    /// The OpenID provider at which people may sign in, if there is one.
+    pub fn provider(&self) -> Option<&Provider> {
+        self.provider.as_ref()
+    }
+
+    /// Hashes away from the threads that serve.
+    pub(crate) async fn compute<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T> {
+        let seat = Arc::clone(&self.seats).acquire_owned().await.map_err(Problem::internal)?;
+        let task = tokio::task::spawn_blocking(budget::carried(move || {
+            let _seat = seat;
+            work()
+        }));
+        task.await.map_err(Problem::internal)
+    }
+}
+
+impl Accounts<'_> {
+    /// Forgets what was looked up: somebody's rights have changed.
+    pub fn forget(&self) {
+        self.credentials.known.forget();
+    }
+}

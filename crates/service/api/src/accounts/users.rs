@@ -1,0 +1,140 @@
+//! Users, keys and sessions: what endpoints and pages do alike.
+
+use std::time::{Duration, Instant};
+
+use http::StatusCode;
+use sistership_auth::{
+    Attempt, Grant, KeyText, check_name, check_password, hash_password, hex, secret, sha256,
+    verify_password, verify_unknown,
+};
+use sistership_jobs::budget;
+use sistership_store::{KeyRow, NewKey, User};
+use sistership_web_support::problem::{Problem, Result};
+
+use crate::accounts::credentials::Accounts;
+use crate::accounts::grants::rows;
+
+/// How long a browser stays signed in.
+pub const SESSION: Duration = Duration::from_secs(12 * 3600);
+/// Memory that a hash of a password takes, bytes.
+const HASH_BYTES: u64 = 19 << 20;
+
+impl Accounts<'_> {
+    /// Creates a user.
+    pub async fn create_user(
+        &self,
+        name: &str,
+        title: &str,
+        password: Option<&str>,
+        roles: &[Grant],
+    ) -> Result<User> {
+        check_name(name).map_err(|message| Problem::invalid("name", message))?;
+        let hash = match password {
+            Some(password) => Some(self.hashed(password).await?),
+            None => None,
+        };
+        Ok(self.store.users().create(name, title, hash.as_deref(), &rows(roles)).await?)
+    }
+
+    /// Sets a password, which signs the user out everywhere.
+    pub async fn set_password(&self, name: &str, password: &str) -> Result<User> {
+        let hash = self.hashed(password).await?;
+        let user = self.store.users().set_password(name, &hash).await?;
+        self.forget();
+        Ok(user)
+    }
+
+    /// Gives a user or a key these roles instead of all others.
+    pub async fn set_roles(&self, principal: &str, roles: &[Grant]) -> Result<()> {
+        self.store.grants().replace(principal, &rows(roles)).await?;
+        self.forget();
+        Ok(())
+    }
+
+    /// Takes every right from a user, or gives them back.
+    pub async fn enable(&self, name: &str, on: bool) -> Result<User> {
+        let users = self.store.users();
+        let user = if on { users.enable(name).await? } else { users.disable(name).await? };
+        self.forget();
+        Ok(user)
+    }
+
+    /// Makes a service key; its text is known to nobody else afterwards.
+    pub async fn make_key(
+        &self,
+        title: &str,
+        user: Option<String>,
+        expires_us: Option<i64>,
+        roles: &[Grant],
+    ) -> Result<(KeyText, KeyRow)> {
+        let text = KeyText::new().map_err(Problem::internal)?;
+        let kept = text.kept();
+        let title = title.to_owned();
+        let new = NewKey { prefix: kept.prefix, title, user, sha256: kept.sha256, expires_us };
+        Ok((text, self.store.service_keys().create(&new, &rows(roles)).await?))
+    }
+
+    /// Ends a key.
+    pub async fn revoke(&self, prefix: &str) -> Result<KeyRow> {
+        let key = self.store.service_keys().revoke(prefix).await?;
+        self.forget();
+        Ok(key)
+    }
+
+    async fn hashed(&self, password: &str) -> Result<String> {
+        check_password(password).map_err(|message| Problem::invalid("password", message))?;
+        budget::take(HASH_BYTES).await?;
+        let password = password.to_owned();
+        self.credentials.compute(move || hash_password(&password)).await?.map_err(Problem::internal)
+    }
+
+    /// Begins a session of a user who knows the password; gives the secret of its cookie.
+    pub async fn sign_in(&self, name: &str, password: &str, from: &str) -> Result<String> {
+        self.verified(name, password, from).await?;
+        let secret = secret().map_err(Problem::internal)?;
+        let ends = i64::try_from(SESSION.as_micros()).unwrap_or(i64::MAX);
+        let until = self.store.now_us().saturating_add(ends);
+        self.store.sessions().begin(&hex(&sha256(&secret)), name, until).await?;
+        Ok(secret)
+    }
+
+    /// Whether this is the password of an enabled user.
+    ///
+    /// # Errors
+    /// It is not, which is not told from there being no such user; or too many were wrong of late.
+    pub async fn verified(&self, name: &str, password: &str, from: &str) -> Result<()> {
+        let (attempts, attempt) = (&self.credentials.attempts, Attempt { name, from });
+        attempts.begin(attempt, Instant::now()).map_err(|wait| {
+            let wait = wait.as_secs().max(1);
+            let why = format!("too many wrong passwords; try again in {wait} s");
+            Problem::new(StatusCode::TOO_MANY_REQUESTS, why)
+        })?;
+        match self.is_right(name, password).await {
+            Ok(true) => attempts.right(attempt, Instant::now()),
+            Ok(false) => {
+                tracing::warn!(name, from, "a wrong password");
+                return Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"));
+            }
+            Err(problem) => {
+                attempts.withdraw(attempt, Instant::now());
+                return Err(problem);
+            }
+        }
+        Ok(())
+    }
+
+    async fn is_right(&self, name: &str, password: &str) -> Result<bool> {
+        let user = self.store.users().find(name).await?.filter(User::is_enabled);
+        let hash = user.and_then(|user| user.password_hash);
+        budget::take(HASH_BYTES).await?;
+        let password = password.to_owned();
+        let compare = move || match hash {
+            Some(hash) => verify_password(&password, &hash),
+            None => {
+                verify_unknown(&password);
+                false
+            }
+        };
+        self.credentials.compute(compare).await
+    }
+}

@@ -1,0 +1,63 @@
+//! The job that trains a learned branch: its recipe, and what derives from it.
+
+use std::sync::Arc;
+
+use serde_json::json;
+use sistership_jobs::derive::derive;
+use sistership_jobs::recipe::Recipe;
+use sistership_jobs::training::{chosen, training_recipe};
+use sistership_learned::BranchChoice;
+use sistership_model::version::RecipeTrial;
+use sistership_store::{Job, Version};
+
+use super::commit_branch::commit;
+use super::outcome::{Result, failed};
+use super::prepared::trials;
+use super::progress::{Progress, tell};
+use crate::app::App;
+use sistership_jobs::request::BranchJob;
+
+/// How much of a job the trying of all kinds is.
+const TRIED: f64 = 0.6;
+
+/// Trains a branch, where one was named or one wins.
+pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
+    let asked: BranchJob = serde_json::from_str(&job.request).map_err(failed)?;
+    tell(&progress, 0.01, "reading the trials")?;
+    let version = app.store().versions().get(&asked.ship, asked.number).await?;
+    let trials = trials(app, &asked.trials).await?;
+    let (mut settings, mut choice) = (asked.settings.clone(), None);
+    if settings.is_open() {
+        let tried = tried(app, &asked, &version, &trials, &progress).await?;
+        let Some(kind) = tried.taken else { return untaken(app, job, &asked, &tried).await };
+        (settings, choice) = (settings.of(kind), Some(tried));
+    }
+    let recipe = training_recipe(app.archive(), &version, trials, &settings).await?;
+    let (step, begun) = (progress.clone(), if choice.is_some() { TRIED } else { 0.05 });
+    let scaled = move |done: f64, what: &str| step.tell(begun + (0.9 - begun) * done, what);
+    let recipe = Recipe::Training(recipe);
+    let derived = derive(app.archive(), &asked.ship, &recipe, Arc::new(scaled)).await?;
+    tell(&progress, 0.92, "keeping weights and version")?;
+    commit(app, job, derived, &version.head, choice).await
+}
+
+async fn tried(
+    app: &App,
+    asked: &BranchJob,
+    version: &Version,
+    trials: &[RecipeTrial],
+    progress: &Progress,
+) -> Result<BranchChoice> {
+    let step = progress.clone();
+    let scaled = move |done: f64, what: &str| step.tell(TRIED * done, what);
+    let settings = asked.settings.clone();
+    Ok(chosen(app.archive(), version, trials, settings, Arc::new(scaled)).await?)
+}
+
+/// Ends a job of which no version comes, since no branch wins.
+async fn untaken(app: &App, job: &Job, asked: &BranchJob, tried: &BranchChoice) -> Result<()> {
+    let foundation = format!("{}/{}", asked.ship, asked.number);
+    let result = json!({ "foundation": foundation, "choice": tried, "branch": null });
+    app.store().jobs().complete(&job.id, job.fence, &result.to_string()).await?;
+    Ok(())
+}

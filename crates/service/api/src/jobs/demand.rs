@@ -1,0 +1,77 @@
+//! The memory that a job takes, estimated before it begins.
+
+use std::time::Duration;
+
+use sistership_jobs::memory::job_bytes;
+use sistership_store::{Job, StoreError};
+
+use super::diagnosis::with_earlier;
+use super::outcome::{JobError, Result, failed};
+use super::progress::Progress;
+use crate::app::App;
+use sistership_jobs::budget::{Share, Shortage};
+use sistership_jobs::request::{
+    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob,
+};
+
+/// How often a job that waits for memory looks whether it shall stop.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// Takes what a job needs, as soon as others have given it back: it waits in its worker, and
+/// smaller jobs of other workers pass.
+pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<Share> {
+    let bytes = demand(app, job).await?;
+    loop {
+        match app.job_memory().take(bytes, LOOK).await {
+            Ok(share) => return Ok(share),
+            Err(never @ Shortage::Never { .. }) => {
+                return Err(failed(format!(
+                    "{never}: give it fewer or shorter trials, or let jobs have more memory"
+                )));
+            }
+            Err(busy) if progress.tell(0.0, &format!("waiting: {busy}")) => {}
+            Err(_) => return Err(JobError::Stopped),
+        }
+    }
+}
+
+async fn demand(app: &App, job: &Job) -> Result<u64> {
+    let (law, trials) = match job.kind.as_str() {
+        REFINEMENT => {
+            let asked = serde_json::from_str::<RefinementJob>(&job.request).map_err(failed)?;
+            (asked.law, asked.trials)
+        }
+        DIAGNOSIS => {
+            let asked = serde_json::from_str::<DiagnosisJob>(&job.request).map_err(failed)?;
+            match app.store().versions().get(&asked.ship, asked.number).await {
+                Ok(version) => {
+                    let whole = with_earlier(app, &asked, &version).await?;
+                    (Some(version.head.law), whole.unwrap_or(asked.trials))
+                }
+                // The job itself says that it is missing.
+                Err(StoreError::NotFound { .. }) => (None, asked.trials),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        BRANCH => {
+            let asked = serde_json::from_str::<BranchJob>(&job.request).map_err(failed)?;
+            (None, asked.trials)
+        }
+        // These read one trial after the other.
+        _ => (None, Vec::new()),
+    };
+    let mut samples = 0;
+    for id in &trials {
+        samples += match app.store().trials().get(id).await {
+            Ok(trial) => u64::try_from(trial.sample_rows).unwrap_or(0),
+            // The job itself says that it is missing.
+            Err(StoreError::NotFound { .. }) => 0,
+            Err(error) => return Err(error.into()),
+        };
+    }
+    let law = match law {
+        Some(name) => app.law(&name).await.ok(),
+        None => None,
+    };
+    Ok(job_bytes(samples, law.as_deref()))
+}

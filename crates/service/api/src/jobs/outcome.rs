@@ -1,0 +1,56 @@
+//! How a job ends that does not succeed.
+
+use sistership_identification::refine::RefineError;
+use sistership_store::StoreError;
+
+use crate::problem::Problem;
+use sistership_jobs::derive::DeriveError;
+
+/// How a job ends that does not succeed.
+#[derive(Debug)]
+pub(super) enum JobError {
+    /// It was asked to stop.
+    Stopped,
+    /// It cannot be done; doing it again would give the same.
+    Failed(String),
+    /// The database failed; it may be done later.
+    Store(StoreError),
+}
+
+/// What a step of a job gives.
+pub(super) type Result<T> = std::result::Result<T, JobError>;
+
+pub(super) fn failed(reason: impl std::fmt::Display) -> JobError {
+    JobError::Failed(reason.to_string())
+}
+
+impl From<StoreError> for JobError {
+    fn from(error: StoreError) -> Self {
+        match error {
+            full if full.is_out_of_space() => Self::Store(full),
+            StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => {
+                failed(error)
+            }
+            other => Self::Store(other),
+        }
+    }
+}
+
+impl From<DeriveError> for JobError {
+    fn from(error: DeriveError) -> Self {
+        match error {
+            DeriveError::Store(error) => error.into(),
+            DeriveError::Refine(RefineError::Cancelled) => Self::Stopped,
+            other => failed(other),
+        }
+    }
+}
+
+impl From<Problem> for JobError {
+    fn from(problem: Problem) -> Self {
+        match problem.status {
+            507 => Self::Store(StoreError::no_room()),
+            _ => failed(problem.detail),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What a refinement is made of: its trials, its source, its recipe.
+
+use std::sync::Arc;
+
+use sistership_identification::refine::Prior;
+use sistership_jobs::archive::vessel;
+use sistership_jobs::start::{Start, most_similar, searched};
+use sistership_model::Vessel;
+use sistership_model::version::{Recipe, RecipeTrial};
+
+use super::outcome::Result;
+use super::progress::{Progress, tell};
+use crate::app::App;
+use sistership_jobs::request::{RefinementJob, SourceChoice};
+
+/// How much of a job the search is: what it finds is fitted once more.
+pub(super) const SEARCHED: f64 = 0.6;
+
+/// A recipe, and how its source was chosen.
+pub(super) struct Prepared {
+    pub recipe: Recipe,
+    pub start: Start,
+}
+
+pub(super) async fn prepare(
+    app: &App,
+    asked: &RefinementJob,
+    progress: &Progress,
+) -> Result<Prepared> {
+    let ship = app.store().ships().get(&asked.ship).await?;
+    let trials = trials(app, &asked.trials).await?;
+    let target = vessel(&ship.name, &ship.document)?;
+    let start = start(app, asked, target, &trials, progress).await?;
+    let recipe = start.recipe(app.archive(), &ship, trials).await?;
+    Ok(Prepared { recipe, start })
+}
+
+async fn start(
+    app: &App,
+    asked: &RefinementJob,
+    target: Vessel,
+    trials: &[RecipeTrial],
+    progress: &Progress,
+) -> Result<Start> {
+    let (law, settings) = (asked.law.clone(), asked.settings.clone());
+    if let SourceChoice::Version { ship, number } = &asked.source {
+        let version = app.store().versions().get(ship, *number).await?;
+        let start = Start::at(version, law, settings);
+        if start.settings.prior != Prior::Population {
+            return Ok(start);
+        }
+        let zoo = app.zoo_around(&target).await?;
+        return Ok(start.with_population(app.archive(), &zoo, &target).await?);
+    }
+    let zoo = app.zoo_around(&target).await?;
+    if asked.search {
+        tell(progress, 0.02, "searching source, law and method")?;
+        let told = progress.clone();
+        let scaled = move |fraction: f64, what: &str| told.tell(SEARCHED * fraction, what);
+        let scaled = Arc::new(scaled);
+        return Ok(searched(app.archive(), zoo, target, trials, settings, scaled).await?);
+    }
+    tell(progress, 0.03, "choosing the source")?;
+    let (near, named) = (Arc::clone(&zoo), target.clone());
+    let (version, similarity) = most_similar(app.archive(), near, named, trials).await?;
+    let start = Start { similarity: Some(similarity), ..Start::at(version, law, settings) };
+    Ok(start.with_population(app.archive(), &zoo, &target).await?)
+}
+
+pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {
+    let mut trials = Vec::with_capacity(ids.len());
+    for id in ids {
+        let trial = app.store().trials().get(id).await?;
+        trials.push(RecipeTrial { name: trial.name, sha256: trial.sha256 });
+    }
+    Ok(trials)
+}

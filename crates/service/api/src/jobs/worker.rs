@@ -1,0 +1,235 @@
+//! A worker: claims jobs under a lease, tells how far they are, and ends them in one way or
+//! another.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use sistership_store::{Actor, Claimed, Job, StoreError};
+use tokio::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, watch};
+use tokio::task::JoinHandle;
+use uuid::Uuid;
+
+use super::outcome::JobError;
+use super::progress::{Progress, Stop};
+use super::{branch, chunk, demand, diagnosis, family_prior, refinement};
+use crate::app::App;
+use sistership_jobs::fleet::{BULK, LEARN};
+use sistership_jobs::request::{BRANCH, DIAGNOSIS, REFINEMENT};
+use sistership_listener::Stopping;
+
+/// How often progress is written while it changes.
+const TELL: Duration = Duration::from_millis(250);
+/// A pause after the database has failed.
+const BREATH: Duration = Duration::from_secs(1);
+/// A pause where there is no room to write: it takes somebody to make some.
+const NO_ROOM: Duration = Duration::from_secs(5);
+
+/// One of the workers of this process.
+pub(crate) struct Worker {
+    app: App,
+    name: String,
+    stopping: Stopping,
+}
+
+/// The right of a worker to its job: beside those of the other workers of the process, or instead
+/// of them.
+enum Turn<'a> {
+    Shared { _held: RwLockReadGuard<'a, ()> },
+    Alone { held: RwLockWriteGuard<'a, ()> },
+}
+
+impl Turn<'_> {
+    fn shared(self) -> Self {
+        match self {
+            Self::Alone { held } => Self::Shared { _held: held.downgrade() },
+            shared => shared,
+        }
+    }
+}
+
+/// The work as it runs, and what it tells.
+struct Watched {
+    work: JoinHandle<Result<(), JobError>>,
+    progress: Progress,
+    seen: watch::Receiver<(f64, String)>,
+}
+
+impl Worker {
+    pub(crate) fn new(app: App) -> Self {
+        let name = format!("{}-{}", std::process::id(), Uuid::now_v7());
+        Self { stopping: app.stopping(), app, name }
+    }
+
+    /// Works until the server is told to stop.
+    pub(crate) async fn run(mut self) {
+        let turns = Arc::clone(self.app.turns());
+        let mut alone = false;
+        while !self.stopping.now() {
+            let Some(turn) = self.turn(&turns, alone).await else { return };
+            match self.app.store().jobs().claim(&self.name, self.app.leases().lease, alone).await {
+                Ok(Claimed::Job(job)) => {
+                    // Only a job during which a process has ended before keeps the others waiting.
+                    let turn = if job.lost_workers > 0 { turn } else { turn.shared() };
+                    self.attend(&job).await;
+                    drop(turn);
+                    alone = false;
+                }
+                Ok(Claimed::Alone) => alone = true,
+                Ok(Claimed::Nothing) => {
+                    drop(turn);
+                    alone = false;
+                    self.rest(self.app.leases().poll).await;
+                }
+                Err(error) => {
+                    drop(turn);
+                    tracing::error!(%error, "no job could be claimed");
+                    self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
+                }
+            }
+        }
+    }
+
+    /// Waits for the right to claim a job, while others work or alone; none when the server is told
+    /// to stop.
+    async fn turn<'a>(&mut self, turns: &'a RwLock<()>, alone: bool) -> Option<Turn<'a>> {
+        tokio::select! {
+            () = self.stopping.wait() => None,
+            held = turns.write(), if alone => Some(Turn::Alone { held }),
+            held = turns.read(), if !alone => Some(Turn::Shared { _held: held }),
+        }
+    }
+
+    /// Until there is a new job, some time has passed, or the server is told to stop.
+    async fn rest(&mut self, time: Duration) {
+        tokio::select! {
+            () = self.app.wake().notified() => {}
+            () = tokio::time::sleep(time) => {}
+            () = self.stopping.wait() => {}
+        }
+    }
+
+    #[tracing::instrument(skip_all, fields(job = %job.id, attempt = job.attempt))]
+    async fn attend(&mut self, job: &Job) {
+        tracing::info!("begun");
+        let (progress, seen) = Progress::new();
+        let author = job.author.clone().unwrap_or_else(|| Actor::current().name);
+        let actor = Actor::new(author, format!("job {}", job.id));
+        let work = work(self.app.clone(), job.clone(), progress.clone());
+        let work = tokio::spawn(actor.acting(work));
+        let mut watched = Watched { work, progress, seen };
+        let ended = self.accompany(job, &mut watched).await;
+        if let Err(error) = self.end(job, ended, watched.progress.stopped()).await {
+            tracing::error!(%error, "the end of a job could not be written");
+            self.give_back(job, error).await;
+        }
+    }
+
+    /// Gives a job back whose end could not be written, as soon as the database can be written
+    /// again: this process has not ended, and must not be counted as lost.
+    async fn give_back(&mut self, job: &Job, mut error: StoreError) {
+        while !self.stopping.now() {
+            self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
+            let jobs = self.app.store().jobs();
+            let given = match jobs.release(&job.id, job.fence).await {
+                Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
+                    jobs.lives(&job.id, job.fence).await
+                }
+                other => other.map(drop),
+            };
+            match given {
+                Ok(()) => return,
+                Err(again) => error = again,
+            }
+        }
+    }
+
+    /// Keeps the lease while the work runs; gives its outcome, or none when it did not stop in
+    /// time.
+    async fn accompany(
+        &mut self,
+        job: &Job,
+        watched: &mut Watched,
+    ) -> Option<Result<(), JobError>> {
+        let mut beat = Instant::now();
+        // When the job must be given back, once the server is told to stop.
+        let mut leave: Option<Instant> = None;
+        loop {
+            tokio::select! {
+                ended = &mut watched.work => return Some(ended.unwrap_or_else(|error| Err(JobError::Failed(format!("the computation broke off: {error}"))))),
+                () = self.stopping.wait(), if leave.is_none() => leave = Some(Instant::now() + self.app.leases().drain),
+                () = until(leave), if leave.is_some() => {
+                    watched.progress.stop(Stop::Leaving);
+                    let ended = tokio::time::timeout(self.app.limits().stop_time, &mut watched.work).await;
+                    return ended.ok().and_then(Result::ok);
+                }
+                () = tokio::time::sleep(TELL.min(self.app.leases().beat)) => {}
+            }
+            if watched.seen.has_changed().unwrap_or(false)
+                || beat.elapsed() >= self.app.leases().beat
+            {
+                beat = Instant::now();
+                self.beat(job, watched).await;
+            }
+        }
+    }
+
+    async fn beat(&self, job: &Job, watched: &mut Watched) {
+        let (fraction, message) = watched.seen.borrow_and_update().clone();
+        let lease = self.app.leases().lease;
+        match self.app.store().jobs().heartbeat(&job.id, job.fence, fraction, &message, lease).await
+        {
+            Ok(false) => {}
+            Ok(true) => watched.progress.stop(Stop::Cancelled),
+            Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
+                watched.progress.stop(Stop::Lost)
+            }
+            Err(error) => tracing::warn!(%error, "a beat was missed"),
+        }
+    }
+
+    /// Writes how a job has ended.
+    async fn end(
+        &self,
+        job: &Job,
+        ended: Option<Result<(), JobError>>,
+        stopped: Option<Stop>,
+    ) -> Result<(), StoreError> {
+        let jobs = self.app.store().jobs();
+        match (ended, stopped) {
+            (Some(Ok(())), _) => tracing::info!("done"),
+            (_, Some(Stop::Lost)) => {
+                tracing::warn!("another worker has the job now");
+                jobs.lives(&job.id, job.fence).await?;
+            }
+            (_, Some(Stop::Leaving)) => drop(jobs.release(&job.id, job.fence).await?),
+            (Some(Err(JobError::Stopped)), _) => drop(jobs.cancelled(&job.id, job.fence).await?),
+            (Some(Err(JobError::Failed(message))), _) => {
+                tracing::warn!(%message, "failed");
+                jobs.fail(&job.id, job.fence, &message).await?;
+            }
+            // The job is done again once the database is back.
+            (Some(Err(JobError::Store(error))), _) => return Err(error),
+            (None, _) => tracing::warn!("the work did not stop in time"),
+        }
+        Ok(())
+    }
+}
+
+/// Waits for a moment that is known.
+async fn until(moment: Option<Instant>) {
+    tokio::time::sleep_until(moment.unwrap_or_else(Instant::now).into()).await;
+}
+
+async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
+    let _share = demand::taken(&app, &job, &progress).await?;
+    match job.kind.as_str() {
+        REFINEMENT => refinement::run(&app, &job, progress).await,
+        DIAGNOSIS => diagnosis::run(&app, &job, progress).await,
+        BRANCH => branch::run(&app, &job, progress).await,
+        BULK => chunk::run(&app, &job, progress).await,
+        LEARN => family_prior::run(&app, &job, progress).await,
+        other => {
+            Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`")))
+        }
+    }
+}

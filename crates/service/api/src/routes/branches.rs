@@ -1,0 +1,124 @@
+//! Asking for a learned branch, and its weights.
+
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use sistership_learned::BranchSettings;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::jobs::JobView;
+use super::model_ref::resolve;
+use super::named_trials::{named, no_trials};
+use super::queue::{accepted, enqueue};
+use super::trials::all_of_ship;
+use crate::app::App;
+use crate::jobs::{BRANCH, BranchJob};
+use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use crate::web::field::RequestKey;
+use crate::web::{Id, Key, ModelName, Name, Number, Payload, Place, Reply};
+use sistership_auth::Role;
+use sistership_jobs::archive::document;
+use sistership_jobs::schema::described;
+use sistership_jobs::training::foundation_of;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(train)).routes(routes!(weights))
+}
+
+/// A learned branch to be trained.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct BranchRequest {
+    /// The version that is its foundation: `ship` (its champion), `ship/number`, `ship/alias`.
+    #[schema(inline)]
+    model: ModelName,
+    /// Ids of trials of the ship; all of them where absent.
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
+    /// What learns, and how. Where no kind is named, every kind is tried, and one is taken only
+    /// where it wins on trials left out by more than its uncertainty.
+    #[serde(default)]
+    #[schema(schema_with = described::<BranchSettings>)]
+    settings: BranchSettings,
+}
+
+/// Train a learned branch beside a version
+///
+/// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
+/// ship's line, `candidate`, whose parent is the foundation; none where every kind was tried and no
+/// branch wins.
+#[utoipa::path(
+    post, path = "/v1/branches", tag = "branches",
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body = BranchRequest,
+    responses((status = 202, body = JobView, headers(("Location" = String))))
+)]
+async fn train(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let request: BranchRequest = payload.json()?;
+    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
+}
+
+async fn queued(app: &App, request: BranchRequest) -> Result<Reply> {
+    let job = settled(app, request).await?;
+    accepted(enqueue(app, BRANCH, &job.ship, &job).await?)
+}
+
+/// The request with everything looked up, so that a job that is wrong is refused at once.
+async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
+    let BranchRequest { model, trials, settings } = request;
+    let version = resolve(app.store(), "model", &model).await?;
+    on_ship(app.store(), Role::Engineer, &version.head.model).await?;
+    let number = foundation(app, &version.head).await?;
+    settings
+        .check()
+        .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
+    let ship = version.head.model.clone();
+    let trials = match trials {
+        Some(ids) => named(app, &ship, ids, "all of the ship's").await?,
+        None => all_of_ship(app, &ship).await?.into_iter().map(|trial| trial.id).collect(),
+    };
+    if trials.is_empty() {
+        return Err(no_trials(&ship));
+    }
+    Ok(BranchJob { ship, number, trials, settings })
+}
+
+/// The number of the version beside which a correction is trained: that without one of which a
+/// version came.
+async fn foundation(app: &App, head: &sistership_store::VersionHead) -> Result<i64> {
+    let number = foundation_of(app.archive(), &head.model, head.number).await?;
+    let elsewhere = || {
+        let name = format!("{}/{}", head.model, head.number);
+        let message = format!(
+            "{name} has a learned correction that was not trained here; name a version without one"
+        );
+        Problem::invalid("model", message)
+    };
+    number.ok_or_else(elsewhere)
+}
+
+/// The weights of a version's learned branch
+///
+/// `sistership simulate --model m.yaml` takes them as `m.weights.json` beside the model.
+#[utoipa::path(
+    get, path = "/v1/models/{model}/versions/{number}/weights", tag = "branches",
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
+    responses((status = 200, body = Object))
+)]
+async fn weights(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+) -> Result<Response> {
+    let version = app.store().versions().get(&model, number.get()).await?;
+    let missing = || {
+        Problem::not_found(format!("version {}/{} has no learned branch", &model[..], number.get()))
+    };
+    let branch = document(&version)?.model.branch.ok_or_else(missing)?;
+    let bytes = app.objects().get(&branch.weights_sha256).await?;
+    Ok(([(header::CONTENT_TYPE, "application/json")], bytes).into_response())
+}

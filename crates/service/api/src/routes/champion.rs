@@ -1,0 +1,160 @@
+//! The query the product exists for: the model of a ship.
+
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use bytes::Bytes;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_model::Model;
+use sistership_store::CurrentVersion;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::versions::VersionHead;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::conditions::tag;
+use crate::web::field::EntityTags;
+use crate::web::{Conditions, Name, Params, Place, accept};
+use sistership_jobs::archive::document;
+use sistership_jobs::line::CHAMPION;
+use sistership_web_support::answers::Answer;
+
+const JSON: &str = "application/json";
+const YAML: &str = "application/yaml";
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(champion))
+}
+
+/// The champion of a ship.
+#[derive(Debug, Serialize, ToSchema)]
+struct Champion {
+    ship: String,
+    /// The version that the alias `champion` stands for.
+    version: VersionHead,
+    /// The model, as `models/schema/model.json` describes it.
+    #[schema(value_type = Object)]
+    model: Value,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// `json` or `yaml`, over what `Accept` says.
+    #[param(inline)]
+    format: Option<Format>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+enum Format {
+    Json,
+    Yaml,
+}
+
+/// The model of a ship: its champion
+///
+/// As YAML it is a file that `sistership simulate --model` takes.
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}/model", tag = "ships",
+    params(("ship" = inline(Name), Path), Query,
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
+            have")),
+    responses(
+        (status = 200, content((Champion = "application/json"), (String = "application/yaml")),
+        headers(("ETag" = String))),
+        (status = 304, description = "As you have it")
+    )
+)]
+async fn champion(
+    State(app): State<App>,
+    Place(ship): Place<Name>,
+    Params(query): Params<Query>,
+    conditions: Conditions,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let media = match query.format {
+        Some(Format::Json) => JSON,
+        Some(Format::Yaml) => YAML,
+        None => accept::choose(&headers, &[JSON, YAML])?,
+    };
+    let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else {
+        return Err(missing(&app, &ship).await);
+    };
+    let Answer { etag, body } = answer(&app, current, media).await?;
+    let known = etag.to_str().is_ok_and(|etag| conditions.has(etag));
+    let (vary, media) = (HeaderValue::from_static("accept"), HeaderValue::from_static(media));
+    let head = [(header::ETAG, etag), (header::VARY, vary), (header::CONTENT_TYPE, media)];
+    Ok(if known {
+        (StatusCode::NOT_MODIFIED, head).into_response()
+    } else {
+        (head, body).into_response()
+    })
+}
+
+/// The answer, as it was given before where it was.
+async fn answer(app: &App, current: CurrentVersion, media: &'static str) -> Result<Answer> {
+    let key = (current.id, current.report, media);
+    if let Some(answer) = app.answers().get(&key) {
+        return Ok(answer);
+    }
+    let version = app.store().versions().by_id(&key.0).await?;
+    let (model, sha256) = (document(&version)?.model, &version.head.sha256);
+    let (etag, body) = match media {
+        YAML => (tag(format!("{sha256}.yaml")), yaml(&model)?),
+        _ => (tag(sha256), json(version.head, key.1.clone(), &model)?),
+    };
+    let answer = Answer {
+        etag: HeaderValue::try_from(etag).map_err(Problem::internal)?,
+        body: Bytes::from(body),
+    };
+    app.answers().keep(key, answer.clone());
+    Ok(answer)
+}
+
+/// Why there is no champion.
+async fn missing(app: &App, ship: &str) -> Problem {
+    if let Err(error) = app.store().ships().get(ship).await {
+        return error.into();
+    }
+    let todo = "upload trials to /v1/trials and POST a refinement to /v1/refinements";
+    Problem::not_found(format!(
+        "the ship `{ship}` is known by particulars only and has no model yet; {todo}"
+    ))
+}
+
+fn yaml(model: &Model) -> Result<String> {
+    serde_yaml::to_string(model).map_err(Problem::internal)
+}
+
+fn json(
+    head: sistership_store::VersionHead,
+    report: Option<String>,
+    model: &Model,
+) -> Result<String> {
+    let ship = head.model.clone();
+    let version = VersionHead { report, ..VersionHead::of(head) };
+    let model = serde_json::to_value(model).map_err(Problem::internal)?;
+    serde_json::to_string(&Champion { ship, version, model }).map_err(Problem::internal)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn yaml_reads_back_as_the_same_model() {
+        let zoo = Zoo::embedded().unwrap();
+        for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
+            let model = zoo.published(vessel, None).unwrap();
+            let law_of = |name: &str| zoo.law(name).map(|law| (**law).clone());
+            assert_eq!(Model::parse("model.yaml", &yaml(&model).unwrap(), &law_of).unwrap(), model);
+        }
+    }
+}

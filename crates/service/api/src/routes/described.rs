@@ -1,0 +1,52 @@
+//! Types of other crates in the OpenAPI document, by the JSON Schemas that they are described with
+//! everywhere.
+
+use schemars::generate::SchemaSettings;
+use serde_json::{Map, Value};
+use sistership_diagnosis as diagnose;
+use sistership_fleet::bulk::BulkSettings;
+use sistership_identification::refine;
+use sistership_learned::BranchSettings;
+use sistership_model::Model;
+use sistership_model::vessel::VesselFile;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::Schema;
+
+use crate::web::field::any_object;
+
+/// A vessel as a body; [`add`] writes its schema.
+pub(super) struct Vessel;
+
+impl utoipa::PartialSchema for Vessel {
+    fn schema() -> RefOr<Schema> {
+        any_object()
+    }
+}
+
+impl utoipa::ToSchema for Vessel {
+    fn name() -> std::borrow::Cow<'static, str> {
+        <VesselFile as schemars::JsonSchema>::schema_name()
+    }
+}
+
+/// The schemas of everything that a request takes from another crate, by name.
+pub(super) fn schemas() -> Map<String, Value> {
+    let settings = SchemaSettings::draft2020_12().for_deserialize();
+    let mut generator = settings
+        .with(|settings| settings.definitions_path = "/components/schemas".into())
+        .into_generator();
+    generator.subschema_for::<refine::Settings>();
+    generator.subschema_for::<diagnose::Settings>();
+    generator.subschema_for::<BulkSettings>();
+    generator.subschema_for::<BranchSettings>();
+    generator.subschema_for::<Model>();
+    generator.subschema_for::<VesselFile>();
+    generator.take_definitions(true)
+}
+
+/// Adds them to the document.
+pub(super) fn add(document: &mut Value) {
+    if let Some(known) = document["components"]["schemas"].as_object_mut() {
+        known.extend(schemas());
+    }
+}

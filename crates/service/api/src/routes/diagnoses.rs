@@ -1,0 +1,109 @@
+//! Asking for a diagnosis.
+
+use axum::extract::State;
+use axum::response::Response;
+use serde::Deserialize;
+use serde_json::Value;
+use sistership_diagnosis::Settings;
+use sistership_store::{Job, Trial, Version};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::jobs::JobView;
+use super::model_ref::resolve;
+use super::named_trials::{named, no_trials};
+use super::queue::{accepted, enqueue};
+use super::trials::all_of_ship;
+use crate::app::App;
+use crate::jobs::{DIAGNOSIS, DiagnosisJob};
+use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use crate::web::field::RequestKey;
+use crate::web::payload::from_slice;
+use crate::web::{Id, Key, ModelName, Payload, Reply};
+use sistership_auth::Role;
+use sistership_jobs::condition::fitted_samples;
+use sistership_jobs::schema::described;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(diagnose))
+}
+
+/// A diagnosis to be done.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct DiagnosisRequest {
+    /// The version to diagnose: `ship` (its champion), `ship/number`, `ship/alias`.
+    #[schema(inline)]
+    model: ModelName,
+    /// Ids of trials of the ship; where absent, those that the version was not made of, or all
+    /// where none are left.
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
+    /// Settings of the diagnosis; each has a default, and all are kept with the report.
+    #[serde(default)]
+    #[schema(schema_with = described::<Settings>)]
+    settings: Settings,
+}
+
+/// Find what a model lacks
+///
+/// The work is a job: follow the `Location`, or its `/events`. It ends in a report. Where effects
+/// are found missing, the model with them becomes a version of the ship's line, `candidate`, whose
+/// parent is the version diagnosed.
+#[utoipa::path(
+    post, path = "/v1/diagnoses", tag = "diagnoses",
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body = DiagnosisRequest,
+    responses((status = 202, body = JobView, headers(("Location" = String))))
+)]
+async fn diagnose(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let request: DiagnosisRequest = payload.json()?;
+    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
+}
+
+async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
+    accepted(enqueued(app, request).await?)
+}
+
+async fn enqueued(app: &App, request: DiagnosisRequest) -> Result<Job> {
+    let ship = request.model.split('/').next().unwrap_or_default().to_owned();
+    enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await
+}
+
+/// Queues a diagnosis that a page asks for, by the document that the endpoint takes.
+pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
+    enqueued(app, from_slice(&serde_json::to_vec(asked).map_err(Problem::internal)?)?).await
+}
+
+/// The request with everything looked up, so that a job that is wrong is refused at once.
+async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
+    let DiagnosisRequest { model, trials, settings } = request;
+    let version = resolve(app.store(), "model", &model).await?;
+    on_ship(app.store(), Role::Engineer, &version.head.model).await?;
+    settings
+        .check()
+        .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
+    let ship = version.head.model.clone();
+    let trials = match trials {
+        Some(ids) => named(app, &ship, ids, "those that the version was not made of").await?,
+        None => unseen(app, &version).await?,
+    };
+    let (number, with_earlier, key_sha256) = (version.head.number, false, None);
+    Ok(DiagnosisJob { ship, number, trials, with_earlier, settings, key_sha256 })
+}
+
+/// The trials of the ship that a version was not made of; all of them where none are left.
+async fn unseen(app: &App, version: &Version) -> Result<Vec<String>> {
+    let all = all_of_ship(app, &version.head.model).await?;
+    let seen = fitted_samples(app.archive(), version).await?;
+    let ids = |trials: &[&Trial]| trials.iter().map(|trial| trial.id.clone()).collect::<Vec<_>>();
+    let new: Vec<&Trial> = all.iter().filter(|trial| !seen.contains(&trial.sha256)).collect();
+    match (all.is_empty(), new.is_empty()) {
+        (true, _) => Err(no_trials(&version.head.model)),
+        (false, true) => Ok(ids(&all.iter().collect::<Vec<_>>())),
+        (false, false) => Ok(ids(&new)),
+    }
+}

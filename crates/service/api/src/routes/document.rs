@@ -1,0 +1,28 @@
+//! The OpenAPI document.
+
+use axum::http::header;
+use axum::response::IntoResponse;
+use serde_json::Value;
+
+use super::{described, endpoints};
+use crate::config::Limits;
+use sistership_web_support::{operations, tidy};
+
+/// The contract of the server, as `/openapi.json` serves it.
+pub fn openapi() -> Value {
+    let mut document = endpoints::api(&Limits::default()).into_openapi();
+    operations::complete(&mut document);
+    let mut document = serde_json::to_value(&document).unwrap_or_default();
+    described::add(&mut document);
+    tidy::tidy(&mut document);
+    document
+}
+
+/// The document as text, indented, with a line feed at its end.
+pub(super) fn text() -> String {
+    serde_json::to_string_pretty(&openapi()).map(|text| text + "\n").unwrap_or_default()
+}
+
+pub(super) fn served(text: String) -> axum::response::Response {
+    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
+}

@@ -1,0 +1,53 @@
+//! Versions written down for other tools.
+
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use sistership_jobs::exported::ExportFormat;
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::binary::Binary;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::{Name, Number, Params, Place};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(export))
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    #[param(inline)]
+    format: Option<ExportFormat>,
+}
+
+/// A version as a file for another tool
+///
+/// It has the law with the model's effects, the steering gear, and a current as an input: what a
+/// prediction sails. What a model has learned beside its law is written with it.
+#[utoipa::path(
+    get, path = "/v1/models/{model}/versions/{number}/export", tag = "models",
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),
+    responses((status = 200, description = "The file",
+    content((Binary = "application/octet-stream")), headers(("Content-Disposition" = String))))
+)]
+async fn export(
+    State(app): State<App>,
+    Place((name, number)): Place<(Name, Number)>,
+    Params(query): Params<Query>,
+) -> Result<Response> {
+    let version = app.store().versions().get(&name, number.get()).await?;
+    let law = app.law(&version.head.law).await?;
+    let format = query.format.unwrap_or_default();
+    let model = app.archive().model(&version).await?;
+    let exported = app.compute(move || format.write(&version, (&model, &law))).await?;
+    let exported = exported.map_err(|error| Problem::invalid("format", error.to_string()))?;
+    let kept = format!("attachment; filename=\"{}\"", exported.file);
+    let media = [(header::CONTENT_TYPE, "application/octet-stream")];
+    Ok((media, [(header::CONTENT_DISPOSITION, kept)], exported.bytes).into_response())
+}

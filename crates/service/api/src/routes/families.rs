@@ -1,0 +1,298 @@
+//! Families of ships.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_store::{Family, FamilyMember, FamilyPrior, MAX_LIMIT, NewJob, StoreError};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::jobs::JobView;
+use super::model_ref::resolve;
+use super::queue::accepted;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::field::{Remark, RequestKey};
+use crate::web::{
+    Key, Listing, ModelName, Name, Number, Paged, Params, Payload, Place, Reply, Word,
+};
+use sistership_jobs::fleet::{LEARN, LearnJob};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list, create))
+        .routes(routes!(get, found))
+        .routes(routes!(members, add))
+        .routes(routes!(remove))
+        .routes(routes!(prior, learn))
+}
+
+/// A family: ships whose models share a foundation.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct FamilyView {
+    pub name: String,
+    /// What people call it.
+    pub title: String,
+    /// The version that the members' models are founded on, `ship/number`.
+    pub foundation: String,
+    /// How many ships it has.
+    pub members: i64,
+    /// How often it has taught something; null where it has not.
+    pub prior: Option<i64>,
+    pub created_us: i64,
+}
+
+/// A member of a family.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct MemberView {
+    pub ship: String,
+    pub added_us: i64,
+    /// The number of its champion, if it has one.
+    pub champion: Option<i64>,
+    /// How that was made.
+    pub method: Option<String>,
+}
+
+/// What a family has taught.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct PriorView {
+    pub family: String,
+    /// 1, 2, 3, ...
+    pub revision: i64,
+    /// The hash of the document.
+    pub sha256: String,
+    pub created_us: i64,
+    /// Means, deviations and correlations of the coefficients by axis, and what they were learned
+    /// from.
+    #[schema(value_type = Object)]
+    pub document: Value,
+}
+
+/// A family to be made.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewFamily {
+    /// Its name, which stands in URLs.
+    #[schema(inline)]
+    name: Word,
+    /// What people call it; the name where absent.
+    #[schema(inline)]
+    title: Option<Remark>,
+    /// The version that the members' models are founded on: `ship` (its champion), `ship/number`,
+    /// `ship/alias`.
+    #[schema(inline)]
+    foundation: ModelName,
+    /// Its first members.
+    #[serde(default)]
+    #[schema(inline, max_items = 1000)]
+    members: Vec<Name>,
+}
+
+/// Another foundation.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewFoundation {
+    /// The version: `ship` (its champion), `ship/number`, `ship/alias`.
+    #[schema(inline)]
+    foundation: ModelName,
+}
+
+/// Ships to add.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewMembers {
+    /// Names of ships.
+    #[schema(inline, max_items = 1000)]
+    ships: Vec<Name>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Revision {
+    /// Which time it was learned; the last one where absent.
+    #[param(inline)]
+    revision: Option<Number>,
+}
+
+impl FamilyView {
+    async fn of(app: &App, family: Family) -> Result<Self> {
+        let store = app.store();
+        let foundation = store.versions().by_id(&family.foundation).await?.head;
+        let prior = match store.families().prior(&family.name, None).await {
+            Err(StoreError::NotFound { .. }) => None,
+            other => Some(other?.revision),
+        };
+        let members = store.families().count(&family.name).await?;
+        let foundation = format!("{}/{}", foundation.model, foundation.number);
+        let Family { name, title, created_us, .. } = family;
+        Ok(Self { name, title, foundation, members, prior, created_us })
+    }
+}
+
+impl MemberView {
+    pub(super) fn of(member: FamilyMember) -> Self {
+        let FamilyMember { ship, added_us, champion, method } = member;
+        Self { ship, added_us, champion, method }
+    }
+}
+
+/// List the families by name
+#[utoipa::path(get, path = "/v1/families", tag = "families", params(Paged),
+    responses((status = 200, body = Listing<FamilyView>)))]
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<FamilyView>>> {
+    let families = app.store().families().list(&query.page()?).await?;
+    let mut items = Vec::with_capacity(families.items.len());
+    for family in families.items {
+        items.push(FamilyView::of(&app, family).await?);
+    }
+    Ok(Json(Listing { items, next: families.next }))
+}
+
+/// Make a family on a foundation
+#[utoipa::path(
+    post, path = "/v1/families", tag = "families",
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body = NewFamily,
+    responses((status = 201, body = FamilyView, headers(("Location" = String))))
+)]
+async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let new: NewFamily = payload.json()?;
+    let work = |app: App| async move {
+        let members = bounded("members", new.members)?;
+        let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
+        let title = new.title.as_deref().unwrap_or(&new.name);
+        let family = app.store().families().create(&new.name, title, &foundation.id).await?;
+        app.store().families().add(&family.name, &members).await?;
+        let name = family.name.clone();
+        let reply = Reply::new(StatusCode::CREATED, &FamilyView::of(&app, family).await?)?;
+        Ok(reply.at(&["v1", "families", &name]))
+    };
+    key.once(&app, payload.bytes(), work).await
+}
+
+/// A family
+#[utoipa::path(
+    get, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
+    responses((status = 200, body = FamilyView))
+)]
+async fn get(State(app): State<App>, Place(name): Place<Word>) -> Result<Json<FamilyView>> {
+    let family = app.store().families().get(&name).await?;
+    Ok(Json(FamilyView::of(&app, family).await?))
+}
+
+/// Put a family on another foundation; models are refined from it when the family is refined next
+#[utoipa::path(
+    put, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
+    request_body = NewFoundation, responses((status = 200, body = FamilyView))
+)]
+async fn found(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    payload: Payload,
+) -> Result<Json<FamilyView>> {
+    let new: NewFoundation = payload.json()?;
+    let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
+    let family = app.store().families().found(&name, &foundation.id).await?;
+    Ok(Json(FamilyView::of(&app, family).await?))
+}
+
+/// List the members of a family by name
+#[utoipa::path(
+    get, path = "/v1/families/{family}/members", tag = "families",
+    params(("family" = inline(Word), Path), Paged),
+    responses((status = 200, body = Listing<MemberView>))
+)]
+async fn members(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<MemberView>>> {
+    let family = app.store().families().get(&name).await?;
+    let members = app.store().families().members(&family.name, &query.page()?).await?;
+    Ok(Json(Listing::of(members, MemberView::of)))
+}
+
+/// Add ships to a family, all or none; those that are members already stay so
+#[utoipa::path(
+    post, path = "/v1/families/{family}/members", tag = "families",
+    params(("family" = inline(Word), Path)),
+    request_body = NewMembers, responses((status = 200, body = FamilyView))
+)]
+async fn add(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    payload: Payload,
+) -> Result<Json<FamilyView>> {
+    let new: NewMembers = payload.json()?;
+    let ships = bounded("ships", new.ships)?;
+    app.store().families().add(&name, &ships).await?;
+    get(State(app), Place(name)).await
+}
+
+/// Take a ship out of a family
+#[utoipa::path(
+    delete, path = "/v1/families/{family}/members/{ship}", tag = "families",
+    params(("family" = inline(Word), Path), ("ship" = inline(Name), Path)),
+    responses((status = 200, body = FamilyView))
+)]
+async fn remove(
+    State(app): State<App>,
+    Place((name, ship)): Place<(Word, Name)>,
+) -> Result<Json<FamilyView>> {
+    match app.store().families().remove(&name, &ship).await? {
+        true => get(State(app), Place(name)).await,
+        false => Err(StoreError::NotFound { kind: "member", id: format!("{name}/{ship}") }.into()),
+    }
+}
+
+/// What a family has taught: how each coefficient varies over its members
+#[utoipa::path(
+    get, path = "/v1/families/{family}/prior", tag = "families",
+    params(("family" = inline(Word), Path), Revision),
+    responses((status = 200, body = PriorView))
+)]
+async fn prior(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    Params(query): Params<Revision>,
+) -> Result<Json<PriorView>> {
+    let prior = app.store().families().prior(&name, query.revision.map(Number::get)).await?;
+    let document = serde_json::from_str(&prior.document).map_err(Problem::internal)?;
+    let FamilyPrior { family, revision, sha256, created_us, .. } = prior;
+    Ok(Json(PriorView { family, revision, sha256, created_us, document }))
+}
+
+/// Learn from the members' trials how their coefficients vary; the work is a job
+#[utoipa::path(
+    post, path = "/v1/families/{family}/prior", tag = "families",
+    params(("family" = inline(Word), Path)),
+    responses((status = 202, body = JobView, headers(("Location" = String))))
+)]
+async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply> {
+    let family = app.store().families().get(&name).await?;
+    let request =
+        serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
+    let job =
+        app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
+    app.wake_all();
+    accepted(job)
+}
+
+fn bounded(field: &str, ships: Vec<Name>) -> Result<Vec<String>> {
+    match i64::try_from(ships.len()) {
+        Ok(count) if count <= MAX_LIMIT => Ok(ships.into_iter().map(Name::into_string).collect()),
+        _ => Err(Problem::invalid(
+            field,
+            format!("are more than {MAX_LIMIT}; add them in several requests"),
+        )),
+    }
+}

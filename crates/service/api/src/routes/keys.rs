@@ -1,0 +1,155 @@
+//! Service keys: what programs present.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use sistership_store::KeyRow;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::users::RolesRequest;
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::field::{KeyPrefix, MomentUs, Remark, UserName};
+use crate::web::{Listing, Paged, Params, Payload, Place};
+use sistership_web_support::reply::path;
+use sistership_web_support::roles::{RoleRequest, RoleView, grants};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list, create))
+        .routes(routes!(get, revoke))
+        .routes(routes!(set_roles))
+}
+
+/// A service key, but for its secret part.
+#[derive(Debug, Serialize, ToSchema)]
+struct KeyView {
+    /// What it begins with, after `sis_`.
+    prefix: String,
+    title: String,
+    /// The user in whose name it acts.
+    user: Option<String>,
+    roles: Vec<RoleView>,
+    created_us: i64,
+    expires_us: Option<i64>,
+    revoked_us: Option<i64>,
+    /// When it was last used, to a minute.
+    last_used_us: Option<i64>,
+}
+
+/// A service key as it is shown once.
+#[derive(Debug, Serialize, ToSchema)]
+struct NewKeyView {
+    /// The whole of it: it is not kept, and not shown again.
+    key: String,
+    /// The rest, as it is shown later too.
+    about: KeyView,
+}
+
+/// A service key to be.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct KeyRequest {
+    /// What it is for.
+    #[schema(inline)]
+    title: Remark,
+    /// The user in whose name it acts, as the audit then says; it has its own roles.
+    #[schema(inline)]
+    user: Option<UserName>,
+    /// What it may do.
+    #[serde(default)]
+    roles: Vec<RoleRequest>,
+    /// When it ends by itself, microseconds since 1970.
+    #[schema(inline)]
+    expires_us: Option<MomentUs>,
+}
+
+impl KeyView {
+    async fn of(app: &App, row: KeyRow) -> Result<Self> {
+        let roles = app.store().grants().of(&KeyRow::principal(&row.prefix)).await?;
+        let KeyRow {
+            prefix,
+            title,
+            user_name: user,
+            created_us,
+            expires_us,
+            revoked_us,
+            last_used_us,
+            ..
+        } = row;
+        let roles = roles.into_iter().map(RoleView::of).collect();
+        Ok(Self { prefix, title, user, roles, created_us, expires_us, revoked_us, last_used_us })
+    }
+}
+
+/// List the service keys by prefix, those that have ended too
+#[utoipa::path(get, path = "/v1/keys", tag = "access", params(Paged),
+    responses((status = 200, body = Listing<KeyView>)))]
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<KeyView>>> {
+    let keys = app.store().service_keys().list(&query.page()?).await?;
+    let mut items = Vec::new();
+    for key in keys.items {
+        items.push(KeyView::of(&app, key).await?);
+    }
+    let next = keys.next.as_ref().and_then(crate::web::page::cursor);
+    Ok(Json(Listing { items, next }))
+}
+
+/// Make a service key
+///
+/// The answer has the whole of it, once. So the request takes no `Idempotency-Key`: what is kept
+/// for a replay would be the key.
+#[utoipa::path(
+    post, path = "/v1/keys", tag = "access", request_body = KeyRequest,
+    responses((status = 201, body = NewKeyView, headers(("Location" = String))))
+)]
+async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
+    let KeyRequest { title, user, roles, expires_us } = payload.json()?;
+    let (user, ends) = (user.map(UserName::into_string), expires_us.map(MomentUs::get));
+    let (text, row) = app.accounts().make_key(&title, user, ends, &grants(roles)?).await?;
+    let location = path(&["v1", "keys", &row.prefix]);
+    let about = KeyView::of(&app, row).await?;
+    let view = NewKeyView { key: text.as_str().to_owned(), about };
+    let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
+    Ok((StatusCode::CREATED, head, Json(view)).into_response())
+}
+
+/// A service key
+#[utoipa::path(get, path = "/v1/keys/{prefix}", tag = "access",
+    params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
+async fn get(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
+    let key = app.store().service_keys().get(&prefix).await?;
+    Ok(Json(KeyView::of(&app, key).await?))
+}
+
+/// Revoke a service key, for ever
+#[utoipa::path(delete, path = "/v1/keys/{prefix}", tag = "access",
+    params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
+async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
+    let key = app.accounts().revoke(&prefix).await?;
+    Ok(Json(KeyView::of(&app, key).await?))
+}
+
+/// Give a service key these roles instead of all others
+#[utoipa::path(
+    put, path = "/v1/keys/{prefix}/roles", tag = "access",
+    params(("prefix" = inline(KeyPrefix), Path)),
+    request_body = RolesRequest, responses((status = 200, body = KeyView))
+)]
+async fn set_roles(
+    State(app): State<App>,
+    Place(prefix): Place<KeyPrefix>,
+    payload: Payload,
+) -> Result<Json<KeyView>> {
+    let RolesRequest { roles } = payload.json()?;
+    app.accounts().set_roles(&KeyRow::principal(&prefix), &grants(roles)?).await?;
+    let key = app.store().service_keys().get(&prefix).await?;
+    Ok(Json(KeyView::of(&app, key).await?))
+}

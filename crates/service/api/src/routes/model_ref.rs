@@ -1,0 +1,35 @@
+//! Versions by the names that people give them: `ship`, `ship/number`, `ship/alias`.
+
+use sistership_store::{Store, StoreError, Version};
+
+use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use sistership_auth::Role;
+use sistership_jobs::line::{CHAMPION, alias};
+
+/// The version that a name in a request stands for; `field` is where it stands.
+pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Version> {
+    let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
+    on_ship(store, Role::Reader, ship).await?;
+    let number = match rest.parse() {
+        Ok(number) => number,
+        Err(_) => {
+            alias(store, ship, rest).await?.ok_or_else(|| nothing(field, name))?.version_number
+        }
+    };
+    match store.versions().get(ship, number).await {
+        Err(StoreError::NotFound { .. }) => Err(nothing(field, name)),
+        other => Ok(other?),
+    }
+}
+
+fn nothing(field: &str, name: &str) -> Problem {
+    let forms = "give `ship` (its champion), `ship/number` or `ship/alias`";
+    Problem::invalid(
+        field,
+        format!(
+            "there is no model `{name}`; {forms}; GET /v1/ships lists the ships, \
+             /v1/models/SHIP/versions their versions"
+        ),
+    )
+}

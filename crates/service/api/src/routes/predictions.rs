@@ -1,0 +1,53 @@
+//! Simulations with a version.
+
+use axum::Json;
+use axum::extract::State;
+use serde_json::{Value, json};
+use sistership_jobs::predictions::{PredictionRequest, predict};
+use sistership_model::Model;
+use sistership_model::branch::Branch;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::model_ref::resolve;
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::Payload;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(create))
+}
+
+/// Simulate a manoeuvre, recorded inputs, or orders to come, with a version of a model
+#[utoipa::path(
+    post, path = "/v1/predictions", tag = "predictions", request_body = PredictionRequest,
+    responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; \
+        `trajectory` under canonical names; `metrics`; `stopped` where recorded inputs led out of \
+        the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo` and, where asked \
+        for, `bands`; `outside` where the motion left what the model's trials covered; over a \
+        horizon `foundation`, the track without the learned branch, and `band`, of each state \
+        `low` and `high`, where draws were asked for; `branch` of a version with a learned branch: \
+        its kind and mode, and `branch_share`: what it counted for, 0 to 1"))
+)]
+async fn create(State(app): State<App>, payload: Payload) -> Result<Json<Value>> {
+    let request: PredictionRequest = payload.json()?;
+    let version = resolve(app.store(), "model", &request.model).await?;
+    let model: Model = app.archive().model(&version).await?;
+    let law = app.law(&model.law).await?;
+    let most = app.limits().prediction_samples;
+    let branch = model.branch.as_ref().map(branch_words);
+    let mut answer = app.compute(move || predict(&request, &model, &law, most)).await??;
+    let head = version.head;
+    answer["model"] = json!(head.model);
+    answer["version"] = json!(head.number);
+    answer["sha256"] = json!(head.sha256);
+    answer["law"] = json!(head.law);
+    if let Some(branch) = branch {
+        answer["branch"] = branch;
+    }
+    Ok(Json(answer))
+}
+
+fn branch_words(branch: &Branch) -> Value {
+    json!({ "kind": branch.recipe.learner.name(), "mode": branch.mode.name() })
+}

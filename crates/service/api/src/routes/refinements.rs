@@ -1,0 +1,187 @@
+//! Asking for a refinement.
+
+use axum::extract::State;
+use axum::response::Response;
+use serde::Deserialize;
+use serde_json::Value;
+use sistership_identification::refine::{Prior, SettingFault, Settings};
+use sistership_store::{Job, StoreError};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::jobs::JobView;
+use super::model_ref::resolve;
+use super::named_trials::{named, no_trials};
+use super::queue::{accepted, enqueue};
+use super::trials::all_of_ship;
+use crate::app::App;
+use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
+use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use crate::web::field::RequestKey;
+use crate::web::payload::from_slice;
+use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
+use sistership_auth::Role;
+use sistership_jobs::schema::described;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(refine))
+}
+
+/// A refinement to be done.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct RefinementRequest {
+    /// The ship to refine a model for.
+    #[schema(inline)]
+    ship: Name,
+    /// `auto`, which it is where absent, or a version to start from: `ship` (its champion),
+    /// `ship/number`, `ship/alias`. Where neither a source nor a law nor `settings.method` is
+    /// named, all three are searched: the best model that the trials allow, by its error on
+    /// manoeuvres left out. With a law or method, `auto` is the most similar eligible ship.
+    #[schema(inline)]
+    source: Option<ModelName>,
+    /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law
+    /// says over the states of the trials and of its standard manoeuvres becomes the prior.
+    #[schema(inline)]
+    law: Option<Name>,
+    /// Ids of the trials; all of the ship's where absent.
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
+    /// Settings of the estimator; each has a default, and all are kept with the version.
+    #[serde(default)]
+    #[schema(schema_with = described::<Settings>)]
+    settings: Settings,
+}
+
+/// The source that is found.
+const AUTO: &str = "auto";
+
+/// Refine a model against trials
+///
+/// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
+/// ship's line, champion where it has none and else `candidate`, with a report. Where nothing was
+/// named and a learned branch wins on trials left out, `branch_job` of the result trains it.
+#[utoipa::path(
+    post, path = "/v1/refinements", tag = "refinements",
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body = RefinementRequest,
+    responses((status = 202, body = JobView, headers(("Location" = String))))
+)]
+async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let request: RefinementRequest = payload.json()?;
+    let search = names_no_method(payload.bytes()) && request.is_open();
+    key.once(&app, payload.bytes(), move |app| async move { queued(&app, request, search).await })
+        .await
+}
+
+/// Queues a refinement that a page asks for, by the document that the endpoint takes.
+pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
+    let body = serde_json::to_vec(asked).map_err(Problem::internal)?;
+    let request: RefinementRequest = from_slice(&body)?;
+    let search = names_no_method(&body) && request.is_open();
+    enqueued(app, request, search).await
+}
+
+impl RefinementRequest {
+    /// Whether neither source nor law is named, nor another prior, nor what only some methods keep.
+    fn is_open(&self) -> bool {
+        let source = self.source.as_deref().is_none_or(|source| source == AUTO);
+        let settings = &self.settings;
+        let is_source = settings.prior == Prior::Source;
+        source && self.law.is_none() && settings.constraints.is_empty() && is_source
+    }
+}
+
+/// Whether the settings leave the method open; a default says nothing of that.
+fn names_no_method(body: &[u8]) -> bool {
+    let asked: Value = serde_json::from_slice(body).unwrap_or_default();
+    asked.pointer("/settings/method").is_none()
+}
+
+async fn queued(app: &App, request: RefinementRequest, search: bool) -> Result<Reply> {
+    accepted(enqueued(app, request, search).await?)
+}
+
+async fn enqueued(app: &App, request: RefinementRequest, search: bool) -> Result<Job> {
+    let ship = request.ship.to_string();
+    let job = RefinementJob { search, ..settled(app, request).await? };
+    enqueue(app, REFINEMENT, &ship, &job).await
+}
+
+/// The request with everything looked up, so that a job that is wrong is refused at once.
+async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
+    let RefinementRequest { ship, source, law, trials, settings } = request;
+    on_ship(app.store(), Role::Engineer, &ship).await?;
+    match app.store().ships().get(&ship).await {
+        Err(StoreError::NotFound { .. }) => {
+            return Err(Problem::invalid(
+                "ship",
+                format!("there is no ship `{ship}`; create it with POST /v1/ships"),
+            ));
+        }
+        other => drop(other?),
+    }
+    settings.check().map_err(refused)?;
+    repeatable(&settings)?;
+    known(app, law.as_deref()).await?;
+    let trials = trial_ids(app, &ship, trials).await?;
+    let source = choice(app, source.as_deref().unwrap_or(AUTO)).await?;
+    Ok(RefinementJob {
+        source,
+        ship: ship.into_string(),
+        law: law.map(Name::into_string),
+        search: false,
+        trials,
+        settings,
+        key_sha256: None,
+    })
+}
+
+/// Every setting that cannot be used.
+fn refused(faults: Vec<SettingFault>) -> Problem {
+    let fault = |SettingFault { field, message }| (format!("settings.{field}"), message);
+    Problem::all_invalid(faults.into_iter().map(fault))
+}
+
+/// A version must follow from its recipe again, which it does not where a clock ended the search.
+fn repeatable(settings: &Settings) -> Result<()> {
+    let timed = settings
+        .cma_es
+        .as_ref()
+        .is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
+    let message = "a search that time ends cannot be derived again; limit `evaluations` in place \
+        of wall_s and cpu_s";
+    if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
+}
+
+/// Whether there is such a law.
+async fn known(app: &App, law: Option<&str>) -> Result<()> {
+    let Some(law) = law else { return Ok(()) };
+    match app.store().laws().get(law).await {
+        Err(StoreError::NotFound { .. }) => Err(Problem::invalid(
+            "law",
+            format!("there is no law `{law}`; GET /v1/laws lists those that there are"),
+        )),
+        other => other.map(drop).map_err(Problem::from),
+    }
+}
+
+async fn choice(app: &App, source: &str) -> Result<SourceChoice> {
+    if source == AUTO {
+        return Ok(SourceChoice::Auto);
+    }
+    let head = resolve(app.store(), "source", source).await?.head;
+    Ok(SourceChoice::Version { ship: head.model, number: head.number })
+}
+
+async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<Id>>) -> Result<Vec<String>> {
+    if let Some(ids) = ids {
+        return named(app, ship, ids, "all of the ship's").await;
+    }
+    let all: Vec<String> =
+        all_of_ship(app, ship).await?.into_iter().map(|trial| trial.id).collect();
+    if all.is_empty() { Err(no_trials(ship)) } else { Ok(all) }
+}

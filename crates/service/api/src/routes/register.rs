@@ -1,0 +1,160 @@
+//! Versions that were made elsewhere.
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::Deserialize;
+use serde_json::Value;
+use sistership_model::Model;
+use sistership_model::version::FORMAT;
+use sistership_store::{Expect, NewVersion, StoreError};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::versions::VersionHead;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::field::{Remark, RequestKey, VersionNumber};
+use crate::web::{Key, Name, Payload, Place, Reply};
+use sistership_jobs::error::DeriveError;
+use sistership_jobs::line::{LATEST, step};
+use sistership_jobs::recipe::{Recipe, RegisteredRecipe};
+use sistership_jobs::schema::described;
+use sistership_jobs::version::VersionDocument;
+
+const METHOD: &str = "registered";
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(register))
+}
+
+/// A model that was made elsewhere.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct RegisterRequest {
+    /// The model, as `models/schema/model.json` describes it and `GET /v1/ships/{ship}/model`
+    /// answers.
+    #[schema(schema_with = described::<Model>)]
+    model: Value,
+    /// Who made it, with what; kept in its recipe.
+    #[schema(inline)]
+    origin: Remark,
+    /// The number of the version that it was made from.
+    #[schema(inline)]
+    parent: Option<VersionNumber>,
+}
+
+/// Keep a model that was made elsewhere as the next version
+///
+/// It is checked against its law. It becomes champion only when that alias is moved to it.
+#[utoipa::path(
+    post, path = "/v1/models/{model}/versions", tag = "models",
+    params(
+        ("model" = inline(Name), Path, description = "The ship"),
+        ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request \
+            safely under this key")
+    ),
+    request_body = RegisterRequest,
+    responses((status = 201, body = VersionHead, headers(("Location" = String))))
+)]
+async fn register(
+    State(app): State<App>,
+    Place(ship): Place<Name>,
+    key: Key,
+    payload: Payload,
+) -> Result<Response> {
+    let request: RegisterRequest = payload.json()?;
+    key.once(&app, payload.bytes(), |app| async move {
+        registered(&app, ship.into_string(), request).await
+    })
+    .await
+}
+
+async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result<Reply> {
+    let RegisterRequest { model, origin, parent } = request;
+    let model: Model = serde_path_to_error::deserialize(model).map_err(|error| {
+        let field = format!("model.{}", error.path());
+        Problem::invalid(field.trim_end_matches('.'), error.inner().to_string())
+    })?;
+    if model.ship != ship {
+        return Err(Problem::invalid(
+            "model.ship",
+            format!("is `{}`, but the path says `{ship}`", model.ship),
+        ));
+    }
+    app.store().ships().get(&ship).await?;
+    let law_sha256 = checked(app, &model).await?;
+    let weights = weights(app, &model).await?;
+    let new = NewVersion {
+        parent: parent_id(app, &ship, parent.map(VersionNumber::get)).await?,
+        law: model.law.clone(),
+        method: METHOD.to_owned(),
+        document: document(&ship, model, law_sha256, origin.into_string())?,
+        model: ship,
+        weights,
+    };
+    // Nothing of the document depends on the number, so that it does not matter who else makes
+    // versions.
+    let follow = step(LATEST, Expect::Any, METHOD);
+    let versions = app.store().versions();
+    let version = versions.create_with_weights(app.objects(), &new, &[follow]).await?;
+    let (model, number) = (version.model.clone(), version.number.to_string());
+    let reply = Reply::new(StatusCode::CREATED, &VersionHead::of(version))?;
+    Ok(reply.at(&["v1", "models", &model, "versions", &number]))
+}
+
+/// Checks a model against its law, and returns the hash of the law's text.
+async fn checked(app: &App, model: &Model) -> Result<String> {
+    let no_law = || {
+        Problem::invalid(
+            "model.law",
+            format!("there is no law `{}`; GET /v1/laws lists them", model.law),
+        )
+    };
+    let law = app.find_law(&model.law).await?.ok_or_else(no_law)?;
+    model
+        .check(&law.law)
+        .map_err(|(field, message)| Problem::invalid(&format!("model.{field}"), message))?;
+    Ok(law.sha256)
+}
+
+/// The object with the weights of a model's learned branch, which must be here and suit it.
+async fn weights(app: &App, model: &Model) -> Result<Option<String>> {
+    let Some(branch) = &model.branch else { return Ok(None) };
+    let refuse = |error: DeriveError| match error {
+        DeriveError::Store(StoreError::NotFound { .. }) => Problem::invalid(
+            "model.branch.weights_sha256",
+            "there are no such weights here; train a branch with POST /v1/branches",
+        ),
+        DeriveError::Join(error) => Problem::invalid("model.branch", error.to_string()),
+        other => other.into(),
+    };
+    app.archive().attach(&mut model.clone()).await.map_err(refuse)?;
+    Ok(Some(branch.weights_sha256.clone()))
+}
+
+async fn parent_id(app: &App, ship: &str, parent: Option<i64>) -> Result<Option<String>> {
+    let Some(number) = parent else { return Ok(None) };
+    match app.store().versions().get(ship, number).await {
+        Err(StoreError::NotFound { .. }) => {
+            Err(Problem::invalid("parent", format!("there is no version {ship}/{number}")))
+        }
+        other => Ok(Some(other?.head.id)),
+    }
+}
+
+fn document(ship: &str, model: Model, law_sha256: String, origin: String) -> Result<String> {
+    let document = VersionDocument {
+        format: FORMAT.to_owned(),
+        ship: ship.to_owned(),
+        recipe: Recipe::Registered(RegisteredRecipe {
+            kind: Default::default(),
+            law_sha256,
+            origin,
+        }),
+        model,
+        report: Value::Null,
+    };
+    document.canonical().map_err(Problem::internal)
+}

@@ -1,0 +1,106 @@
+//! The samples of a trial, in canonical units and signs.
+
+use std::fs::File;
+
+use axum::BoxError;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::{HeaderMap, header};
+use axum::response::{IntoResponse, Response};
+use bytes::Bytes;
+use futures::stream::BoxStream;
+use futures::{Stream, StreamExt as _};
+use sha2::{Digest as _, Sha256};
+use sistership_store::ObjectsError;
+use sistership_trials::samples::CsvPieces;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::binary::Binary;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::upload::{hex, spool};
+use crate::web::{Id, Place, accept};
+use sistership_jobs::budget::{self, Share};
+
+const CSV: &str = "text/csv";
+const PARQUET: &str = "application/vnd.apache.parquet";
+/// What a CSV file holds of its samples while it is sent, bytes: a page of each column, as it is
+/// stored and as it is in memory.
+const DECODING: u64 = 4 << 20;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(samples))
+}
+
+/// The samples of a trial, as CSV or as Parquet, under canonical names
+#[utoipa::path(
+    get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = inline(Id), Path)),
+    responses((status = 200,
+    content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
+)]
+async fn samples(
+    State(app): State<App>,
+    Place(id): Place<Id>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let media = accept::choose(&headers, &[CSV, PARQUET])?;
+    let trial = app.store().trials().get(&id).await?;
+    let (size, stream) = app.objects().stream(&trial.object_key).await?;
+    let types = [(header::CONTENT_TYPE, media), (header::VARY, "accept")];
+    if media == CSV {
+        return Ok((types, csv(&app, &trial.object_key, stream).await?).into_response());
+    }
+    let body = Body::from_stream(verified(trial.object_key, stream));
+    Ok((types, [(header::CONTENT_LENGTH, size)], body).into_response())
+}
+
+/// The bytes as they come; where their hash is another than it was, the answer breaks off before
+/// its end.
+fn verified(
+    key: String,
+    mut bytes: Bytestream,
+) -> impl Stream<Item = std::result::Result<Bytes, BoxError>> + Send {
+    async_stream::try_stream! {
+        let (mut hash, mut held) = (Sha256::new(), Bytes::new());
+        while let Some(next) = bytes.next().await {
+            let next = next?;
+            hash.update(&next);
+            let before = std::mem::replace(&mut held, next);
+            if !before.is_empty() {
+                yield before;
+            }
+        }
+        damaged(&key, &hex(&hash.finalize()))?;
+        yield held;
+    }
+}
+
+type Bytestream = BoxStream<'static, sistership_store::Result<Bytes>>;
+
+fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
+    if key == actual {
+        Ok(())
+    } else {
+        Err(ObjectsError::Damaged { key: key.into(), actual: actual.into() }.into())
+    }
+}
+
+/// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a
+/// caller who does not read.
+async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
+    let share = budget::share(DECODING).await?;
+    let spooled = spool(app.spool(), bytes).await?;
+    damaged(key, &spooled.sha256).map_err(Problem::internal)?;
+    let open = move || CsvPieces::open(File::open(&spooled.path)?).map_err(BoxError::from);
+    let pieces = app.compute(open).await?.map_err(Problem::internal)?;
+    let next = |(mut pieces, share): (CsvPieces, Option<Share>)| async move {
+        let decode = move || {
+            pieces
+                .next_piece()
+                .map(|piece| piece.map(|piece| (Bytes::from(piece), (pieces, share))))
+        };
+        tokio::task::spawn_blocking(decode).await.map_err(BoxError::from)?.map_err(BoxError::from)
+    };
+    Ok(Body::from_stream(futures::stream::try_unfold((pieces, share), next)))
+}

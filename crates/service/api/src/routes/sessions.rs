@@ -1,0 +1,134 @@
+//! Ships under way: a version sails on as orders come.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde_json::{Value, json};
+use sistership_auth::Role;
+use sistership_jobs::predictions::session::{Handle, Session, SessionRequest, StepsRequest};
+use sistership_model::Model;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+use super::model_ref::resolve;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::rights::{current, on_ship};
+use crate::web::{Id, Payload, Place, Reply};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(open, list))
+        .routes(routes!(show, close))
+        .routes(routes!(steps))
+}
+
+/// Whose the sessions are that a request sees: of whoever asks.
+pub(super) fn owner() -> Result<String> {
+    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    Ok(acting.principal.name.clone())
+}
+
+/// A session of whoever asks, who may still look at its ship.
+pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
+    let handle = app.sessions().find(id, &owner()?)?;
+    let ship = handle.about["model"].as_str().unwrap_or_default();
+    on_ship(app.store(), Role::Reader, ship).await?;
+    Ok(handle)
+}
+
+/// Put a ship under way
+///
+/// A version of a model sails on as orders come, `/steps` by `/steps` or over `/stream`, beside
+/// draws of its posterior where these are asked for. Sessions are in the memory of the process that
+/// has taken them, of whoever has opened them; they end when nobody asks for ten minutes.
+#[utoipa::path(
+    post, path = "/v1/sessions", tag = "predictions", request_body = SessionRequest,
+    responses((status = 201, body = Object, headers(("Location" = String)),
+        description = "As `GET /v1/sessions/{id}`"))
+)]
+async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
+    let request: SessionRequest = payload.json()?;
+    let owner = owner()?;
+    app.sessions().room(&owner)?;
+    let version = resolve(app.store(), "model", &request.model).await?;
+    let model: Model = app.archive().model(&version).await?;
+    let law = app.law(&model.law).await?;
+    let session = app.compute(move || Session::new(&request, &model, &law)).await??;
+    let (id, head) = (Uuid::new_v4().to_string(), version.head);
+    let about = json!({
+        "model": head.model, "version": head.number, "sha256": head.sha256, "law": head.law,
+    });
+    let answer = view(&id, &about, session.view());
+    app.sessions().open(&id, &owner, about, session)?;
+    Ok(Reply::new(StatusCode::CREATED, &answer)?.at(&["v1", "sessions", &id]))
+}
+
+/// The sessions of whoever asks
+#[utoipa::path(
+    get, path = "/v1/sessions", tag = "predictions",
+    responses((status = 200, body = Object,
+        description = "`items`: `id`, `model`, `version`, `sha256`, `law` of each"))
+)]
+async fn list(State(app): State<App>) -> Result<Json<Value>> {
+    let own = app.sessions().of(&owner()?);
+    let items: Vec<Value> = own.iter().map(|(id, about)| view(id, about, json!({}))).collect();
+    Ok(Json(json!({ "items": items })))
+}
+
+/// Where a ship under way is
+#[utoipa::path(
+    get, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = Object,
+        description = "`id`, `model`, `version`, `sha256`, `law`; the state under canonical names, \
+        `t_s`; `orders`; `draws`, and with them `band`: of each state `low` and `high`, between \
+        which 95 % of the draws are; `stopped` where the motion has left the physical range, with \
+        `reason`; `outside` where it is outside what the model's trials covered"))
+)]
+async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value>> {
+    let handle = found(&app, &id).await?;
+    let about = handle.about.clone();
+    let now = app.compute(move || handle.with(|session| Ok(session.view()))).await??;
+    Ok(Json(view(&id, &about, now)))
+}
+
+/// Sail on
+///
+/// Orders go through the steering gear: the rudder follows within its limit, at its rate. What is
+/// not given stays as it was ordered before.
+#[utoipa::path(
+    post, path = "/v1/sessions/{id}/steps", tag = "predictions", params(("id" = inline(Id), Path)),
+    request_body = StepsRequest,
+    responses((status = 200, body = Object,
+        description = "`t_s` now; `trajectory` under canonical names, a sample a step; `band`: \
+        `low` and `high` likewise, how many were `drawn` and are `sailing` still; `stopped` where \
+        the motion has left the physical range, now or before: there is no sample after it; \
+        `outside`; `branch_share`"))
+)]
+async fn steps(
+    State(app): State<App>,
+    Place(id): Place<Id>,
+    payload: Payload,
+) -> Result<Json<Value>> {
+    let request: StepsRequest = payload.json()?;
+    let (handle, most) = (found(&app, &id).await?, app.limits().prediction_samples);
+    let sail = move || handle.with(|session| session.sail(&request, most));
+    Ok(Json(app.compute(sail).await??))
+}
+
+/// End a session
+#[utoipa::path(
+    delete, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
+    responses((status = 204))
+)]
+async fn close(State(app): State<App>, Place(id): Place<Id>) -> Result<StatusCode> {
+    app.sessions().close(&id, &owner()?)?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+fn view(id: &str, about: &Value, mut now: Value) -> Value {
+    now["id"] = json!(id);
+    about.as_object().into_iter().flatten().for_each(|(name, value)| now[name] = value.clone());
+    now
+}

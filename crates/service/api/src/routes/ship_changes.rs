@@ -1,0 +1,130 @@
+//! Ships, to change.
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use sistership_model::Vessel;
+use sistership_model::vessel::VesselFile;
+use sistership_store::Ship;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::described::Vessel as VesselBody;
+use super::ships::ShipDetail;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::field::{EntityTags, RequestKey};
+use crate::web::{Conditions, Key, Name, Payload, Place, Reply};
+use sistership_jobs::publish::publish;
+use sistership_jobs::seed::new_ship;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(create))
+        .routes(routes!(replace, delete))
+        .routes(routes!(undelete))
+}
+
+/// Reads and checks a vessel as JSON or YAML.
+async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
+    if payload.is_json() {
+        return Ok(Vessel::from_file("body", payload.json::<VesselFile>()?)?);
+    }
+    let text = payload
+        .text()
+        .map_err(|_| payload.wrong("application/yaml` or `application/json"))?
+        .to_owned();
+    Ok(app.compute(move || Vessel::parse("body", &text)).await??)
+}
+
+/// Create a ship
+///
+/// The body is a vessel document, YAML or JSON (`models/schema/vessel.json`). Each model that it
+/// publishes becomes a version; the first becomes champion. A ship known by particulars only gets
+/// its first model from a refinement.
+#[utoipa::path(
+    post, path = "/v1/ships", tag = "ships",
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
+    responses((status = 201, body = ShipDetail, headers(("ETag" = String), ("Location" = String))))
+)]
+async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let vessel = vessel(&app, &payload).await?;
+    key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
+}
+
+/// Keeps a new ship and the models that it publishes.
+pub(super) async fn kept(app: &App, vessel: &Vessel) -> Result<Ship> {
+    let zoo = app.laws().await?;
+    zoo.check_models(vessel)?;
+    let new = new_ship(vessel).map_err(Problem::internal)?;
+    let ship = app.store().ships().create(&new).await?;
+    publish(app.store(), &zoo, vessel, &ship.document).await?;
+    Ok(ship)
+}
+
+async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
+    let ship = ShipDetail::of(app, kept(app, vessel).await?).await?;
+    let reply = Reply::new(StatusCode::CREATED, &ship)?;
+    Ok(reply.at(&["v1", "ships", &ship.name]).tagged(ship.etag()))
+}
+
+/// Replace a ship's document, as you last read it
+#[utoipa::path(
+    put, path = "/v1/ships/{ship}", tag = "ships",
+    params(("ship" = inline(Name), Path),
+    ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read it")),
+    request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
+)]
+async fn replace(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    conditions: Conditions,
+    payload: Payload,
+) -> Result<Response> {
+    let current = app.store().ships().get(&name).await?;
+    let revision = conditions.revision(&format!("ship `{name}`"), current.revision)?;
+    let vessel = vessel(&app, &payload).await?;
+    if vessel.name() != &*name {
+        return Err(Problem::invalid(
+            "name",
+            format!("is `{}`, but the path says `{name}`; a ship keeps its name", vessel.name()),
+        ));
+    }
+    let zoo = app.laws().await?;
+    zoo.check_models(&vessel)?;
+    let new = new_ship(&vessel).map_err(Problem::internal)?;
+    let ship: Ship = app.store().ships().update(&new, revision).await?;
+    publish(app.store(), &zoo, &vessel, &ship.document).await?;
+    Ok(ShipDetail::of(&app, ship).await?.answer())
+}
+
+/// Delete a ship; its versions stay, and `undelete` brings it back
+#[utoipa::path(
+    delete, path = "/v1/ships/{ship}", tag = "ships",
+    params(("ship" = inline(Name), Path),
+    ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if it is still as you last read it")),
+    responses((status = 204, description = "Deleted"))
+)]
+async fn delete(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    conditions: Conditions,
+) -> Result<Response> {
+    let current = app.store().ships().get(&name).await?;
+    let revision = conditions.optional_revision(&format!("ship `{name}`"), current.revision)?;
+    app.store().ships().delete(&name, revision).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+/// Bring a deleted ship back
+#[utoipa::path(
+    post, path = "/v1/ships/{ship}/undelete", tag = "ships", params(("ship" = inline(Name), Path)),
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
+)]
+async fn undelete(State(app): State<App>, Place(name): Place<Name>) -> Result<Response> {
+    let ship = app.store().ships().undelete(&name).await?;
+    Ok(ShipDetail::of(&app, ship).await?.answer())
+}

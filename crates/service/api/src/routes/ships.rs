@@ -1,0 +1,131 @@
+//! Ships, to look at.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use serde_json::Value;
+use sistership_store::{FoundShip, Ship, StoreError};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::conditions::tag;
+use crate::web::field::EntityTags;
+use crate::web::{Conditions, Listing, Name, Params, Place};
+use sistership_jobs::condition::Condition;
+use sistership_jobs::derive::DeriveError;
+use sistership_jobs::search;
+use sistership_web_support::ship_search::{self, Query};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
+}
+
+/// A ship as lists show it.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct ShipHead {
+    pub name: String,
+    /// What people call it.
+    pub title: String,
+    /// Ships are compared within a category.
+    pub category: String,
+    /// One more with each change; its ETag.
+    pub revision: i64,
+    pub created_us: i64,
+    pub updated_us: i64,
+    /// The correlation with `similar_to`, else the value of the first particular or metric that was
+    /// asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+}
+
+/// A ship with its document.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct ShipDetail {
+    pub name: String,
+    /// What people call it.
+    pub title: String,
+    /// Ships are compared within a category.
+    pub category: String,
+    /// One more with each change.
+    pub revision: i64,
+    pub created_us: i64,
+    pub updated_us: i64,
+    /// Whether its champion still holds.
+    pub condition: Condition,
+    /// The vessel as `models/schema/vessel.json` describes it.
+    #[schema(value_type = Object)]
+    pub document: Value,
+}
+
+impl ShipHead {
+    fn of(ship: FoundShip) -> Self {
+        let FoundShip { name, title, category, revision, created_us, updated_us, value } = ship;
+        Self { name, title, category, revision, created_us, updated_us, value }
+    }
+}
+
+impl ShipDetail {
+    pub(super) async fn of(app: &App, ship: Ship) -> Result<Self> {
+        let condition = Condition::of(app.store(), &ship.name).await?;
+        let document = serde_json::from_str(&ship.document).map_err(Problem::internal)?;
+        let Ship { name, title, category, revision, created_us, updated_us, .. } = ship;
+        Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })
+    }
+
+    /// Its revision, and what its condition comes from: either changes what is shown, the first
+    /// alone what may be changed.
+    pub(super) fn etag(&self) -> String {
+        tag(format!("{}{}", self.revision, self.condition.tag()))
+    }
+
+    pub(super) fn answer(self) -> Response {
+        ([(header::ETAG, self.etag())], Json(self)).into_response()
+    }
+}
+
+/// Find ships: by category, tag, particulars, metrics of the champion, and similarity
+///
+/// By name; with ranges by the first of them, rising; with `similar_to` the most similar first.
+/// Particulars and metrics follow a change of ship or champion within a second or so.
+#[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query),
+    responses((status = 200, body = Listing<ShipHead>)))]
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Vec<(String, String)>>,
+) -> Result<Json<Listing<ShipHead>>> {
+    let (asked, page) = ship_search::read(query)?;
+    let found = search::ships(app.archive(), app.catalogue().vectors(), &asked, &page).await;
+    let ships = found.map_err(|error| match error {
+        DeriveError::Store(StoreError::NotFound { kind: "ship", .. }) => {
+            Problem::invalid("similar_to", error.to_string())
+        }
+        other => other.into(),
+    })?;
+    Ok(Json(Listing::of(ships, ShipHead::of)))
+}
+
+/// A ship; its ETag is what a change must present
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
+            have")),
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))),
+    (status = 304, description = "As you have it"))
+)]
+async fn get(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    conditions: Conditions,
+) -> Result<Response> {
+    let ship = ShipDetail::of(&app, app.store().ships().get(&name).await?).await?;
+    let etag = ship.etag();
+    match conditions.has(&etag) {
+        true => Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, etag)]).into_response()),
+        false => Ok(ship.answer()),
+    }
+}

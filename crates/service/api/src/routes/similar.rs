@@ -1,0 +1,76 @@
+//! Which ships are most like a ship.
+
+use axum::Json;
+use axum::extract::State;
+use serde::Deserialize;
+use serde_json::Value;
+use sistership_model::version::RecipeTrial;
+use sistership_priors::similarity::Definition;
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::trials::all_of_ship;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::rights::visible;
+use crate::web::{Name, Params, Place};
+use sistership_auth::Role;
+use sistership_jobs::archive::vessel;
+use sistership_jobs::budget;
+use sistership_jobs::champions::SourceModels;
+use sistership_jobs::memory::trial_bytes;
+use sistership_web_support::ship_search::vectors;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(similar))
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else
+    /// Kanazawa's.
+    #[param(schema_with = vectors)]
+    vector: Option<Definition>,
+    /// Whether eligible ships are measured on the ship's trials, where it has any.
+    #[serde(default = "yes")]
+    trials: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Rank the zoo for a ship, and say which ships may be its source
+///
+/// Ships are those for which you have a role. Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
+/// ranked; `GET /v1/ships?similar_to=` has all of them.
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}/similar", tag = "ships",
+    params(("ship" = inline(Name), Path), Query),
+    responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and \
+        `ranking`, as `sistership similar --json`"))
+)]
+async fn similar(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    Params(query): Params<Query>,
+) -> Result<Json<Value>> {
+    let ship = app.store().ships().get(&name).await?;
+    let target = vessel(&ship.name, &ship.document)?;
+    let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };
+    budget::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
+    let named =
+        trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
+    let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
+    let zoo = app.zoo_around(&target).await?;
+    let models = SourceModels::read(app.archive(), &zoo).await?;
+    let ranked =
+        move || models.rank(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
+    let mut ranked = app.compute(ranked).await?;
+    ranked.ranking =
+        visible(app.store(), Role::Reader, ranked.ranking, |ranked| &ranked.ship).await?;
+    Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
+}

@@ -1,0 +1,259 @@
+//! Users, and whoever asks.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use sistership_store::{Identity, User};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::rights::{Kind, current};
+use crate::web::field::{Line, Password, Remark, RequestKey, UserName};
+use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply};
+use sistership_web_support::roles::{RoleRequest, RoleView, grants};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(me))
+        .routes(routes!(list, create))
+        .routes(routes!(get, disable))
+        .routes(routes!(enable))
+        .routes(routes!(set_password))
+        .routes(routes!(set_roles))
+        .routes(routes!(set_identities))
+}
+
+/// Whoever asks.
+#[derive(Debug, Serialize, ToSchema)]
+struct Me {
+    /// As the audit names them: a user, `key:PREFIX`, `server-key`, or `local` on a server that
+    /// asks nobody who they are.
+    name: String,
+    /// `user`, `key`, `server-key` or `local`.
+    kind: &'static str,
+    roles: Vec<RoleView>,
+}
+
+/// A user.
+#[derive(Debug, Serialize, ToSchema)]
+struct UserView {
+    name: String,
+    title: String,
+    roles: Vec<RoleView>,
+    /// Whether they may do anything.
+    enabled: bool,
+    /// Whether they can sign in by a password.
+    has_password: bool,
+    /// As whom OpenID providers know them.
+    identities: Vec<IdentityView>,
+    created_us: i64,
+}
+
+/// Whom an OpenID provider knows.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct IdentityRequest {
+    /// The provider.
+    #[schema(inline)]
+    issuer: Line,
+    /// What it calls them: its claim `sub`.
+    #[schema(inline)]
+    subject: Line,
+}
+
+/// Whom an OpenID provider knows.
+#[derive(Debug, Serialize, ToSchema)]
+struct IdentityView {
+    issuer: String,
+    subject: String,
+}
+
+/// Identities instead of all others.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct IdentitiesRequest {
+    /// The identities; none, and no provider knows the user.
+    identities: Vec<IdentityRequest>,
+}
+
+/// A user to be.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct UserRequest {
+    /// The name, for ever.
+    #[schema(inline)]
+    name: UserName,
+    /// What people call them; the name where absent.
+    #[schema(inline)]
+    title: Option<Remark>,
+    /// The first password; without one they cannot sign in yet.
+    #[schema(inline)]
+    password: Option<Password>,
+    /// What they may do.
+    #[serde(default)]
+    roles: Vec<RoleRequest>,
+}
+
+/// A new password.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct PasswordRequest {
+    /// The password.
+    #[schema(inline)]
+    password: Password,
+}
+
+/// Roles instead of all others.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RolesRequest {
+    /// The roles; none takes every right.
+    pub roles: Vec<RoleRequest>,
+}
+
+impl UserView {
+    async fn of(app: &App, user: User) -> Result<Self> {
+        let roles = app.store().grants().of(&User::principal(&user.name)).await?;
+        let (enabled, has_password) = (user.is_enabled(), user.password_hash.is_some());
+        let identities = app.store().identities().of(&user.name).await?;
+        let identity = |Identity { issuer, subject, .. }| IdentityView { issuer, subject };
+        let identities = identities.into_iter().map(identity).collect();
+        let User { name, title, created_us, .. } = user;
+        let roles = roles.into_iter().map(RoleView::of).collect();
+        Ok(Self { name, title, roles, enabled, has_password, identities, created_us })
+    }
+}
+
+/// Whoever asks, and what they may do
+#[utoipa::path(get, path = "/v1/me", tag = "access", responses((status = 200, body = Me)))]
+async fn me() -> Result<Json<Me>> {
+    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let kind = match acting.principal.kind {
+        Kind::Local => "local",
+        Kind::ServerKey => "server-key",
+        Kind::Key => "key",
+        Kind::Session { .. } => "user",
+    };
+    let roles = acting.principal.rights.grants().iter().map(RoleView::of_grant).collect();
+    Ok(Json(Me { name: acting.principal.name.clone(), kind, roles }))
+}
+
+/// List the users by name
+#[utoipa::path(get, path = "/v1/users", tag = "access", params(Paged),
+    responses((status = 200, body = Listing<UserView>)))]
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<UserView>>> {
+    let users = app.store().users().list(&query.page()?).await?;
+    let mut items = Vec::new();
+    for user in users.items {
+        items.push(UserView::of(&app, user).await?);
+    }
+    let next = users.next.as_ref().and_then(crate::web::page::cursor);
+    Ok(Json(Listing { items, next }))
+}
+
+/// Create a user
+#[utoipa::path(
+    post, path = "/v1/users", tag = "access",
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body = UserRequest,
+    responses((status = 201, body = UserView, headers(("Location" = String))))
+)]
+async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let request: UserRequest = payload.json()?;
+    key.once(&app, payload.bytes(), |app| async move { created(&app, request).await }).await
+}
+
+async fn created(app: &App, request: UserRequest) -> Result<Reply> {
+    let UserRequest { name, title, password, roles } = request;
+    let title = title.map_or_else(|| name.to_string(), Remark::into_string);
+    let roles = grants(roles)?;
+    let user = app.accounts().create_user(&name, &title, password.as_deref(), &roles).await?;
+    let name = user.name.clone();
+    let reply = Reply::new(StatusCode::CREATED, &UserView::of(app, user).await?)?;
+    Ok(reply.at(&["v1", "users", &name]))
+}
+
+/// A user
+#[utoipa::path(get, path = "/v1/users/{user}", tag = "access",
+    params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
+async fn get(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
+    let user = app.store().users().get(&name).await?;
+    Ok(Json(UserView::of(&app, user).await?))
+}
+
+/// Disable a user: signed out everywhere, with no rights; the name stays taken
+#[utoipa::path(delete, path = "/v1/users/{user}", tag = "access",
+    params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
+async fn disable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
+    let user = app.accounts().enable(&name, false).await?;
+    Ok(Json(UserView::of(&app, user).await?))
+}
+
+/// Give a disabled user the rights again that they had
+#[utoipa::path(post, path = "/v1/users/{user}/enable", tag = "access",
+    params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
+async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
+    let user = app.accounts().enable(&name, true).await?;
+    Ok(Json(UserView::of(&app, user).await?))
+}
+
+/// Set the password of a user, who is signed out everywhere
+#[utoipa::path(
+    put, path = "/v1/users/{user}/password", tag = "access",
+    params(("user" = inline(UserName), Path)),
+    request_body = PasswordRequest, responses((status = 204, description = "It is set"))
+)]
+async fn set_password(
+    State(app): State<App>,
+    Place(name): Place<UserName>,
+    payload: Payload,
+) -> Result<StatusCode> {
+    let PasswordRequest { password } = payload.json()?;
+    app.accounts().set_password(&name, &password).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Give a user these roles instead of all others
+#[utoipa::path(
+    put, path = "/v1/users/{user}/roles", tag = "access", params(("user" = inline(UserName), Path)),
+    request_body = RolesRequest, responses((status = 200, body = UserView))
+)]
+async fn set_roles(
+    State(app): State<App>,
+    Place(name): Place<UserName>,
+    payload: Payload,
+) -> Result<Json<UserView>> {
+    let RolesRequest { roles } = payload.json()?;
+    app.accounts().set_roles(&User::principal(&name), &grants(roles)?).await?;
+    let user = app.store().users().get(&name).await?;
+    Ok(Json(UserView::of(&app, user).await?))
+}
+
+/// Let OpenID providers know a user as these instead of all others
+#[utoipa::path(
+    put, path = "/v1/users/{user}/identities", tag = "access",
+    params(("user" = inline(UserName), Path)),
+    request_body = IdentitiesRequest, responses((status = 200, body = UserView))
+)]
+async fn set_identities(
+    State(app): State<App>,
+    Place(name): Place<UserName>,
+    payload: Payload,
+) -> Result<Json<UserView>> {
+    let IdentitiesRequest { identities } = payload.json()?;
+    let pair = |one: IdentityRequest| (one.issuer.into_string(), one.subject.into_string());
+    let those: Vec<(String, String)> = identities.into_iter().map(pair).collect();
+    app.store().identities().replace(&name, &those).await?;
+    app.accounts().forget();
+    let user = app.store().users().get(&name).await?;
+    Ok(Json(UserView::of(&app, user).await?))
+}

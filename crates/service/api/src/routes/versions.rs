@@ -1,0 +1,172 @@
+//! Versions of models.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use serde_json::Value;
+use sistership_store::{Page, StoreError};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::field::EntityTags;
+use crate::web::{Conditions, Listing, Name, Number, Paged, Params, Place};
+use sistership_jobs::verify::{self, Verification};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get)).routes(routes!(bytes))
+}
+
+/// What takes as long as a refinement.
+pub(super) fn verification() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(verify_again))
+}
+
+/// A version, but for its document.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct VersionHead {
+    pub id: String,
+    /// The line of versions, which is the ship's name.
+    pub model: String,
+    pub number: i64,
+    /// The id of the version it was made from.
+    pub parent: Option<String>,
+    pub law: String,
+    /// `published-source`, the method of the refinement, `diagnosis`, `branch-KIND-MODE`,
+    /// or `registered`.
+    pub method: String,
+    /// The SHA-256 of its document.
+    pub sha256: String,
+    /// The id of the report on it; only where one version is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub report: Option<String>,
+    pub created_us: i64,
+    /// Who asked for it, as the audit names them; null where that was not kept yet.
+    pub author: Option<String>,
+}
+
+/// A version.
+#[derive(Debug, Serialize, ToSchema)]
+struct VersionDetail {
+    version: VersionHead,
+    /// Format, ship, recipe, model and report; its exact bytes are under `/document`.
+    #[schema(value_type = Object)]
+    document: Value,
+}
+
+impl VersionHead {
+    pub(super) fn of(head: sistership_store::VersionHead) -> Self {
+        let sistership_store::VersionHead {
+            id,
+            model,
+            number,
+            parent,
+            law,
+            method,
+            sha256,
+            created_us,
+            author,
+        } = head;
+        let report = None;
+        Self { id, model, number, parent, law, method, sha256, report, created_us, author }
+    }
+
+    pub(super) async fn with_report(
+        app: &App,
+        head: sistership_store::VersionHead,
+    ) -> Result<Self> {
+        let reports = app.store().reports().by_version(&head.id, &Page::first(1)).await?;
+        let report = reports.items.into_iter().next().map(|report| report.id);
+        Ok(Self { report, ..Self::of(head) })
+    }
+}
+
+/// List the versions of a model, the latest first
+#[utoipa::path(
+    get, path = "/v1/models/{model}/versions", tag = "models",
+    params(("model" = inline(Name), Path), Paged),
+    responses((status = 200, body = Listing<VersionHead>))
+)]
+async fn list(
+    State(app): State<App>,
+    Place(model): Place<Name>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<VersionHead>>> {
+    exists(&app, &model).await?;
+    let versions = app.store().versions().list(&model, &query.page()?).await?;
+    Ok(Json(Listing::of(versions, VersionHead::of)))
+}
+
+/// A model is there once it has a version; before that its ship may be.
+pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
+    match app.store().versions().latest(model).await {
+        Err(StoreError::NotFound { .. }) => Ok(app.store().ships().get(model).await.map(drop)?),
+        other => Ok(other.map(drop)?),
+    }
+}
+
+/// A version with its document
+#[utoipa::path(
+    get, path = "/v1/models/{model}/versions/{number}", tag = "models",
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
+    responses((status = 200, body = VersionDetail))
+)]
+async fn get(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+) -> Result<Json<VersionDetail>> {
+    let version = app.store().versions().get(&model, number.get()).await?;
+    let document = serde_json::from_str(&version.document).map_err(Problem::internal)?;
+    Ok(Json(VersionDetail {
+        version: VersionHead::with_report(&app, version.head).await?,
+        document,
+    }))
+}
+
+/// The document of a version, byte for byte as it was hashed
+#[utoipa::path(
+    get, path = "/v1/models/{model}/versions/{number}/document", tag = "models",
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
+            have")),
+    responses((status = 200, body = Object, headers(("ETag" = String))),
+    (status = 304, description = "As you have it"))
+)]
+async fn bytes(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+    conditions: Conditions,
+) -> Result<Response> {
+    let version = app.store().versions().get(&model, number.get()).await?;
+    let etag = format!("\"{}\"", version.head.sha256);
+    let head =
+        [(header::ETAG, etag.clone()), (header::CONTENT_TYPE, "application/json".to_owned())];
+    match conditions.has(&etag) {
+        true => Ok((StatusCode::NOT_MODIFIED, head).into_response()),
+        false => Ok((head, version.document).into_response()),
+    }
+}
+
+/// Derive a version again from its recipe, and compare the bytes
+#[utoipa::path(
+    post, path = "/v1/models/{model}/versions/{number}/verify", tag = "models",
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
+    responses((status = 200, body = Verification, description = "`identical` tells whether they \
+        are the same"))
+)]
+async fn verify_again(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+) -> Result<Json<Verification>> {
+    let number = number.get();
+    // It is the work of a job, in a request.
+    let _share = app
+        .job_memory()
+        .take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait)
+        .await?;
+    Ok(Json(verify::verify(app.archive(), &model, number).await?))
+}

@@ -1,0 +1,171 @@
+//! From files that have arrived to trials that are kept.
+
+use std::io::BufWriter;
+
+use bytes::Bytes;
+use sistership_store::{
+    Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space,
+};
+use sistership_trials::samples::{self, SamplesError};
+use sistership_trials::{ManifestFile, Refusal, read_trial};
+use tempfile::NamedTempFile;
+
+use super::reading::lost;
+use super::room::room;
+use crate::app::App;
+use crate::jobs::{DIAGNOSIS, DiagnosisJob};
+use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use sistership_auth::Role;
+use sistership_jobs::budget;
+use sistership_jobs::line::{CHAMPION, alias};
+use sistership_web_support::spool::{Spool, temporary};
+use sistership_web_support::upload::{Arrived, Upload};
+
+/// How often samples are put again that were removed before their rows were written.
+const TRIES: usize = 3;
+
+/// A trial that is kept now, and whether it was new.
+pub(crate) type Kept = Inserted<Trial>;
+
+/// A trial that has passed every check.
+struct Accepted {
+    new: NewTrial,
+    /// Its samples as they are to be kept: many trials of one upload do not lie in memory together.
+    samples: NamedTempFile,
+}
+
+/// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses
+/// the ship's champion on the new ones is queued with them.
+pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
+    let (ship, diagnose) = (upload.ship().to_owned(), upload.diagnose);
+    on_ship(app.store(), Role::Engineer, &ship).await?;
+    match app.store().ships().get(&ship).await {
+        Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
+        other => drop(other?),
+    }
+    let accepted = accept(&upload, app).await?;
+    let champion = if diagnose { diagnosable(app, &ship).await? } else { None };
+    let job = |kept: &[Kept]| champion.and_then(|number| follow_up(&ship, number, kept));
+    for _ in 0..TRIES {
+        let rows = rows(&accepted, put_samples(app.objects(), &accepted).await?);
+        match app.store().trials().insert_all_and_enqueue(&rows, app.objects(), job).await {
+            // They were old and nobody's, and were removed as garbage between the two.
+            Err(StoreError::NotFound { kind: "object", .. }) => {}
+            other => return Ok(other?),
+        }
+    }
+    Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
+}
+
+/// The number of the ship's champion.
+async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
+    Ok(alias(app.store(), ship, CHAMPION).await?.map(|champion| champion.version_number))
+}
+
+/// The diagnosis of a champion on what is new, and on that with what came before.
+fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
+    let trials: Vec<String> =
+        kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
+    let (ship, settings) = (ship.to_owned(), Default::default());
+    let (with_earlier, key_sha256) = (true, None);
+    let asked =
+        DiagnosisJob { ship: ship.clone(), number, trials, with_earlier, settings, key_sha256 };
+    let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
+    Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
+}
+
+fn no_ship(ship: &str) -> Problem {
+    Problem::invalid(
+        "ship",
+        format!("there is no ship `{ship}`; create it with POST /v1/ships first, or mend the name"),
+    )
+}
+
+/// Reads every file, one after the other; the refusals of all of them are told together.
+async fn accept(upload: &Upload, app: &App) -> Result<Vec<Accepted>> {
+    let (mut accepted, mut refused) = (Vec::new(), Vec::new());
+    for mut trial in upload.trials() {
+        let (share, inner) = (room(app, &mut trial).await?, app.clone());
+        let read = move || {
+            let _share = share;
+            read(&trial, inner.spool())
+        };
+        match app.compute(read).await?? {
+            Ok(trial) => accepted.push(trial),
+            Err(refusal) => refused.push(refusal),
+        }
+    }
+    if refused.is_empty() { Ok(accepted) } else { Err(Vec::<Refusal>::into(refused)) }
+}
+
+/// Reads a trial, and writes its samples.
+fn read(arrived: &Arrived, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
+    let source = arrived.open().map_err(|error| lost(&arrived.name, &error));
+    match source.and_then(|source| read_trial(source, &arrived.mapping)) {
+        Ok(trial) => Accepted::new(&arrived.manifest, &trial, spool).map(Ok),
+        Err(refusal) => Ok(Err(refusal)),
+    }
+}
+
+impl Accepted {
+    fn new(
+        only: &ManifestFile,
+        trial: &sistership_model::trial::Trial,
+        spool: &Spool,
+    ) -> Result<Self> {
+        let samples = temporary(spool)?;
+        samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(unwritten)?;
+        let new = NewTrial {
+            ship: only.manifest.ship.clone(),
+            sha256: String::new(),
+            name: trial.name.clone(),
+            manifest: json(only)?,
+            conventions: json(&only.manifest.conventions)?,
+            manoeuvre: trial.manoeuvre.clone(),
+            sample_rows: i64::try_from(trial.len()).map_err(Problem::internal)?,
+            duration_s: trial.duration_s(),
+            warnings: json(&trial.warnings)?,
+            object_key: String::new(),
+        };
+        Ok(Self { new, samples })
+    }
+}
+
+/// Whether there was room is in what caused the error.
+fn unwritten(error: SamplesError) -> Problem {
+    let first: &(dyn std::error::Error + 'static) = &error;
+    let mut causes = std::iter::successors(Some(first), |cause| cause.source());
+    match causes
+        .find_map(|cause| cause.downcast_ref::<std::io::Error>())
+        .is_some_and(is_out_of_space)
+    {
+        true => Problem::no_room(format!("an upload cannot be written: {error}")),
+        false => Problem::internal(error),
+    }
+}
+
+fn json(value: &impl serde::Serialize) -> Result<String> {
+    serde_json::to_string(value).map_err(Problem::internal)
+}
+
+/// The samples first: a row that is there has its samples.
+async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<String>> {
+    let mut keys = Vec::with_capacity(accepted.len());
+    for trial in accepted {
+        let size = trial.samples.as_file().metadata().map_err(Problem::internal)?.len();
+        let _share = budget::share(size).await?;
+        let bytes = tokio::fs::read(trial.samples.path()).await.map_err(Problem::internal)?;
+        keys.push(objects.put(Bytes::from(bytes)).await?);
+    }
+    Ok(keys)
+}
+
+fn rows(accepted: &[Accepted], keys: Vec<String>) -> Vec<NewTrial> {
+    let row = |(trial, key): (&Accepted, String)| NewTrial {
+        sha256: key.clone(),
+        object_key: key,
+        ..trial.new.clone()
+    };
+    accepted.iter().zip(keys).map(row).collect()
+}

@@ -1,0 +1,60 @@
+//! Uploads read without keeping anything.
+
+use sistership_model::trial::Trial;
+use sistership_trials::{CheckOutcome, Refusal, check, read_trial};
+use sistership_web_support::upload::Upload;
+
+use super::room::room;
+use crate::app::App;
+use crate::problem::Result;
+
+/// Reads every file without keeping any, one after the other, and makes something of each.
+pub(crate) async fn each<T: Send + 'static>(
+    upload: &Upload,
+    app: &App,
+    of: impl Fn(usize, std::result::Result<Trial, Refusal>) -> T + Copy + Send + 'static,
+) -> Result<Vec<T>> {
+    let mut made = Vec::with_capacity(upload.manifest.manifest.trials.len());
+    for (at, mut trial) in upload.trials().enumerate() {
+        let share = room(app, &mut trial).await?;
+        let one = move || {
+            let _share = share;
+            let source = trial.open().map_err(|error| lost(&trial.name, &error));
+            of(at, source.and_then(|source| read_trial(source, &trial.mapping)))
+        };
+        made.push(app.compute(one).await?);
+    }
+    Ok(made)
+}
+
+/// Checks every file without keeping any, one after the other.
+pub(crate) async fn checked(upload: &Upload, app: &App) -> Result<Vec<CheckOutcome>> {
+    let mut outcomes = Vec::with_capacity(upload.manifest.manifest.trials.len());
+    for mut trial in upload.trials() {
+        let share = room(app, &mut trial).await?;
+        let one = move || {
+            let _share = share;
+            match trial.open() {
+                Ok(source) => check(source, &trial.mapping),
+                Err(error) => unreadable(&trial.name, &error),
+            }
+        };
+        outcomes.push(app.compute(one).await?);
+    }
+    Ok(outcomes)
+}
+
+fn unreadable(file: &str, error: &std::io::Error) -> CheckOutcome {
+    let Refusal { file, findings } = lost(file, error);
+    CheckOutcome { file, rows: 0, duration_s: 0.0, errors: findings, warnings: Vec::new() }
+}
+
+/// What could not be read of it.
+pub(super) fn lost(file: &str, error: &std::io::Error) -> Refusal {
+    let finding = sistership_model::trial::Finding {
+        row: None,
+        column: None,
+        message: format!("cannot be read: {error}"),
+    };
+    Refusal { file: file.to_owned(), findings: vec![finding] }
+}

@@ -1,0 +1,39 @@
+//! Memory for a file of an upload, taken before the file is read.
+
+use sistership_trials::{Demand, demand_of_trial, measuring};
+
+use crate::app::App;
+use crate::problem::{Fault, Problem, Result};
+use sistership_jobs::budget::{self, Share, Shortage};
+use sistership_web_support::upload::Arrived;
+
+/// Takes what a file needs from its reading to its samples being kept; gives the mapping room for
+/// its rows.
+///
+/// # Errors
+/// There is not so much memory, or not soon; the file is named.
+pub(super) async fn room(app: &App, trial: &mut Arrived) -> Result<Option<Share>> {
+    let name = trial.name.clone();
+    let paths = std::iter::once(&trial.path).chain(trial.sensors.iter().map(|(_, path)| path));
+    let each: std::io::Result<Vec<u64>> = paths.map(|path| measuring(path)).collect();
+    let measuring = each.map_err(Problem::internal)?.iter().sum();
+    let share = budget::share(measuring).await.map_err(|shortage| named(&name, None, shortage))?;
+    let (path, mapping, sensors) =
+        (trial.path.clone(), trial.mapping.clone(), trial.sensors.clone());
+    let measure = move || demand_of_trial(&path, &mapping, &sensors);
+    let measured = app.compute(measure).await?.map_err(Problem::internal)?;
+    // Given back before more is asked for: nobody holds some of the memory while waiting for the
+    // rest.
+    drop(share);
+    trial.mapping.room = measured.rows;
+    budget::share(measured.bytes).await.map_err(|shortage| named(&name, Some(measured), shortage))
+}
+
+fn named(name: &str, measured: Option<Demand>, shortage: Shortage) -> Problem {
+    let size = measured
+        .map(|Demand { rows, columns, .. }| format!("{rows} rows of {columns} columns: "))
+        .unwrap_or_default();
+    let problem = Problem::from(shortage);
+    let message = format!("{size}{}", problem.detail);
+    Problem { detail: format!("{name}: {message}"), ..problem }.with(Fault::at(name, message))
+}

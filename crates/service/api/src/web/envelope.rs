@@ -1,0 +1,137 @@
+//! What wraps every request: an id, a line in the log, and problem details for errors that no
+//! handler made.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderValue, Response as HttpResponse, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use tracing::Instrument as _;
+use uuid::Uuid;
+
+use crate::app::App;
+use crate::problem::{MEDIA, Problem};
+use sistership_listener::Peer;
+use sistership_web_support::large::counted;
+
+/// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that
+/// id.
+pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
+    let id = Uuid::now_v7();
+    let (method, route) = (request.method().clone(), route(&request));
+    let peer = request.extensions().get::<Peer>().cloned();
+    let for_people = is_for_people(&request);
+    let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
+    async move {
+        let start = Instant::now();
+        let response = app.held().scope(async { counted(next.run(request).await).await }).await;
+        let slow = peer.is_some_and(|peer| peer.is_too_slow());
+        let response = finish(if slow { too_slow() } else { response }, id, for_people);
+        let elapsed = start.elapsed();
+        if response.status() == StatusCode::INSUFFICIENT_STORAGE {
+            app.no_room().store(true, Ordering::Relaxed);
+        }
+        tracing::info!(
+            status = response.status().as_u16(),
+            elapsed_ms = elapsed.as_millis() as u64,
+            "answered"
+        );
+        app.metrics().answered(&method, &route, response.status(), elapsed);
+        response
+    }
+    .instrument(span)
+    .await
+}
+
+/// The path as the router knows it, with names in the place of ids.
+fn route(request: &Request) -> String {
+    request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned()
+}
+
+/// Whether a browser wants to show the answer as a page.
+fn is_for_people(request: &Request) -> bool {
+    let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
+    let page = accepted.is_some_and(|accepted| accepted.contains("text/html"));
+    page && !request.uri().path().starts_with("/v1")
+}
+
+fn finish(response: Response, id: Uuid, for_people: bool) -> Response {
+    let failed = response.status().is_client_error() || response.status().is_server_error();
+    let mut response = if failed { problem(response, id, for_people) } else { response };
+    let headers = response.headers_mut();
+    if let Ok(id) = HeaderValue::try_from(id.to_string()) {
+        headers.insert("x-request-id", id);
+    }
+    headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    response
+}
+
+/// The answer to a request whose body did not come in time, whatever the handler has made of the
+/// half that did.
+fn too_slow() -> Response {
+    let why = "the body came too slowly, or not at all; send it at once, or over a faster link";
+    Problem::new(StatusCode::REQUEST_TIMEOUT, why).into_response()
+}
+
+/// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).
+fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
+    let (mut parts, _) = response.into_parts();
+    let mut problem = parts
+        .extensions
+        .remove::<Problem>()
+        .unwrap_or_else(|| Problem::new(parts.status, reason(parts.status)));
+    problem.instance = Some(format!("urn:uuid:{id}"));
+    let page = for_people.then(|| problem.page()).flatten();
+    let (fresh, body) = problem.into_response().into_parts();
+    parts.headers.remove(header::CONTENT_LENGTH);
+    parts.headers.extend(fresh.headers);
+    let Some(page) = page else {
+        parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
+        return HttpResponse::from_parts(parts, body);
+    };
+    let head = [
+        (header::CONTENT_TYPE, "text/html; charset=utf-8"),
+        (header::CONTENT_SECURITY_POLICY, sistership_pages::policy()),
+    ];
+    head.into_iter().for_each(|(name, value)| {
+        parts.headers.insert(name, HeaderValue::from_static(value));
+    });
+    parts.headers.remove(header::CONTENT_LENGTH);
+    HttpResponse::from_parts(parts, page.into())
+}
+
+/// What to do about an error that a layer made.
+fn reason(status: StatusCode) -> &'static str {
+    match status {
+        StatusCode::METHOD_NOT_ALLOWED => {
+            "this path does not know the method; the header `Allow` lists those it knows"
+        }
+        StatusCode::PAYLOAD_TOO_LARGE => "the body is larger than this endpoint reads",
+        StatusCode::REQUEST_TIMEOUT | StatusCode::GATEWAY_TIMEOUT => {
+            "the request took too long; send less at a time, or try again later"
+        }
+        StatusCode::INTERNAL_SERVER_ERROR => {
+            "the server failed to do this; its log tells why, under the id in `instance`"
+        }
+        _ => "the request was refused",
+    }
+}
+
+/// The answer where there is no route.
+pub(crate) async fn nowhere(request: Request) -> Problem {
+    Problem::not_found(format!(
+        "there is no {}; /openapi.json lists what there is",
+        request.uri().path()
+    ))
+}
+
+/// The answer where a handler panicked.
+pub(crate) fn panicked(reason: Box<dyn std::any::Any + Send>) -> Response {
+    let text = reason
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| reason.downcast_ref::<&str>().copied());
+    Problem::internal(text.unwrap_or("a panic without a message")).into_response()
+}

@@ -1,0 +1,121 @@
+//! Who may ask for what: whoever asks shows who they are, or, on a machine's own interface without
+//! a key, is a program of that machine; then their roles decide.
+
+use std::net::IpAddr;
+
+use axum::RequestExt as _;
+use axum::extract::{MatchedPath, RawPathParams, Request, State};
+use axum::http::{Extensions, HeaderValue, Method, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse as _, Redirect, Response};
+
+use crate::accounts::Refusal;
+use crate::app::App;
+use crate::problem::Problem;
+use crate::rights::{Acting, Asked, HEALTH, OPEN, allowed};
+use sistership_listener::Peer;
+use sistership_web_support::host;
+
+/// How long who finds no seat should wait, seconds.
+const RETRY: u64 = 2;
+
+/// Lets a request through, or says what it lacks.
+pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Next) -> Response {
+    let peer = request.extensions().get::<Peer>().cloned();
+    if let Some(peer) = &peer {
+        let client = app.proxies().client(peer.address, request.headers());
+        request.extensions_mut().insert(Client(client));
+    }
+    if peer.as_ref().is_some_and(|peer| peer.crowded) {
+        let why = "all connections are at work, or those of your address; try again in a moment";
+        return later(Problem::new(StatusCode::SERVICE_UNAVAILABLE, why), RETRY);
+    }
+    match admitted(&app, &mut request).await {
+        Ok(Some(acting)) => acting.scope(next.run(request)).await,
+        Ok(None) => next.run(request).await,
+        Err(Refusal::Problem(problem)) => refused(&app, &request, problem),
+        Err(Refusal::WrongKey(problem)) => {
+            let client = request.extensions().get::<Client>();
+            match client.and_then(|client| app.throttle().wrong(client.0)) {
+                Some(wait) => {
+                    let why = "too many wrong API keys from your address; check the key, and try \
+                        again later";
+                    later(Problem::new(StatusCode::TOO_MANY_REQUESTS, why), wait.as_secs().max(1))
+                }
+                None => problem.into_response(),
+            }
+        }
+    }
+}
+
+/// A refusal; a browser that wants a page goes to sign in first.
+fn refused(app: &App, request: &Request, problem: Problem) -> Response {
+    let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
+    let page = request.method() == Method::GET
+        && !request.uri().path().starts_with("/v1")
+        && accepted.is_some_and(|accepted| accepted.contains("text/html"));
+    if problem.status != StatusCode::UNAUTHORIZED.as_u16()
+        || !page
+        || !app.credentials().has_people()
+    {
+        return problem.into_response();
+    }
+    let place = request.uri().path_and_query().map_or("/", |place| place.as_str());
+    let asked = [("next", place)];
+    let query = serde_urlencoded::to_string(asked).unwrap_or_default();
+    Redirect::to(&format!("/sign-in?{query}")).into_response()
+}
+
+/// A refusal that ends the connection and says when to come again.
+fn later(problem: Problem, seconds: u64) -> Response {
+    let mut response = problem.into_response();
+    response.headers_mut().insert(header::RETRY_AFTER, seconds.into());
+    response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+    response
+}
+
+/// Whoever is let through; nobody where nobody is asked for.
+async fn admitted(app: &App, request: &mut Request) -> Result<Option<Acting>, Refusal> {
+    let host = host::addressed(request)?;
+    let place = (as_get(request.method()), request.uri().path());
+    if HEALTH.contains(&place) {
+        return Ok(None);
+    }
+    if app.credentials().is_open() {
+        host::from_this_machine(request.method(), request.headers(), host.as_ref())?;
+    }
+    if OPEN.contains(&place) {
+        return Ok(None);
+    }
+    // A form that a page of this server sends, which has a token besides.
+    let own = !request.uri().path().starts_with("/v1")
+        && host::is_same_origin(request.headers(), host.as_ref())?;
+    let principal = app.accounts().identify(request.method(), request.headers(), own).await?;
+    let origin = origin_of(request.extensions());
+    let acting = Acting { principal, origin };
+    let params = request.extract_parts::<RawPathParams>().await;
+    let params = params.map_err(|error| Problem::not_found(error.body_text()))?;
+    let route = request.extensions().get::<MatchedPath>().cloned();
+    let asked = Asked {
+        method: request.method(),
+        uri: request.uri(),
+        route: route.as_ref().map(MatchedPath::as_str),
+        params: &params,
+    };
+    allowed(app, &acting, &asked).await?;
+    Ok(Some(acting))
+}
+
+fn as_get(method: &Method) -> &str {
+    if *method == Method::HEAD { "GET" } else { method.as_str() }
+}
+
+/// The address of whoever asks: of a connection's other end, or what a trusted proxy says.
+#[derive(Debug, Clone, Copy)]
+struct Client(IpAddr);
+
+/// From where a request comes, as the audit has it.
+pub(crate) fn origin_of(extensions: &Extensions) -> String {
+    let client = extensions.get::<Client>();
+    client.map_or_else(|| "unknown".to_owned(), |client| client.0.to_string())
+}

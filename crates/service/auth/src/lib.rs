@@ -1,0 +1,24 @@
+//! Who may do what: roles, what they are given for, and the decision; service keys, passwords and
+//! other secrets, of which only hashes are kept. It knows no route, no table and no ship.
+
+mod attempts;
+mod grant;
+mod guessable;
+mod key;
+mod names;
+pub mod openid;
+mod password;
+mod rights;
+mod role;
+mod secret;
+mod signature;
+
+pub use attempts::{Attempt, Attempts};
+pub use grant::{Grant, Scope};
+pub use key::{KeyText, ServiceKey};
+pub use names::{check_name, is_reserved_name};
+pub use password::{PasswordError, check_password, hash_password, verify_password, verify_unknown};
+pub use rights::Rights;
+pub use role::Role;
+pub use secret::{hex, same, secret, sha256};
+pub use signature::sign;

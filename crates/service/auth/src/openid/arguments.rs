@@ -1,0 +1,344 @@
+//! What flags, the environment and the configuration file may say of a provider.
+
+use std::path::{Path, PathBuf};
+
+use crate::Grant;
+use clap::Args;
+use serde::Deserialize;
+
+use crate::openid::admission::Admission;
+use crate::openid::settings::{Settings, SettingsError, is_safe, url};
+
+/// Holds the secret that the provider knows the server by.
+const SECRET: &str = "SISTERSHIP_OIDC_CLIENT_SECRET";
+
+/// The settings of a provider, each with its flag; the same names stand in the file's section
+/// `oidc`.
+#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Signing in at an OpenID provider")]
+pub struct OpenIdArguments {
+    /// Issuer of the provider, spelled as in its discovery document; needs --accounts.
+    #[arg(
+        id = "oidc_issuer",
+        long = "oidc-issuer",
+        value_name = "URL",
+        env = "SISTERSHIP_OIDC_ISSUER"
+    )]
+    pub issuer: Option<String>,
+    /// What the provider calls this server.
+    #[arg(
+        id = "oidc_client_id",
+        long = "oidc-client-id",
+        value_name = "ID",
+        env = "SISTERSHIP_OIDC_CLIENT_ID"
+    )]
+    pub client_id: Option<String>,
+    /// File that holds the secret by which the provider knows this server; wins over
+    /// SISTERSHIP_OIDC_CLIENT_SECRET.
+    #[arg(
+        id = "oidc_client_secret_file",
+        long = "oidc-client-secret-file",
+        value_name = "FILE",
+        env = "SISTERSHIP_OIDC_CLIENT_SECRET_FILE"
+    )]
+    pub client_secret_file: Option<PathBuf>,
+    /// Where browsers find this server; the provider sends them back to
+    /// BASE/sign-in/oidc/callback.
+    #[arg(
+        id = "oidc_base_url",
+        long = "oidc-base-url",
+        value_name = "BASE",
+        env = "SISTERSHIP_OIDC_BASE_URL"
+    )]
+    pub base_url: Option<String>,
+    /// What the button calls the provider [default: its host].
+    #[arg(
+        id = "oidc_title",
+        long = "oidc-title",
+        value_name = "TEXT",
+        env = "SISTERSHIP_OIDC_TITLE"
+    )]
+    pub title: Option<String>,
+    /// What the provider is asked to tell [default: openid profile email].
+    #[arg(
+        id = "oidc_scopes",
+        long = "oidc-scopes",
+        value_name = "WORDS",
+        env = "SISTERSHIP_OIDC_SCOPES"
+    )]
+    pub scopes: Option<String>,
+    /// Claim that names a new account [default: preferred_username, else a verified email].
+    #[arg(
+        id = "oidc_name_claim",
+        long = "oidc-name-claim",
+        value_name = "CLAIM",
+        env = "SISTERSHIP_OIDC_NAME_CLAIM"
+    )]
+    pub name_claim: Option<String>,
+    /// Give an account to whoever the provider lets through and has none; otherwise an account must
+    /// be there, and linked.
+    #[arg(id = "oidc_auto_create", long = "oidc-auto-create", env = "SISTERSHIP_OIDC_AUTO_CREATE")]
+    pub auto_create: bool,
+    /// Role of a new account; with --oidc-group-role, of everybody beside those of their groups.
+    #[arg(
+        id = "oidc_default_role",
+        long = "oidc-default-role",
+        value_name = "ROLE",
+        env = "SISTERSHIP_OIDC_DEFAULT_ROLE"
+    )]
+    pub default_role: Option<String>,
+    /// Claim that lists groups [default: groups].
+    #[arg(
+        id = "oidc_groups_claim",
+        long = "oidc-groups-claim",
+        value_name = "CLAIM",
+        env = "SISTERSHIP_OIDC_GROUPS_CLAIM"
+    )]
+    pub groups_claim: Option<String>,
+    /// Role of a group's members; repeatable, in the environment with `;` between. Whoever signs in
+    /// at the provider then has the roles of their groups, and no others.
+    #[arg(
+        id = "oidc_group_roles",
+        long = "oidc-group-role",
+        value_name = "GROUP=ROLE",
+        value_delimiter = ';',
+        env = "SISTERSHIP_OIDC_GROUP_ROLES"
+    )]
+    pub group_roles: Vec<String>,
+}
+
+impl OpenIdArguments {
+    /// The provider that these name, where they name one; what is missing is taken from the
+    /// configuration file.
+    ///
+    /// # Errors
+    /// Names all settings that are at fault.
+    pub fn settings(&self, file: &Self) -> Result<Option<Settings>, SettingsError> {
+        let mut faults = Vec::new();
+        let secret = self.secret(file, &mut faults);
+        let wanted = self.clone().or(file);
+        let settings = wanted.checked(secret, &mut faults);
+        if faults.is_empty() { Ok(settings) } else { Err(SettingsError(faults)) }
+    }
+
+    /// What is not set here, as another says.
+    fn or(self, other: &Self) -> Self {
+        let first = |a: Option<String>, b: &Option<String>| a.or_else(|| b.clone());
+        Self {
+            issuer: first(self.issuer, &other.issuer),
+            client_id: first(self.client_id, &other.client_id),
+            client_secret_file: self
+                .client_secret_file
+                .or_else(|| other.client_secret_file.clone()),
+            base_url: first(self.base_url, &other.base_url),
+            title: first(self.title, &other.title),
+            scopes: first(self.scopes, &other.scopes),
+            name_claim: first(self.name_claim, &other.name_claim),
+            auto_create: self.auto_create || other.auto_create,
+            default_role: first(self.default_role, &other.default_role),
+            groups_claim: first(self.groups_claim, &other.groups_claim),
+            group_roles: if self.group_roles.is_empty() {
+                other.group_roles.clone()
+            } else {
+                self.group_roles
+            },
+        }
+    }
+
+    /// The secret: the flag's file wins over the environment, that over the configuration's file.
+    fn secret(&self, file: &Self, faults: &mut Vec<String>) -> Option<String> {
+        let read = |path: &Path| match std::fs::read_to_string(path) {
+            Ok(text) if !text.trim().is_empty() => Ok(text.trim().to_owned()),
+            Ok(_) => Err(format!("oidc client_secret_file: {} is empty", path.display())),
+            Err(error) => Err(format!("oidc client_secret_file: {}: {error}", path.display())),
+        };
+        let variable = || std::env::var(SECRET).ok().filter(|secret| !secret.is_empty());
+        let found = match (&self.client_secret_file, variable(), &file.client_secret_file) {
+            (Some(path), ..) => read(path),
+            (None, Some(secret), _) => Ok(secret),
+            (None, None, Some(path)) => read(path),
+            (None, None, None) => return None,
+        };
+        found.map_err(|fault| faults.push(fault)).ok()
+    }
+
+    fn checked(self, client_secret: Option<String>, faults: &mut Vec<String>) -> Option<Settings> {
+        let Some(issuer) = self.issuer.clone() else {
+            if self != Self::default() {
+                faults.push(
+                    "oidc issuer: is missing, though other settings of oidc are there".into(),
+                );
+            }
+            return None;
+        };
+        let host = url(&issuer).and_then(|url| url.host_str().map(str::to_owned));
+        checked_url("issuer", &issuer, faults);
+        let client_id = self.client_id.clone().unwrap_or_default();
+        if client_id.is_empty() || !client_id.bytes().all(|byte| byte.is_ascii_graphic()) {
+            faults.push("oidc client_id: must be what the provider calls this server".into());
+        }
+        let base_url = self.base_url(faults);
+        let scopes = self.scopes.clone().unwrap_or_else(|| "openid profile email".to_owned());
+        if !scopes.split_whitespace().any(|scope| scope == "openid") {
+            faults.push("oidc scopes: must have `openid` among them".into());
+        }
+        let title = self.title.clone().or(host).unwrap_or_default();
+        let admission = self.admission(faults);
+        Some(Settings { issuer, client_id, client_secret, base_url, title, scopes, admission })
+    }
+
+    fn base_url(&self, faults: &mut Vec<String>) -> String {
+        let Some(text) = &self.base_url else {
+            faults.push(
+                "oidc base_url: is missing; it is where browsers find this server, such as \
+                 https://ships.example"
+                    .into(),
+            );
+            return String::new();
+        };
+        if url(text).is_some_and(|url| url.path() != "/") {
+            faults.push(
+                "oidc base_url: must end with the host and port: the pages stand at its root"
+                    .into(),
+            );
+        }
+        checked_url("base_url", text, faults);
+        text.trim_end_matches('/').to_owned()
+    }
+
+    fn admission(self, faults: &mut Vec<String>) -> Admission {
+        let mut group_roles = Vec::new();
+        for rule in &self.group_roles {
+            match group_role(rule) {
+                Ok(read) => group_roles.push(read),
+                Err(why) => faults.push(format!("oidc group_roles: `{rule}`: {why}")),
+            }
+        }
+        let default_role = self.default_role.as_deref().map(str::parse::<Grant>).transpose();
+        let default_role = default_role
+            .map_err(|why| faults.push(format!("oidc default_role: {why}")))
+            .ok()
+            .flatten();
+        if self.auto_create && self.default_role.is_none() && self.group_roles.is_empty() {
+            faults.push(
+                "oidc auto_create: needs default_role or group_roles, or a new account \
+                could do nothing"
+                    .into(),
+            );
+        }
+        Admission {
+            auto_create: self.auto_create,
+            default_role,
+            name_claim: self.name_claim,
+            groups_claim: self.groups_claim.unwrap_or_else(|| "groups".to_owned()),
+            group_roles,
+        }
+    }
+}
+
+/// `GROUP=ROLE`; a group's name may have `=`, a role has none.
+fn group_role(rule: &str) -> Result<(String, Grant), String> {
+    let (group, role) =
+        rule.rsplit_once('=').filter(|(group, _)| !group.is_empty()).ok_or("write GROUP=ROLE")?;
+    Ok((group.to_owned(), role.parse()?))
+}
+
+fn checked_url(name: &str, text: &str, faults: &mut Vec<String>) {
+    match url(text) {
+        Some(url) if url.query().is_some() => faults.push(format!("oidc {name}: must have no `?`")),
+        Some(url) if !is_safe(&url) => faults.push(format!(
+            "oidc {name}: must begin with https://; http:// is for addresses of this machine"
+        )),
+        Some(_) => {}
+        None => faults.push(format!("oidc {name}: `{text}` is no address of the web")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn least() -> OpenIdArguments {
+        OpenIdArguments {
+            issuer: Some("https://id.example/realms/yard".into()),
+            client_id: Some("ships".into()),
+            base_url: Some("https://ships.example/".into()),
+            ..OpenIdArguments::default()
+        }
+    }
+
+    #[test]
+    fn flags_win_over_the_file_and_defaults_are_filled_in() {
+        let none = OpenIdArguments::default();
+        assert_eq!(none.settings(&none), Ok(None));
+        let flags = OpenIdArguments { title: Some("Yard".into()), ..none.clone() };
+        let file = OpenIdArguments { title: Some("Other".into()), ..least() };
+        let settings = flags.settings(&file).unwrap().unwrap();
+        assert_eq!((settings.title(), settings.scopes.as_str()), ("Yard", "openid profile email"));
+        assert_eq!(settings.redirect_uri(), "https://ships.example/sign-in/oidc/callback");
+        assert!(settings.is_secure() && !settings.admission().auto_create);
+        assert_eq!(least().settings(&none).unwrap().unwrap().title(), "id.example");
+    }
+
+    #[test]
+    fn the_secret_is_read_and_never_shown() {
+        let path = std::env::temp_dir().join(format!("oidc-secret-{}", std::process::id()));
+        std::fs::write(&path, "very secret\n").unwrap();
+        let with = OpenIdArguments { client_secret_file: Some(path.clone()), ..least() };
+        let settings = with.settings(&OpenIdArguments::default()).unwrap().unwrap();
+        assert_eq!(settings.client_secret.as_deref(), Some("very secret"));
+        assert!(!format!("{settings:?}").contains("very secret"));
+        std::fs::remove_file(path).unwrap();
+        let gone = with.settings(&OpenIdArguments::default()).unwrap_err();
+        assert!(gone.to_string().starts_with("oidc client_secret_file: "), "{gone}");
+    }
+
+    #[test]
+    fn all_that_is_wrong_is_named_at_once() {
+        let wrong = OpenIdArguments {
+            issuer: Some("http://id.example".into()),
+            client_id: Some("two words".into()),
+            base_url: Some("https://ships.example/below".into()),
+            scopes: Some("profile".into()),
+            default_role: Some("captain".into()),
+            group_roles: vec!["yard".into(), "a=b=engineer".into(), "yard=admin@ship:kcs".into()],
+            auto_create: true,
+            ..OpenIdArguments::default()
+        };
+        let SettingsError(faults) = wrong.settings(&OpenIdArguments::default()).unwrap_err();
+        let named: Vec<&str> =
+            faults.iter().map(|fault| fault.split_once(": ").unwrap().0).collect();
+        let expected = [
+            "issuer",
+            "client_id",
+            "base_url",
+            "scopes",
+            "group_roles",
+            "group_roles",
+            "default_role",
+        ];
+        assert_eq!(named, expected.map(|name| format!("oidc {name}")), "{faults:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let refused = |change: fn(&mut OpenIdArguments), name: &str| {
+            let mut wanted = least();
+            change(&mut wanted);
+            let error = wanted.settings(&OpenIdArguments::default()).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("oidc {name}: ")), "{error}");
+        };
+        refused(|wanted| wanted.issuer = None, "issuer");
+        refused(|wanted| wanted.issuer = Some("id.example".into()), "issuer");
+        refused(|wanted| wanted.issuer = Some("https://me:pw@id.example".into()), "issuer");
+        refused(|wanted| wanted.base_url = None, "base_url");
+        refused(|wanted| wanted.base_url = Some("http://10.0.0.1".into()), "base_url");
+        refused(|wanted| wanted.client_id = None, "client_id");
+        refused(|wanted| wanted.auto_create = true, "auto_create");
+        let mut here = least();
+        here.base_url = Some("http://127.0.0.1:8080".into());
+        assert!(here.settings(&OpenIdArguments::default()).is_ok());
+    }
+}

@@ -1,0 +1,72 @@
+//! What a provider says of itself (OpenID Connect Discovery 1.0).
+
+use serde::Deserialize;
+
+use crate::openid::failure::{Failure, Result};
+use crate::openid::settings::{is_safe, url};
+
+/// What a provider says of itself.
+#[derive(Debug, Clone, Deserialize)]
+pub(crate) struct Metadata {
+    issuer: String,
+    pub authorization_endpoint: String,
+    pub token_endpoint: String,
+    pub jwks_uri: String,
+    pub userinfo_endpoint: Option<String>,
+    #[serde(default = "by_default")]
+    token_endpoint_auth_methods_supported: Vec<String>,
+    #[serde(default)]
+    authorization_response_iss_parameter_supported: bool,
+}
+
+fn by_default() -> Vec<String> {
+    vec!["client_secret_basic".to_owned()]
+}
+
+/// Where a provider says so.
+pub(crate) fn place(issuer: &str) -> String {
+    format!("{}/.well-known/openid-configuration", issuer.trim_end_matches('/'))
+}
+
+impl Metadata {
+    /// Checks that it is that of this issuer, and that nothing leads over an open wire.
+    ///
+    /// # Errors
+    /// Says what is wrong.
+    pub fn checked(self, issuer: &str) -> Result<Self> {
+        if self.issuer != issuer {
+            let own: String = self.issuer.chars().take(200).collect();
+            let why = format!("it calls itself `{own}`, and the setting is `{issuer}`");
+            return Err(Failure::Provider(why));
+        }
+        let places = [
+            ("authorization_endpoint", Some(&self.authorization_endpoint)),
+            ("token_endpoint", Some(&self.token_endpoint)),
+            ("jwks_uri", Some(&self.jwks_uri)),
+            ("userinfo_endpoint", self.userinfo_endpoint.as_ref()),
+        ];
+        for (name, place) in places {
+            let Some(place) = place else { continue };
+            if !url(place).is_some_and(|url| is_safe(&url)) {
+                return Err(Failure::Provider(format!("its {name} is no https address")));
+            }
+        }
+        Ok(self)
+    }
+
+    /// Whether the secret goes into the body, as the header is not taken.
+    pub fn secret_in_body(&self) -> bool {
+        let has = |method: &str| {
+            self.token_endpoint_auth_methods_supported.iter().any(|known| known == method)
+        };
+        has("client_secret_post") && !has("client_secret_basic")
+    }
+
+    /// Whether an answer to the browser comes from this provider, as far as it says so (RFC 9207).
+    pub fn is_from(&self, issuer: Option<&str>) -> bool {
+        match issuer {
+            Some(issuer) => issuer == self.issuer,
+            None => !self.authorization_response_iss_parameter_supported,
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! The provider, as a server knows it: it is asked for what it says of itself when somebody wants
+//! to sign in, so that one that is down keeps nothing else from working.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::secret;
+use reqwest::{Client, RequestBuilder, StatusCode, Url, header};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use crate::openid::failure::{Failure, Result};
+use crate::openid::fetch;
+use crate::openid::identity::Identity;
+use crate::openid::keys::Keys;
+use crate::openid::metadata::{Metadata, place};
+use crate::openid::settings::Settings;
+use crate::openid::ticket::{Purpose, Ticket};
+use crate::openid::token::{self, Expected};
+
+/// How long what a provider says of itself, and its keys, are believed.
+const FRESH: Duration = Duration::from_secs(3600);
+
+/// A provider, as a server knows it.
+pub struct Provider {
+    settings: Settings,
+    /// What the tickets of browsers are sealed with.
+    seal: String,
+    known: Mutex<Option<Arc<Known>>>,
+}
+
+/// What a provider has said.
+#[derive(Debug)]
+struct Known {
+    client: Client,
+    metadata: Metadata,
+    keys: Keys,
+    at: Instant,
+}
+
+/// A sign-in that begins.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Begun {
+    /// Where the browser goes.
+    pub place: String,
+    /// What it keeps meanwhile.
+    pub ticket: String,
+}
+
+/// What the provider has sent the browser back with.
+#[derive(Clone, Default, Deserialize)]
+pub struct Answer {
+    code: Option<String>,
+    state: Option<String>,
+    error: Option<String>,
+    iss: Option<String>,
+}
+
+/// A sign-in that has ended well.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finished {
+    /// Who is there.
+    pub identity: Identity,
+    /// What it was for.
+    pub purpose: Purpose,
+    /// Where to go now.
+    pub next: String,
+    /// By what it is known again, if somebody tries it twice.
+    pub sha256: String,
+    /// When it would have expired, seconds of the Unix epoch.
+    pub until_s: i64,
+}
+
+impl Answer {
+    /// Reads the query that the browser came back with; one that says something twice says nothing.
+    pub fn read(query: &str) -> Self {
+        serde_urlencoded::from_str(query).unwrap_or_default()
+    }
+}
+
+#[derive(Deserialize)]
+struct Tokens {
+    id_token: Option<String>,
+    access_token: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Refusal {
+    error: String,
+}
+
+impl Provider {
+    /// A provider with these settings. Nothing is asked yet.
+    ///
+    /// # Errors
+    /// The system gives no random numbers.
+    pub fn new(settings: Settings) -> Result<Self> {
+        // The same for all servers that the provider knows by one secret.
+        let seal = match &settings.client_secret {
+            Some(known) => crate::sign(known, b"sistership tickets"),
+            None => secret().map_err(|_| Failure::Provider("no random numbers".to_owned()))?,
+        };
+        Ok(Self { settings, seal, known: Mutex::default() })
+    }
+
+    /// Its settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Begins a sign-in at the time `now_s`, seconds of the Unix epoch, which then goes to `next`.
+    ///
+    /// # Errors
+    /// The provider does not say where, or the system gives no random numbers.
+    pub async fn begin(&self, purpose: Purpose, next: &str, now_s: i64) -> Result<Begun> {
+        let known = self.known().await?;
+        let broken = || Failure::Provider("a sign-in cannot be begun".to_owned());
+        let ticket = Ticket::new(purpose, next, now_s).ok_or_else(broken)?;
+        let mut place = Url::parse(&known.metadata.authorization_endpoint).map_err(|_| broken())?;
+        place
+            .query_pairs_mut()
+            .append_pair("response_type", "code")
+            .append_pair("client_id", &self.settings.client_id)
+            .append_pair("redirect_uri", &self.settings.redirect_uri())
+            .append_pair("scope", &self.settings.scopes)
+            .append_pair("state", &ticket.state())
+            .append_pair("nonce", &ticket.nonce())
+            .append_pair("code_challenge", &ticket.challenge())
+            .append_pair("code_challenge_method", "S256");
+        let ticket = ticket.sealed(&self.seal).ok_or_else(broken)?;
+        Ok(Begun { place: place.into(), ticket })
+    }
+
+    /// Ends a sign-in: asks the provider for the token that its answer stands for, and checks it.
+    ///
+    /// # Errors
+    /// Nobody is there, or it is not shown who.
+    pub async fn finish(
+        &self,
+        ticket: Option<&str>,
+        answer: &Answer,
+        now_s: i64,
+    ) -> Result<Finished> {
+        let ticket = ticket.and_then(|text| Ticket::opened(text, &self.seal, now_s));
+        let ticket = ticket.ok_or(Failure::Expired)?;
+        let state = answer.state.as_deref().unwrap_or_default();
+        if !crate::same(state.as_bytes(), ticket.state().as_bytes()) {
+            return Err(Failure::Expired);
+        }
+        let known = self.known().await?;
+        if !known.metadata.is_from(answer.iss.as_deref()) {
+            return Err(Failure::Untrusted("another provider has answered".to_owned()));
+        }
+        if let Some(error) = &answer.error {
+            return Err(refused(error));
+        }
+        let code = answer.code.as_deref().filter(|code| !code.is_empty());
+        let code = code.ok_or_else(|| Failure::Provider("it sends no code".to_owned()))?;
+        let tokens = self.tokens(&known, code, &ticket).await?;
+        let identity = self.identity(&known, tokens, &ticket).await?;
+        let (sha256, until_s) = (ticket.sha256(), ticket.until_s());
+        Ok(Finished { identity, purpose: ticket.purpose, next: ticket.next, sha256, until_s })
+    }
+
+    /// What the provider has said of itself within the last hour.
+    async fn known(&self) -> Result<Arc<Known>> {
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        match known.filter(|known| known.at.elapsed() < FRESH) {
+            Some(known) => Ok(known),
+            None => self.asked().await,
+        }
+    }
+
+    async fn asked(&self) -> Result<Arc<Known>> {
+        let client = fetch::client()?;
+        let issuer = &self.settings.issuer;
+        let body = fetch::document(client.get(place(issuer)), "discovery document").await?;
+        let metadata: Metadata = fetch::read(&body, "discovery document")?;
+        let metadata = metadata.checked(issuer)?;
+        let keys = keys(&client, &metadata).await?;
+        Ok(self.remembered(Known { client, metadata, keys, at: Instant::now() }))
+    }
+
+    fn remembered(&self, known: Known) -> Arc<Known> {
+        let known = Arc::new(known);
+        *self.known.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&known));
+        known
+    }
+
+    /// The tokens for a code (RFC 6749, 4.1.3).
+    async fn tokens(&self, known: &Known, code: &str, ticket: &Ticket) -> Result<Tokens> {
+        let (redirect, verifier) = (self.settings.redirect_uri(), ticket.verifier());
+        let id = &self.settings.client_id;
+        let mut form = vec![
+            ("grant_type", "authorization_code"),
+            ("code", code),
+            ("redirect_uri", &redirect),
+            ("code_verifier", &verifier),
+        ];
+        let mut request = known.client.post(&known.metadata.token_endpoint);
+        match &self.settings.client_secret {
+            Some(secret) if known.metadata.secret_in_body() => {
+                form.extend([("client_id", id.as_str()), ("client_secret", secret)]);
+            }
+            // Each written as in a form first (RFC 6749, 2.3.1).
+            Some(secret) => request = request.basic_auth(as_in_form(id), Some(as_in_form(secret))),
+            None => form.push(("client_id", id)),
+        }
+        let body = serde_urlencoded::to_string(form)
+            .map_err(|_| Failure::Provider("its code cannot be sent".to_owned()))?;
+        let request = request
+            .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+            .header(header::ACCEPT, "application/json")
+            .body(body);
+        match fetch::answer(request).await? {
+            (StatusCode::OK, body) => fetch::read(&body, "token"),
+            (status, body) => Err(untaken(status, &body)),
+        }
+    }
+
+    /// Who the tokens say is there.
+    async fn identity(&self, known: &Known, tokens: Tokens, ticket: &Ticket) -> Result<Identity> {
+        let Tokens { id_token, access_token } = tokens;
+        let id_token =
+            id_token.ok_or_else(|| Failure::Untrusted("it sends no ID token".to_owned()))?;
+        let nonce = ticket.nonce();
+        let (issuer, client_id) = (self.settings.issuer.as_str(), self.settings.client_id.as_str());
+        let expected = Expected { issuer, client_id, nonce: &nonce };
+        let header = token::header(&id_token)?;
+        let claims = match token::verified(&id_token, &header, &known.keys, expected)? {
+            Some(claims) => claims,
+            // Signed by a key that was not there an hour ago: once for each sign-in, which costs
+            // the provider a request anyway.
+            None => {
+                let keys = keys(&known.client, &known.metadata).await?;
+                let found = token::verified(&id_token, &header, &keys, expected)?;
+                let (client, metadata) = (known.client.clone(), known.metadata.clone());
+                self.remembered(Known { client, metadata, keys, at: known.at });
+                let unknown = "its token is signed by a key that it does not publish";
+                found.ok_or_else(|| Failure::Untrusted(unknown.to_owned()))?
+            }
+        };
+        let (issuer, subject) = (claims.iss, claims.sub);
+        let mut identity = Identity { issuer, subject, claims: claims.others };
+        if !self.settings.admission.is_answered_by(&identity.claims) {
+            self.ask_more(known, access_token, &mut identity).await?;
+        }
+        Ok(identity)
+    }
+
+    /// Adds what the provider tells of somebody beside the token (OpenID Connect Core 1.0, 5.3).
+    async fn ask_more(
+        &self,
+        known: &Known,
+        access_token: Option<String>,
+        identity: &mut Identity,
+    ) -> Result<()> {
+        let (Some(place), Some(token)) = (&known.metadata.userinfo_endpoint, access_token) else {
+            return Ok(());
+        };
+        let request: RequestBuilder = known.client.get(place).bearer_auth(token);
+        let body = fetch::document(request, "description of you").await?;
+        let claims: Map<String, Value> = fetch::read(&body, "description of you")?;
+        if claims.get("sub").and_then(Value::as_str) != Some(&identity.subject) {
+            return Err(Failure::Untrusted("it describes somebody else".to_owned()));
+        }
+        for (claim, value) in claims {
+            identity.claims.entry(claim).or_insert(value);
+        }
+        Ok(())
+    }
+}
+
+async fn keys(client: &Client, metadata: &Metadata) -> Result<Keys> {
+    let body = fetch::document(client.get(&metadata.jwks_uri), "set of keys").await?;
+    Keys::read(&body).ok_or_else(|| Failure::Provider("its set of keys does not read".to_owned()))
+}
+
+fn as_in_form(text: &str) -> String {
+    serde_urlencoded::to_string([("", text)]).unwrap_or_default().trim_start_matches('=').to_owned()
+}
+
+/// A word of the standard, or none: whoever made the link wrote it.
+fn word(text: &str) -> &str {
+    let plain =
+        text.len() <= 64 && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
+    if plain { text } else { "for a reason that is no word of the standard" }
+}
+
+/// What an error of the authorization endpoint comes to (RFC 6749, 4.1.2.1; OpenID Connect,
+/// 3.1.2.6).
+fn refused(error: &str) -> Failure {
+    match error {
+        "access_denied"
+        | "login_required"
+        | "consent_required"
+        | "interaction_required"
+        | "account_selection_required" => Failure::Denied,
+        "temporarily_unavailable" | "server_error" => Failure::Unreachable(word(error).to_owned()),
+        other => Failure::Refused(word(other).to_owned()),
+    }
+}
+
+/// What an error of the token endpoint comes to (RFC 6749, 5.2).
+fn untaken(status: StatusCode, body: &[u8]) -> Failure {
+    match fetch::read::<Refusal>(body, "refusal") {
+        Ok(refusal) if refusal.error == "invalid_grant" => Failure::Expired,
+        Ok(refusal) => Failure::Refused(word(&refusal.error).to_owned()),
+        Err(_) => Failure::Provider(format!("its token is answered {}", status.as_u16())),
+    }
+}
+
+impl fmt::Debug for Provider {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_tuple("Provider").field(&self.settings).finish()
+    }
+}

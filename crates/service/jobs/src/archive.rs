@@ -1,0 +1,191 @@
+//! Everything that a version can be derived from, found by the hash of its bytes.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use bytes::Bytes;
+use sistership_fleet::family::FamilyPrior;
+use sistership_model::trial::Trial;
+use sistership_model::version::{RecipeTrial, SourceVersion, sha256};
+use sistership_model::vessel::VesselFile;
+use sistership_model::{Law, Model, Vessel};
+use sistership_store::{
+    MAX_LIMIT, Objects, ObjectsPlace, Page, Store, StoreError, SystemClock, Version,
+};
+use sistership_trials::samples::from_parquet;
+
+use crate::error::DeriveError;
+use crate::library::{self, Library};
+use crate::recipe::PriorName;
+use crate::version::VersionDocument;
+
+/// The database and the samples that belong to it.
+#[derive(Debug, Clone)]
+pub struct Archive {
+    /// The database.
+    pub store: Store,
+    /// The samples of trials, and the weights of learned branches.
+    pub objects: Objects,
+}
+
+type Result<T> = std::result::Result<T, DeriveError>;
+
+impl Archive {
+    /// Opens the database at the URL and the samples in a folder.
+    ///
+    /// # Errors
+    /// Says which of them cannot be opened.
+    pub async fn open(database_url: &str, data_dir: &Path) -> sistership_store::Result<Self> {
+        Self::open_at(database_url, &ObjectsPlace::Folder(data_dir.to_path_buf())).await
+    }
+
+    /// Opens the database at the URL and the samples where they are.
+    ///
+    /// # Errors
+    /// Says which of them cannot be opened.
+    pub async fn open_at(
+        database_url: &str,
+        samples: &ObjectsPlace,
+    ) -> sistership_store::Result<Self> {
+        let objects = Objects::at(samples)?;
+        match objects.mark().await {
+            // The server leaves it once there is room.
+            Err(error) if error.is_out_of_space() => {
+                tracing::error!(%error, "the objects could not be marked")
+            }
+            // It serves what needs none, and says in `/readyz` that the store does not answer.
+            Err(error) if error.is_passing() => {
+                tracing::error!(%error, "the object store does not answer")
+            }
+            other => other?,
+        }
+        let store = Store::connect(database_url, Arc::new(SystemClock)).await?;
+        match library::keep(&store).await {
+            // Versions that this release makes wait for room, too.
+            Err(error) if error.is_out_of_space() => {
+                tracing::error!(%error, "the library of effects could not be kept")
+            }
+            other => other?,
+        }
+        Ok(Self { store, objects })
+    }
+
+    /// The ship as it was when its document had this hash.
+    pub async fn ship(&self, name: &str, hash: &str) -> Result<Vessel> {
+        let mut page = Page::first(MAX_LIMIT);
+        loop {
+            let revisions = self.store.ships().revisions(name, &page).await?;
+            if let Some(found) =
+                revisions.items.iter().find(|revision| sha256(revision.document.as_bytes()) == hash)
+            {
+                return vessel(name, &found.document);
+            }
+            let lost = || {
+                DeriveError::Lost(format!("no revision of the ship `{name}` has the hash {hash}"))
+            };
+            page = Page::after(revisions.next.ok_or_else(lost)?, MAX_LIMIT);
+        }
+    }
+
+    /// The law of this name, whose text must have this hash.
+    pub async fn law(&self, name: &str, hash: &str) -> Result<Law> {
+        let law = self.store.laws().get(name).await?;
+        same_hash(&format!("the law `{name}`"), &law.document, hash)?;
+        Ok(Law::parse(&law.name, &law.document)?)
+    }
+
+    /// The model of a version, with the weights of its learned branch, if it has one.
+    ///
+    /// # Errors
+    /// The version does not read, or its weights are missing, damaged or not its own.
+    pub async fn model(&self, version: &Version) -> Result<Model> {
+        let mut model = document(version)?.model;
+        self.attach(&mut model).await?;
+        Ok(model)
+    }
+
+    /// Attaches the weights of a model's learned branch, if it has one.
+    ///
+    /// # Errors
+    /// They are missing, damaged or not its own.
+    pub async fn attach(&self, model: &mut Model) -> Result<()> {
+        let Some(branch) = &model.branch else { return Ok(()) };
+        let weights = self.objects.get(&branch.weights_sha256).await?;
+        Ok(sistership_learned::attach(model, &weights)?)
+    }
+
+    /// The model of a version that another starts from, without the weights of a learned branch.
+    pub async fn source(&self, source: &SourceVersion) -> Result<Model> {
+        let version = self.store.versions().get(&source.ship, source.number).await?;
+        let SourceVersion { ship, number, sha256 } = source;
+        same_hash(&format!("version {ship}/{number}"), &version.document, sha256)?;
+        Ok(document(&version)?.model)
+    }
+
+    /// The library of effects of this hash.
+    pub async fn effects(&self, hash: &str) -> Result<Library> {
+        let found = match self.store.effects().get(hash).await {
+            Err(StoreError::NotFound { .. }) => {
+                let mend = "restore it from a backup, or open the store once with a release that \
+                    carries it";
+                return Err(DeriveError::Lost(format!(
+                    "the store has no library of effects {hash}: {mend}"
+                )));
+            }
+            other => other?,
+        };
+        same_hash("the library of effects", &found.document, hash)?;
+        Ok(Library::parse(&found.document)?)
+    }
+
+    /// What a family has taught.
+    pub async fn prior(&self, name: &PriorName) -> Result<FamilyPrior> {
+        let PriorName { family, revision, sha256 } = name;
+        let row = self.store.families().prior(family, Some(*revision)).await?;
+        same_hash(
+            &format!("the prior of the family `{family}` at revision {revision}"),
+            &row.document,
+            sha256,
+        )?;
+        Ok(serde_json::from_str(&row.document)?)
+    }
+
+    /// Trials with their samples, in their order. Each is read before the next is fetched, so that
+    /// no more than one lies in memory as it is stored.
+    pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
+        let mut read = Vec::with_capacity(trials.len());
+        for trial in trials {
+            let samples: Bytes = self.objects.get(&trial.sha256).await?;
+            read.push(tokio::task::spawn_blocking(move || from_parquet(samples)).await??);
+        }
+        Ok(read)
+    }
+}
+
+/// A ship from its document.
+pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
+    let file: VesselFile =
+        serde_json::from_str(document).map_err(|error| damaged("ship", name, &error))?;
+    Ok(Vessel::from_file(name, file)?)
+}
+
+/// Whether a document is the one that is asked for, by its bytes and not by what is recorded of
+/// them.
+fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
+    match sha256(document.as_bytes()) {
+        actual if actual == hash => Ok(()),
+        actual => Err(DeriveError::Lost(format!(
+            "{what} has the hash {actual}, not {hash}: it is damaged or another one"
+        ))),
+    }
+}
+
+/// What a version holds.
+pub fn document(version: &Version) -> Result<VersionDocument> {
+    let name = format!("{}/{}", version.head.model, version.head.number);
+    serde_json::from_str(&version.document).map_err(|error| damaged("version", &name, &error))
+}
+
+fn damaged(kind: &str, name: &str, error: &serde_json::Error) -> DeriveError {
+    DeriveError::Lost(format!("the document of the {kind} `{name}` does not read: {error}"))
+}

@@ -1,0 +1,223 @@
+//! A ship from one archive into another, of another kind of database.
+#![allow(clippy::unwrap_used)]
+
+use std::io::{Cursor, Read as _, Write as _};
+use std::path::PathBuf;
+
+use serde_json::Value;
+use sistership_store::testing::TestDatabase;
+use sistership_store::{Expect, NewReport, NewShip, NewTrial, NewVersion};
+
+use super::{Bundle, BundleError, SigningKey, gather, take, trusted};
+use crate::archive::Archive;
+use crate::line::{CHAMPION, step};
+use crate::verify::verify;
+
+const SHIP: &str = "demo-ship";
+
+fn text(value: &Value) -> String {
+    value.as_str().unwrap().to_owned()
+}
+
+async fn opened(database: &TestDatabase) -> Archive {
+    Archive::open(&database.url, database.folder.path()).await.unwrap()
+}
+
+/// An archive with three versions of a ship and what they were derived from (`tests/data/recipes`),
+/// a parent, a trial, a report and a champion among them.
+async fn filled(database: &TestDatabase) -> Archive {
+    let archive = opened(database).await;
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/data/recipes"));
+    let kept: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("store.json")).unwrap()).unwrap();
+    for law in kept["laws"].as_array().unwrap() {
+        archive.store.laws().insert(&text(&law["name"]), &text(&law["document"])).await.unwrap();
+    }
+    for ship in kept["ships"].as_array().unwrap() {
+        let field = |name: &str| text(&ship[name]);
+        let (name, title, category, document) =
+            (field("name"), field("title"), field("category"), field("document"));
+        archive.store.ships().create(&NewShip { name, title, category, document }).await.unwrap();
+    }
+    for file in std::fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path()) {
+        if file.extension().is_some_and(|extension| extension == "parquet") {
+            let key = archive.objects.put(std::fs::read(file).unwrap().into()).await.unwrap();
+            archive.store.trials().insert(&trial(&key)).await.unwrap();
+        }
+    }
+    let mut parent = None;
+    for row in kept["versions"].as_array().unwrap() {
+        let field = |name: &str| text(&row[name]);
+        let own = field("model") == SHIP;
+        let new = NewVersion {
+            model: field("model"),
+            parent: parent.clone().filter(|_| own),
+            law: field("law"),
+            method: field("method"),
+            document: field("document"),
+            weights: None,
+        };
+        let made = archive.store.versions().create(&new, &[]).await.unwrap();
+        if own {
+            let report = NewReport {
+                version_id: Some(made.id.clone()),
+                ship: SHIP.to_owned(),
+                kind: "refinement".to_owned(),
+                document: "{}".to_owned(),
+                html: format!("<p>{}</p>", made.number),
+            };
+            archive.store.reports().insert(&report).await.unwrap();
+            parent = Some(made.id);
+        }
+    }
+    let champion = step(CHAMPION, Expect::Absent, "test");
+    archive.store.aliases().move_to(SHIP, 2, &champion).await.unwrap();
+    archive
+}
+
+fn trial(key: &str) -> NewTrial {
+    let text = |text: &str| text.to_owned();
+    NewTrial {
+        ship: text(SHIP),
+        sha256: text(key),
+        name: format!("{}.csv", &key[..6]),
+        manifest: text("{}"),
+        conventions: text("{}"),
+        manoeuvre: Some(text("zigzag 20/20")),
+        sample_rows: 10,
+        duration_s: 1.0,
+        warnings: text("[]"),
+        object_key: text(key),
+    }
+}
+
+/// SQLite into PostgreSQL, or into another SQLite where that is not installed.
+async fn target() -> TestDatabase {
+    TestDatabase::postgres().await.unwrap_or_else(TestDatabase::sqlite)
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn hashes_lineage_and_verification_are_kept() {
+    let (from, to) = (TestDatabase::sqlite(), target().await);
+    let (source, other) = (filled(&from).await, opened(&to).await);
+    let bundle = gather(&source, SHIP).await.unwrap();
+    let file = bundle.packed(None).unwrap();
+    assert_eq!(file, bundle.packed(None).unwrap(), "the same bytes");
+    let (read, signer) = Bundle::unpacked(&file).unwrap();
+    assert_eq!((&read, signer), (&bundle, None));
+    let taken = take(&other, &read).await.unwrap();
+    assert!(taken.ships.contains(&SHIP.to_owned()) && taken.versions.len() >= 3, "{taken:?}");
+    assert!(taken.trials > 0 && taken.known == 0);
+    for number in 1..=3 {
+        let [here, there] = [&source, &other].map(|archive| archive.store.versions());
+        let (here, there) =
+            (here.get(SHIP, number).await.unwrap(), there.get(SHIP, number).await.unwrap());
+        assert_eq!((&here.head.sha256, &here.document), (&there.head.sha256, &there.document));
+        assert_eq!(
+            parent(&source, here.head.parent).await,
+            parent(&other, there.head.parent).await,
+            "the parent of {number}"
+        );
+        let verification = verify(&other, SHIP, number).await.unwrap();
+        assert!(verification.identical, "{verification:?}");
+    }
+    let champion = other.store.versions().current(SHIP, CHAMPION).await.unwrap().unwrap();
+    assert!(champion.report.is_some(), "the champion has its report");
+    assert_eq!(gather(&other, SHIP).await.unwrap().content.lines, bundle.content.lines);
+    let again = take(&other, &read).await.unwrap();
+    assert_eq!((again.versions.len(), again.trials), (0, 0), "a second time nothing is new");
+    source.store.close().await;
+    other.store.close().await;
+}
+
+async fn parent(archive: &Archive, id: Option<String>) -> Option<(String, i64)> {
+    let parent = archive.store.versions().by_id(&id?).await.unwrap().head;
+    Some((parent.model, parent.number))
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_contradicts_is_named_and_nothing_is_taken() {
+    let (from, to) = (TestDatabase::sqlite(), TestDatabase::sqlite());
+    let (source, other) = (filled(&from).await, opened(&to).await);
+    let bundle = gather(&source, SHIP).await.unwrap();
+    let another = NewShip {
+        name: SHIP.to_owned(),
+        title: "Another".to_owned(),
+        category: "tanker".to_owned(),
+        document: "{}".to_owned(),
+    };
+    other.store.ships().create(&another).await.unwrap();
+    let law = bundle.content.laws.keys().next().unwrap();
+    other.store.laws().insert(law, "another law").await.unwrap();
+    let refused = take(&other, &bundle).await.unwrap_err().to_string();
+    assert!(refused.contains(&format!("`{SHIP}` has another history")), "{refused}");
+    assert!(refused.contains(&format!("the law `{law}` is another one")), "{refused}");
+    assert!(other.store.versions().latest(SHIP).await.is_err(), "nothing was written");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_damaged_file_is_refused() {
+    let database = TestDatabase::sqlite();
+    let bundle = gather(&filled(&database).await, SHIP).await.unwrap();
+    let refused = |bytes: &[u8]| match Bundle::unpacked(bytes) {
+        Err(BundleError::File(message)) => message,
+        other => panic!("{other:?}"),
+    };
+    assert!(refused(b"no archive").contains("is no bundle"));
+    let mut changed = bundle.clone();
+    changed.content.lines.get_mut(SHIP).unwrap()[0].document.push(' ');
+    assert!(
+        refused(&changed.packed(None).unwrap()).contains("demo-ship/1 is not what its hash says")
+    );
+    let mut lacking = bundle.clone();
+    lacking.objects.clear();
+    assert!(refused(&lacking.packed(None).unwrap()).contains("lacks the samples"));
+}
+
+/// Any 32 bytes are a key: the first of RFC 8032, section 7.1, test 2, the other of zeros.
+pub(super) const KEYS: [&str; 2] = [
+    "-----BEGIN PRIVATE KEY-----\n\
+    MC4CAQAwBQYDK2VwBCIEIEzNCJso/5banbbDRuwRTg9bijGfNaumJNqM9u1PuKb7\n\
+    -----END PRIVATE KEY-----\n",
+    "-----BEGIN PRIVATE KEY-----\n\
+    MC4CAQAwBQYDK2VwBCIEIAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA\n\
+    -----END PRIVATE KEY-----\n",
+];
+
+/// The archive with other bytes in place of a file.
+fn replaced(archive: &[u8], name: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut from = zip::ZipArchive::new(Cursor::new(archive)).unwrap();
+    let mut to = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for place in 0..from.len() {
+        let mut file = from.by_index(place).unwrap();
+        let (own, mut kept) = (file.name().unwrap().into_owned(), Vec::new());
+        file.read_to_end(&mut kept).unwrap();
+        to.start_file(own.as_str(), zip::write::SimpleFileOptions::default()).unwrap();
+        to.write_all(if own == name { bytes } else { &kept }).unwrap();
+    }
+    to.finish().unwrap().into_inner()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_signed_file_is_its_signers() {
+    let database = TestDatabase::sqlite();
+    let bundle = gather(&filled(&database).await, SHIP).await.unwrap();
+    let [key, other] = KEYS.map(|pem| SigningKey::from_pem(pem.as_bytes()).unwrap());
+    let file = bundle.packed(Some(&key)).unwrap();
+    let (read, signer) = Bundle::unpacked(&file).unwrap();
+    assert_eq!((read, signer.as_ref()), (bundle.clone(), Some(&key.verifying())));
+    trusted(signer.as_ref(), &[other.verifying(), key.verifying()]).unwrap();
+    let refused = |signer| trusted(signer, &[other.verifying()]).unwrap_err().to_string();
+    assert!(refused(signer.as_ref()).contains("which is none of the keys"));
+    assert!(refused(None).contains("is not signed"));
+    let not_signed = "manifest.json is not what manifest.sig has signed";
+    for (name, bytes, says) in [
+        ("manifest.json", &b"{}"[..], not_signed),
+        ("manifest.sig", &[0; 64], not_signed),
+        ("signer.der", other.verifying().der(), not_signed),
+        ("signer.der", &[0; 44], "signer.der is no Ed25519 key"),
+    ] {
+        let error = Bundle::unpacked(&replaced(&file, name, bytes)).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    }
+}

@@ -1,0 +1,359 @@
+//! Versions of the tree before recipes named their library of effects (`tests/data/recipes`, see
+//! the README there), in stores of this one: each verifies, each reads what its recipe names and
+//! nothing else, and what is lost or damaged is named.
+
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde_json::Value;
+use sistership_model::version::sha256;
+use sistership_store::testing::TestDatabase;
+use sistership_store::{NewShip, NewVersion};
+
+use super::derive;
+use crate::archive::{Archive, document};
+use crate::input::InputKind;
+use crate::library::{FIRST_SHA256, Library, library};
+use crate::recipe::Recipe;
+use crate::upkeep::{fsck, gc};
+use crate::verify::verify;
+use crate::version::VersionDocument;
+
+const SHIP: &str = "demo-ship";
+/// The numbers of its versions, and what each is.
+const KINDS: [(i64, &str); 3] = [(1, "published"), (2, "diagnosis"), (3, "statistics")];
+
+fn folder() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/data/recipes"))
+}
+
+fn kept() -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder().join("store.json")).unwrap()).unwrap()
+}
+
+fn text(value: &Value) -> String {
+    value.as_str().unwrap().to_owned()
+}
+
+fn version_of(row: &Value) -> NewVersion {
+    let field = |name: &str| text(&row[name]);
+    NewVersion {
+        model: field("model"),
+        parent: None,
+        law: field("law"),
+        method: field("method"),
+        document: field("document"),
+        weights: None,
+    }
+}
+
+/// An archive that holds the versions and their inputs, and of the program's own nothing but
+/// libraries of effects.
+async fn archive(database: &TestDatabase) -> Archive {
+    let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
+    let kept = kept();
+    for law in kept["laws"].as_array().unwrap() {
+        archive.store.laws().insert(&text(&law["name"]), &text(&law["document"])).await.unwrap();
+    }
+    for ship in kept["ships"].as_array().unwrap() {
+        let field = |name: &str| text(&ship[name]);
+        let (name, title, category, document) =
+            (field("name"), field("title"), field("category"), field("document"));
+        archive.store.ships().create(&NewShip { name, title, category, document }).await.unwrap();
+    }
+    for file in std::fs::read_dir(folder()).unwrap().map(|file| file.unwrap().path()) {
+        if file.extension().is_some_and(|extension| extension == "parquet") {
+            archive.objects.put(std::fs::read(file).unwrap().into()).await.unwrap();
+        }
+    }
+    for row in kept["versions"].as_array().unwrap() {
+        let made = archive.store.versions().create(&version_of(row), &[]).await.unwrap();
+        assert_eq!(
+            (made.number, &made.sha256),
+            (row["number"].as_i64().unwrap(), &text(&row["sha256"]))
+        );
+    }
+    archive
+}
+
+async fn stored(archive: &Archive, number: i64) -> VersionDocument {
+    document(&archive.store.versions().get(SHIP, number).await.unwrap()).unwrap()
+}
+
+async fn derived(archive: &Archive, recipe: &Recipe) -> String {
+    let derived = derive(archive, SHIP, recipe, Arc::new(|_, _| true)).await.unwrap();
+    derived.document.canonical().unwrap()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn versions_of_the_release_without_named_libraries_verify() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    for (number, method) in KINDS {
+        let version = archive.store.versions().get(SHIP, number).await.unwrap();
+        assert_eq!(version.head.method, method);
+        let read = document(&version).unwrap();
+        assert_eq!(
+            read.canonical().unwrap(),
+            version.document,
+            "{method}: reads and writes the same bytes"
+        );
+        let verification = verify(&archive, SHIP, number).await.unwrap();
+        assert!(
+            verification.identical && verification.remarks.is_empty(),
+            "{method}: {verification:?}"
+        );
+    }
+    let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) =
+        stored(&archive, 1).await.recipe
+    else {
+        panic!("a refinement")
+    };
+    assert_eq!(effects_sha256, None, "the fixture must be of the release before");
+    assert!(fsck(&archive).await.unwrap().clean);
+}
+
+/// The library of the recipe is taken, and not the program's.
+#[tokio::test(flavor = "multi_thread")]
+async fn another_library_gives_another_calibration_by_its_own_hash() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let first = archive.effects(FIRST_SHA256).await.unwrap();
+    let small = first
+        .document
+        .split("kind: effect\n")
+        .filter(|file| file.starts_with("name: rudder"))
+        .fold(String::new(), |all, file| all + "kind: effect\n" + file);
+    let hash = archive.store.effects().keep(&small).await.unwrap();
+    assert_eq!(Library::parse(&small).unwrap().effects.len(), 2);
+    let mut old = stored(&archive, 1).await;
+    let before = old.canonical().unwrap();
+    if let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) =
+        &mut old.recipe
+    {
+        *effects_sha256 = Some(hash.clone());
+    }
+    assert_eq!(old.recipe.effects_sha256(), Some(hash.as_str()));
+    let now = derived(&archive, &old.recipe).await;
+    let now: VersionDocument = serde_json::from_str(&now).unwrap();
+    let before: VersionDocument = serde_json::from_str(&before).unwrap();
+    assert_ne!(now.model.uncertainty, before.model.uncertainty);
+    assert_eq!(now.model.coefficients, before.model.coefficients);
+    let row =
+        NewVersion { document: now.canonical().unwrap(), ..version_of(&kept()["versions"][1]) };
+    let number = archive.store.versions().create(&row, &[]).await.unwrap().number;
+    assert!(verify(&archive, SHIP, number).await.unwrap().identical);
+    gc(&archive, std::time::Duration::ZERO, false).await.unwrap();
+    assert!(verify(&archive, SHIP, number).await.unwrap().identical, "nothing collects a library");
+    database.damage(&format!("DELETE FROM effect_libraries WHERE sha256 = '{hash}'")).await;
+    let lost = verify(&archive, SHIP, number).await.unwrap_err().to_string();
+    assert!(lost.contains(&format!("the store has no library of effects {hash}")), "{lost}");
+    let findings = fsck(&archive).await.unwrap();
+    assert!(findings.faults.iter().any(|fault| fault.check == "version-effects"), "{findings:?}");
+}
+
+/// What each kind of version reads is what its recipe names: the loader refuses it otherwise, which
+/// is shown here by recipes from which, and to which, an input was taken and added.
+#[tokio::test(flavor = "multi_thread")]
+async fn every_kind_of_version_reads_what_its_recipe_names() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let kinds = |recipe: &Recipe| {
+        recipe.inputs().into_iter().map(|input| input.kind).collect::<BTreeSet<InputKind>>()
+    };
+    use InputKind::{Effects, Law, Samples, Ship, Version};
+    for (number, named) in [
+        (1, vec![Ship, Law, Version, Samples, Effects]),
+        (2, vec![Law, Version, Samples, Effects]),
+        (3, vec![Ship, Law, Version, Samples]),
+    ] {
+        let recipe = stored(&archive, number).await.recipe;
+        assert_eq!(kinds(&recipe), BTreeSet::from_iter(named), "version {number}");
+        let inputs = super::Inputs::new(&archive);
+        let unread = inputs.check(&recipe).unwrap_err().to_string();
+        let every = recipe
+            .inputs()
+            .iter()
+            .all(|input| unread.contains(&format!("the recipe names {input}, which was not read")));
+        assert!(every, "{unread}");
+        inputs.effects(FIRST_SHA256).await.unwrap();
+        let unnamed = inputs.check(&recipe).unwrap_err().to_string();
+        assert_eq!(
+            unnamed.contains("was read, but the recipe does not name it"),
+            number == 3,
+            "{unnamed}"
+        );
+        // Deriving ends in the same check, with success.
+        derived(&archive, &recipe).await;
+    }
+}
+
+/// Each input of each kind of version, damaged and lost.
+#[tokio::test(flavor = "multi_thread")]
+async fn an_input_that_is_not_what_it_was_is_named() {
+    let (law, ship, source) =
+        ("the law `son-nomoto`", "ship `demo-ship` has the hash", "version sr108/1");
+    let library = "library of effects";
+    for (number, damage, named) in [
+        (1, "UPDATE laws SET document = document || ' '", law),
+        (1, "UPDATE laws SET document = document || ' ', sha256 = 'x'", law),
+        (1, "DELETE FROM laws", "son-nomoto"),
+        (1, "UPDATE ship_revisions SET document = document || ' '", ship),
+        (1, "UPDATE versions SET document = document || ' ' WHERE model = 'sr108'", source),
+        (1, "UPDATE effect_libraries SET document = document || ' '", library),
+        (1, "DELETE FROM effect_libraries", FIRST_SHA256),
+        (2, "UPDATE effect_libraries SET document = document || ' '", library),
+        (2, "DELETE FROM effect_libraries", FIRST_SHA256),
+        (
+            2,
+            "UPDATE versions SET document = replace(document, '0', '1') WHERE number = 1",
+            "version demo-ship/1",
+        ),
+        (3, "UPDATE laws SET document = document || ' '", law),
+        (3, "UPDATE ship_revisions SET document = document || ' '", ship),
+        (
+            3,
+            "UPDATE versions SET document = document || ' ' WHERE number = 1",
+            "version demo-ship/1",
+        ),
+    ] {
+        let database = TestDatabase::sqlite();
+        let archive = archive(&database).await;
+        database.damage(damage).await;
+        let error = verify(&archive, SHIP, number).await.expect_err(damage).to_string();
+        assert!(error.contains(named), "`{damage}`: {error}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn samples_that_are_lost_are_named() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    for (number, _) in KINDS {
+        let key = stored(&archive, number).await.recipe.trials()[0].sha256.clone();
+        let file = database.folder.path().join("objects").join(&key[..2]).join(&key[2..]);
+        let bytes = std::fs::read(&file).unwrap();
+        std::fs::write(&file, b"other").unwrap();
+        let damaged = verify(&archive, SHIP, number).await.unwrap_err().to_string();
+        assert!(damaged.contains(&key) && damaged.contains(&sha256(b"other")), "{damaged}");
+        std::fs::remove_file(&file).unwrap();
+        let lost = verify(&archive, SHIP, number).await.unwrap_err().to_string();
+        assert!(lost.contains(&key), "{lost}");
+        std::fs::write(&file, bytes).unwrap();
+    }
+}
+
+/// A later release adds its library beside the older ones, on both databases; a backup has all of
+/// them.
+#[tokio::test(flavor = "multi_thread")]
+async fn libraries_stay_beside_each_other_and_are_backed_up() {
+    for database in
+        [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten()
+    {
+        let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
+        let later = archive.store.effects().keep("kind: effect\nname: later\n").await.unwrap();
+        crate::library::keep(&archive.store).await.unwrap();
+        let page = sistership_store::Page::first(10);
+        let all: Vec<String> = archive
+            .store
+            .effects()
+            .list(&page)
+            .await
+            .unwrap()
+            .items
+            .into_iter()
+            .map(|library| library.sha256)
+            .collect();
+        let expected =
+            BTreeSet::from([later, FIRST_SHA256.to_owned(), library().unwrap().sha256.clone()]);
+        assert_eq!(all, Vec::from_iter(expected));
+    }
+    let (database, other) = (TestDatabase::sqlite(), TestDatabase::sqlite());
+    let archive = archive(&database).await;
+    let folder = database.folder.path().join("backup");
+    crate::upkeep::backup(&archive, &folder).await.unwrap();
+    let place = sistership_store::ObjectsPlace::Folder(other.folder.path().join("samples"));
+    crate::upkeep::restore(&folder, &other.url, &place).await.unwrap();
+    let store =
+        sistership_store::Store::connect(&other.url, Arc::new(sistership_store::SystemClock))
+            .await
+            .unwrap();
+    assert_eq!(
+        sha256(store.effects().get(FIRST_SHA256).await.unwrap().document.as_bytes()),
+        FIRST_SHA256
+    );
+}
+
+/// Every setting that was used is in the recipe of a new version, and the spelled out recipe gives
+/// the same model.
+#[tokio::test(flavor = "multi_thread")]
+async fn new_recipes_spell_out_every_setting() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    for method in ["published", "weak", "trajectory", "cma-es"] {
+        let mut recipe = stored(&archive, 1).await.recipe;
+        if let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) =
+            &mut recipe
+        {
+            settings["method"] = method.into();
+            settings["cma_es"] = serde_json::json!({ "evaluations": 300 });
+        }
+        let made = derive(&archive, SHIP, &recipe, Arc::new(|_, _| true))
+            .await
+            .unwrap()
+            .spelled_out()
+            .unwrap();
+        let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) =
+            &made.document.recipe
+        else {
+            panic!("a refinement")
+        };
+        let mut used = made.document.report["settings"].clone();
+        if method == "cma-es" {
+            used["cma_es"]["evaluations"] = 300.into();
+        }
+        assert_eq!(*settings, used, "{method}");
+        let again = derived(&archive, &made.document.recipe).await;
+        assert!(again == made.document.canonical().unwrap(), "{method}");
+    }
+}
+
+/// What numerics are not given as arguments they do not know: no zoo of the program's, no file, no
+/// environment, no calendar, no count of cores. The clock of a search's budget is refused where
+/// versions are made.
+#[test]
+fn numerics_read_nothing_but_their_arguments() {
+    let crates = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    let rooms = [
+        "core/simulation",
+        "analysis/numerics",
+        "analysis/identification",
+        "analysis/diagnosis",
+        "analysis/fleet",
+    ];
+    let mut folders: Vec<PathBuf> = rooms.map(|room| crates.join(room).join("src")).into();
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    assert!(files.len() > 100);
+    for file in files.iter().filter(|file| !file.to_string_lossy().contains("test")) {
+        let text = std::fs::read_to_string(file).unwrap();
+        let product = text.split("#[cfg(test)]").next().unwrap();
+        for word in [
+            "Zoo::embedded",
+            "std::fs",
+            "std::env",
+            "SystemTime",
+            "available_parallelism",
+            "current_num_threads",
+        ] {
+            assert!(!product.contains(word), "{} reads {word}", file.display());
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Learning what a family teaches.
+
+use serde::{Deserialize, Serialize};
+use sistership_fleet::family::{self, FamilyPrior, Member};
+use sistership_fleet::statistics::{Frame, TrialStatistics};
+use sistership_model::version::{RecipeTrial, SourceVersion};
+
+use super::choices::Start;
+use super::frame::Frames;
+use super::kept::statistics_of;
+use super::members::members;
+use crate::archive::{Archive, document};
+use crate::error::DeriveError;
+
+/// The kind of the jobs that learn a family's prior.
+pub const LEARN: &str = "family-prior";
+/// More members than this add little: evenly spaced ones are taken.
+const MOST: usize = 1000;
+
+/// What such a job is asked to do.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LearnJob {
+    /// The family.
+    pub family: String,
+}
+
+/// Learns mean and covariance over the members that have trials; `told` hears how far it is and may
+/// stop it.
+///
+/// # Errors
+/// Why nothing can be learned.
+pub async fn learn(
+    archive: &Archive,
+    name: &str,
+    told: &(dyn Fn(f64, &str) -> bool + Sync),
+) -> Result<FamilyPrior, DeriveError> {
+    let store = &archive.store;
+    let family = store.families().get(name).await?;
+    let foundation = store.versions().by_id(&family.foundation).await?;
+    let law_sha256 = store.laws().get(&foundation.head.law).await?.sha256;
+    let law = archive.law(&foundation.head.law, &law_sha256).await?;
+    let model = document(&foundation)?.model;
+    let head = foundation.head;
+    let source = SourceVersion { ship: head.model, number: head.number, sha256: head.sha256 };
+    let frames = Frames { archive, foundation: &source, model: &model, law: &law };
+    let ships = spread(members(store, name).await?);
+    let mut known: Vec<(String, Vec<TrialStatistics>)> = Vec::new();
+    for (index, ship) in ships.iter().enumerate() {
+        if !told(0.9 * index as f64 / ships.len() as f64, &format!("statistics of {ship}")) {
+            return Err(DeriveError::Refine(
+                sistership_identification::refine::RefineError::Cancelled,
+            ));
+        }
+        known.extend(
+            of_member(&frames, ship, &law_sha256)
+                .await?
+                .map(|statistics| (ship.clone(), statistics)),
+        );
+    }
+    told(0.9, "learning");
+    let learned = tokio::task::spawn_blocking(move || {
+        let members: Vec<Member<'_>> =
+            known.iter().map(|(name, trials)| Member { name, trials }).collect();
+        family::learn(&members)
+    });
+    learned.await?.map_err(|error| DeriveError::Lost(error.to_string()))
+}
+
+/// The statistics of a member; none of one without trials, or whose model is not of this family's
+/// kind.
+async fn of_member(
+    frames: &Frames<'_>,
+    ship: &str,
+    law_sha256: &str,
+) -> Result<Option<Vec<TrialStatistics>>, DeriveError> {
+    let trials = trials_of(frames.archive, ship).await?;
+    let framed = match frames.of(ship, Start::Champion).await {
+        Ok(framed) => framed,
+        Err(DeriveError::Lost(reason)) => {
+            tracing::info!(ship, reason, "not learned from");
+            return Ok(None);
+        }
+        Err(error) => return Err(error),
+    };
+    let frame = match Frame::new(&framed.model, frames.law, law_sha256, None) {
+        Ok(frame) if !trials.is_empty() => frame,
+        _ => return Ok(None),
+    };
+    statistics_of(frames.archive, &frame, &trials).await.map(Some)
+}
+
+/// The trials of a ship, the oldest first.
+pub async fn trials_of(archive: &Archive, ship: &str) -> Result<Vec<RecipeTrial>, DeriveError> {
+    let page = sistership_store::Page::first(sistership_store::MAX_LIMIT);
+    let trials = archive.store.trials().list(ship, &page).await?.items;
+    Ok(trials
+        .into_iter()
+        .map(|trial| RecipeTrial { name: trial.name, sha256: trial.sha256 })
+        .collect())
+}
+
+/// At most [`MOST`], evenly spaced.
+fn spread(ships: Vec<String>) -> Vec<String> {
+    let every = ships.len().div_ceil(MOST).max(1);
+    ships.into_iter().step_by(every).collect()
+}

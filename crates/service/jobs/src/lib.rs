@@ -1,0 +1,39 @@
+//! What a job does, by recipe: derive, verify, calibrate; find ships; look after an archive.
+//! Servers, workers and the command line alike come here.
+
+pub mod archive;
+pub mod budget;
+pub mod bundle;
+pub mod catalogue;
+pub mod champions;
+pub mod comparison;
+pub mod condition;
+pub mod derive;
+pub mod error;
+pub mod exported;
+pub mod fleet;
+pub mod input;
+pub mod inputs;
+pub mod leases;
+pub mod library;
+pub mod line;
+pub mod memory;
+pub mod predictions;
+pub mod promotion;
+pub mod publish;
+pub mod recipe;
+pub mod request;
+pub mod schema;
+pub mod search;
+pub mod seed;
+pub mod sorted;
+pub mod start;
+pub mod surroundings;
+pub mod training;
+pub mod upkeep;
+pub mod validated;
+pub mod verify;
+pub mod version;
+pub mod webhooks;
+
+pub use archive::Archive;

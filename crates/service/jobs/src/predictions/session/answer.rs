@@ -1,0 +1,125 @@
+//! Where a ship under way is, as JSON.
+
+use serde_json::{Map, Value, json};
+use sistership_simulation::{StateVector, Trajectory};
+
+use super::request::StepsRequest;
+use super::sample::{ENDS, Sample};
+use super::under_way::Session;
+use crate::predictions::error::Result;
+use crate::predictions::outside_trials::with_outside_trials;
+use crate::predictions::track::{COLUMNS, columns, with_share};
+
+impl Session {
+    /// Sails steps under orders, `most` at most; answers with them column by column.
+    ///
+    /// # Errors
+    /// As [`Session::take`].
+    pub fn sail(&mut self, request: &StepsRequest, most: usize) -> Result<Value> {
+        self.take(request, most)?;
+        let steps = (0..request.count()).map_while(|_| self.step(request.dt_s.get()));
+        let samples: Vec<Sample> = steps.collect();
+        Ok(self.answer(&samples))
+    }
+
+    /// Samples column by column, with all that is told of them.
+    pub(crate) fn answer(&self, samples: &[Sample]) -> Value {
+        let track = track(samples);
+        let answer = json!({
+            "t_s": self.t_s,
+            "trajectory": columns(&track),
+            "band": self.band_of(samples),
+            "stopped": self.stopped(),
+            "outside": self.ship.leaves(&track),
+        });
+        with_outside_trials(with_share(answer, &self.ship, &track), &self.uncovered)
+    }
+
+    /// Of the steps that a request asks for, of which some are `sailed`, the next ones, row by row,
+    /// `together` at most; and whether they are the last. With the first its orders are taken.
+    ///
+    /// # Errors
+    /// As [`Session::take`].
+    pub fn rows(
+        &mut self,
+        request: &StepsRequest,
+        sailed: usize,
+        together: usize,
+        most: usize,
+    ) -> Result<(Vec<Value>, bool)> {
+        if sailed == 0 {
+            self.take(request, most)?;
+        }
+        let left = request.count().saturating_sub(sailed);
+        let mut rows = Vec::new();
+        while rows.len() < left.min(together) {
+            let sample = self.step(request.dt_s.get());
+            let stopped = sample.is_none();
+            rows.push(self.row(&sample.unwrap_or_else(|| self.sample())));
+            if stopped {
+                return Ok((rows, true));
+            }
+        }
+        let ended = rows.len() == left;
+        Ok((rows, ended))
+    }
+
+    /// Where it is now, under which orders.
+    pub fn view(&self) -> Value {
+        let mut view = self.row(&self.sample());
+        view["orders"] = json!({ "delta_rad": self.order.delta_rad, "n_rps": self.order.n_rps });
+        view["draws"] = json!(self.beside.as_ref().map_or(0, |beside| beside.drawn));
+        view
+    }
+
+    fn row(&self, sample: &Sample) -> Value {
+        let mut row = named(&sample.state);
+        row.insert("t_s".into(), json!(sample.t_s));
+        row.insert("n_rps".into(), json!(sample.n_rps));
+        if let Some(band) = &sample.band {
+            row.insert("band".into(), ends(|end| Value::Object(named(&band[end]))));
+        }
+        row.insert("stopped".into(), self.stopped());
+        let track = track(std::slice::from_ref(sample));
+        row.insert("outside".into(), json!(self.ship.leaves(&track)));
+        with_outside_trials(with_share(Value::Object(row), &self.ship, &track), &self.uncovered)
+    }
+
+    fn stopped(&self) -> Value {
+        self.stopped
+            .as_ref()
+            .map_or(Value::Null, |stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }))
+    }
+
+    /// The band over samples, by its ends and columns; how many draws there were, and are left.
+    fn band_of(&self, samples: &[Sample]) -> Option<Value> {
+        let beside = self.beside.as_ref()?;
+        let column = |end: usize, place: usize| {
+            let value = |sample: &Sample| sample.band.map(|band| band[end][place]);
+            samples.iter().map(value).collect::<Vec<_>>()
+        };
+        let mut band = ends(|end| {
+            let all = COLUMNS.map(|(name, place)| (name.to_owned(), json!(column(end, place))));
+            Value::Object(all.into_iter().collect())
+        });
+        band["drawn"] = json!(beside.drawn);
+        band["sailing"] = json!(beside.sisters.states().count());
+        Some(band)
+    }
+}
+
+/// Both ends of a band.
+fn ends(of: impl Fn(usize) -> Value) -> Value {
+    let [(low, _), (high, _)] = ENDS;
+    json!({ low: of(0), high: of(1) })
+}
+
+fn named(state: &StateVector) -> Map<String, Value> {
+    COLUMNS.iter().map(|&(name, place)| (name.to_owned(), json!(state[place]))).collect()
+}
+
+fn track(samples: &[Sample]) -> Trajectory {
+    let mut track = Trajectory::default();
+    samples.iter().for_each(|sample| track.push(sample.t_s, sample.state, sample.n_rps));
+    track
+}

@@ -1,0 +1,67 @@
+//! A simulated track: how long it may be, and its columns.
+
+use serde_json::{Value, json};
+use sistership_simulation::state::at;
+use sistership_simulation::{Ship, Trajectory};
+
+use crate::budget::take_now;
+use crate::predictions::error::{PredictError, Result};
+
+/// Longest step, s.
+pub(super) const STEP_S: f64 = 0.1;
+
+/// A number above zero.
+pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(value),
+        false => Err(PredictError::invalid(field, format!("must be above 0, is {value}"))),
+    }
+}
+
+/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON
+/// values of 32 bytes, and their text of some 20 bytes each.
+const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
+
+/// Takes the memory of a simulation; refuses a simulation of more steps than are allowed.
+pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
+    match steps <= most as f64 {
+        true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
+        false => Err(PredictError::invalid(
+            field,
+            format!(
+                "would take {steps:.0} steps, at most {most} are made: give a higher speed or a \
+                 shorter time"
+            ),
+        )),
+    }
+}
+
+/// Places in the state vector by canonical column.
+pub(super) const COLUMNS: [(&str, usize); 9] = [
+    ("x_m", at::X),
+    ("y_m", at::Y),
+    ("psi_rad", at::PSI),
+    ("u_m_s", at::U),
+    ("v_m_s", at::V),
+    ("r_rad_s", at::R),
+    ("phi_rad", at::PHI),
+    ("p_rad_s", at::P),
+    ("delta_rad", at::DELTA),
+];
+
+/// An answer with what a learned branch counted for along the track, where the ship has one.
+pub(super) fn with_share(mut answer: Value, ship: &Ship, track: &Trajectory) -> Value {
+    if let Some(share) = ship.branch_share(track) {
+        answer["branch_share"] = json!(share);
+    }
+    answer
+}
+
+/// A track by column.
+pub(super) fn columns(track: &Trajectory) -> Value {
+    let mut columns = json!({ "t_s": track.t_s, "n_rps": track.n_rps });
+    for (name, index) in COLUMNS {
+        columns[name] = json!(track.column(index));
+    }
+    columns
+}

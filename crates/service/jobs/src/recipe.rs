@@ -1,0 +1,317 @@
+//! How versions are derived: the recipes that [`sistership_model::version`] knows, that of a
+//! diagnosis, of a member of a family, and of a model that was made elsewhere.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_fleet::bulk::BulkSettings;
+use sistership_learned::Training;
+use sistership_model::version::{self, PopulationMember, RecipeTrial, SourceVersion};
+
+use crate::input::{Input, InputKind};
+use crate::library::FIRST_SHA256;
+
+/// How a version is derived.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Recipe {
+    /// By adding the effects that a diagnosis finds.
+    Diagnosis(DiagnosisRecipe),
+    /// As a member of a family, from statistics.
+    Family(FamilyRecipe),
+    /// By training a learned branch beside a version.
+    Training(TrainingRecipe),
+    /// Not at all: the model was made elsewhere.
+    Registered(RegisteredRecipe),
+    /// From a ship's own document, or by refinement.
+    Plain(version::Recipe),
+}
+
+/// How a diagnosis is derived. Everything it starts from is named by the SHA-256 of its bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnosisRecipe {
+    /// Always `diagnosis`.
+    pub kind: DiagnosisKind,
+    /// The version diagnosed.
+    pub diagnosed: SourceVersion,
+    /// The law's file.
+    pub law_sha256: String,
+    /// The trials, in the order in which they were given.
+    pub trials: Vec<RecipeTrial>,
+    /// The library of effects, see [`crate::library::Library`].
+    pub effects_sha256: String,
+    /// Every setting.
+    pub settings: Value,
+    /// The program that did it.
+    pub code_revision: String,
+}
+
+/// How a version with a learned branch is derived. Everything it starts from is named by the
+/// SHA-256 of its bytes; its document names the weights that came of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingRecipe {
+    /// Always `branch`.
+    pub kind: TrainingKind,
+    /// The version that the branch was trained beside.
+    pub foundation: SourceVersion,
+    /// The law's file.
+    pub law_sha256: String,
+    /// The trials, in the order in which they were given.
+    pub trials: Vec<RecipeTrial>,
+    /// The library of effects, see [`crate::library::Library`].
+    pub effects_sha256: String,
+    /// Every setting, the seed among them.
+    pub settings: Training,
+    /// The program that did it.
+    pub code_revision: String,
+}
+
+/// The word `branch`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrainingKind {
+    /// The only one.
+    Branch,
+}
+
+/// What is known of a model that was made elsewhere.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegisteredRecipe {
+    /// Always `registered`.
+    pub kind: RegisteredKind,
+    /// The law's file.
+    pub law_sha256: String,
+    /// Who made it, with what, in the words of whoever registered it.
+    pub origin: String,
+}
+
+/// The word `registered`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RegisteredKind {
+    /// The only one.
+    #[default]
+    Registered,
+}
+
+/// The word `diagnosis`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DiagnosisKind {
+    /// The only one.
+    Diagnosis,
+}
+
+/// How the model of a member is derived from statistics. Everything it starts from is named by the
+/// SHA-256 of its bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FamilyRecipe {
+    /// Always `family`.
+    pub kind: FamilyKind,
+    /// The version that it started from: its own, or the foundation.
+    pub start: SourceVersion,
+    /// Its document, where the foundation was carried over to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ship_sha256: Option<String>,
+    /// What the family is founded on.
+    pub foundation: SourceVersion,
+    /// The family's prior; where absent, the foundation held the coefficients.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<PriorName>,
+    /// The law's file.
+    pub law_sha256: String,
+    /// The trials, in the order in which they were taken.
+    pub trials: Vec<RecipeTrial>,
+    /// Every setting.
+    pub settings: BulkSettings,
+    /// The program that did it.
+    pub code_revision: String,
+}
+
+/// The word `family`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FamilyKind {
+    /// The only one.
+    Family,
+}
+
+/// What a family has taught, by name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PriorName {
+    /// The family.
+    pub family: String,
+    /// Which time.
+    pub revision: i64,
+    /// The hash of its document.
+    pub sha256: String,
+}
+
+impl Recipe {
+    /// The hash of the law's file.
+    pub fn law_sha256(&self) -> &str {
+        match self {
+            Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
+            | Self::Family(FamilyRecipe { law_sha256, .. })
+            | Self::Training(TrainingRecipe { law_sha256, .. })
+            | Self::Registered(RegisteredRecipe { law_sha256, .. })
+            | Self::Plain(
+                version::Recipe::Published { law_sha256, .. }
+                | version::Recipe::Refinement { law_sha256, .. },
+            ) => law_sha256,
+        }
+    }
+
+    /// The program that followed it; none for a published model.
+    pub fn code_revision(&self) -> Option<&str> {
+        match self {
+            Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
+            | Self::Family(FamilyRecipe { code_revision, .. })
+            | Self::Training(TrainingRecipe { code_revision, .. })
+            | Self::Plain(version::Recipe::Refinement { code_revision, .. }) => Some(code_revision),
+            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
+        }
+    }
+
+    /// The trials that it names.
+    pub fn trials(&self) -> &[RecipeTrial] {
+        match self {
+            Self::Diagnosis(DiagnosisRecipe { trials, .. })
+            | Self::Family(FamilyRecipe { trials, .. })
+            | Self::Training(TrainingRecipe { trials, .. })
+            | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
+            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => &[],
+        }
+    }
+
+    /// The hash of the ship's document, where it names one.
+    pub fn ship_sha256(&self) -> Option<&str> {
+        match self {
+            Self::Plain(
+                version::Recipe::Published { ship_sha256, .. }
+                | version::Recipe::Refinement { ship_sha256, .. },
+            ) => Some(ship_sha256),
+            Self::Family(recipe) => recipe.ship_sha256.as_deref(),
+            Self::Diagnosis(_) | Self::Training(_) | Self::Registered(_) => None,
+        }
+    }
+
+    /// The version that it starts from; none for a published model.
+    pub fn starts_from(&self) -> Option<&SourceVersion> {
+        match self {
+            Self::Plain(version::Recipe::Refinement { source, .. }) => source.as_ref(),
+            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
+            Self::Family(recipe) => Some(&recipe.start),
+            Self::Training(recipe) => Some(&recipe.foundation),
+            Self::Diagnosis(_) => self.diagnosed(),
+        }
+    }
+
+    /// The hash of the library of effects; of a refinement that does not name one, that of the
+    /// releases which made such.
+    pub fn effects_sha256(&self) -> Option<&str> {
+        match self {
+            Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),
+            Self::Training(recipe) => Some(&recipe.effects_sha256),
+            Self::Plain(version::Recipe::Refinement { effects_sha256, .. }) => {
+                Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
+            }
+            Self::Family(_)
+            | Self::Plain(version::Recipe::Published { .. })
+            | Self::Registered(_) => None,
+        }
+    }
+
+    /// What a family has taught, where it held the coefficients.
+    pub fn prior(&self) -> Option<&PriorName> {
+        match self {
+            Self::Family(recipe) => recipe.prior.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Every version that it names.
+    pub fn versions(&self) -> Vec<&SourceVersion> {
+        let foundation = match self {
+            Self::Family(recipe) => Some(&recipe.foundation),
+            _ => None,
+        };
+        let population = self.population().iter().map(|member| &member.version);
+        self.starts_from().into_iter().chain(foundation).chain(population).collect()
+    }
+
+    /// The ships of its population, where that was the prior.
+    pub fn population(&self) -> &[PopulationMember] {
+        match self {
+            Self::Plain(version::Recipe::Refinement { population, .. }) => population,
+            _ => &[],
+        }
+    }
+
+    /// Everything that the version is derived from.
+    pub fn inputs(&self) -> BTreeSet<Input> {
+        let mut inputs = BTreeSet::from([InputKind::Law.of(self.law_sha256())]);
+        if let Self::Plain(version::Recipe::Refinement { across: Some(across), .. }) = self {
+            inputs.insert(InputKind::Law.of(&across.source_law_sha256));
+        }
+        let laws = self.population().iter().map(|member| InputKind::Law.of(&member.law_sha256));
+        inputs.extend(laws);
+        inputs.extend(self.ship_sha256().map(|hash| InputKind::Ship.of(hash)));
+        inputs.extend(
+            self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)),
+        );
+        inputs.extend(self.trials().iter().map(|trial| InputKind::Samples.of(&trial.sha256)));
+        inputs.extend(self.effects_sha256().map(|hash| InputKind::Effects.of(hash)));
+        inputs.extend(self.prior().map(|prior| InputKind::Prior.of(&prior.sha256)));
+        inputs
+    }
+
+    /// The version that a diagnosis started from.
+    pub fn diagnosed(&self) -> Option<&SourceVersion> {
+        match self {
+            Self::Diagnosis(recipe) => Some(&recipe.diagnosed),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn recipes_are_told_by_their_kind_and_keep_their_bytes() {
+        let published =
+            json!({ "kind": "published", "model": "own", "ship_sha256": "a", "law_sha256": "b" });
+        let diagnosed = json!({ "kind": "diagnosis",
+            "diagnosed": { "ship": "kcs", "number": 2, "sha256": "c" },
+            "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }],
+            "effects_sha256": "e",
+            "settings": { "slack": 0.02 }, "code_revision": "1" });
+        let registered =
+            json!({ "kind": "registered", "law_sha256": "b", "origin": "a towing tank" });
+        let trained = json!({ "kind": "branch",
+            "foundation": { "ship": "kcs", "number": 2, "sha256": "c" },
+            "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }],
+            "effects_sha256": "e",
+            "settings": { "mode": "parallel", "inputs": [["N", ["r", "delta"]]], "learner":
+                { "kind": "kernel_ridge", "centres": 9, "length": 3.0, "ridge": 0.5 },
+                "seed": 1, "window_s": 2.0, "hop_s": 0.5, "fade": 1.0 }, "code_revision": "1" });
+        let all = [(published, None), (registered, None), (diagnosed, Some(2)), (trained, None)];
+        for (value, kind) in all {
+            let recipe: Recipe = serde_json::from_value(value.clone()).unwrap();
+            assert_eq!(recipe.diagnosed().map(|source| source.number), kind);
+            assert_eq!(serde_json::to_value(&recipe).unwrap(), value);
+            assert_eq!(recipe.law_sha256(), "b");
+        }
+        assert!(serde_json::from_value::<Recipe>(json!({ "kind": "diagnosis" })).is_err());
+    }
+}

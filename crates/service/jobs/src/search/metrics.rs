@@ -1,0 +1,95 @@
+//! Metrics of a ship's champion: those of the standard manoeuvres, the greater of both sides.
+
+use serde_json::Value;
+use sistership_model::Zoo;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::metrics::{TurningMetrics, ZigzagMetrics};
+
+use crate::version::VersionDocument;
+
+type Turn = fn(&TurningMetrics) -> Option<f64>;
+type Zigzag = fn(&ZigzagMetrics) -> Option<f64>;
+
+const TURNS: [(&str, Turn); 4] = [
+    ("turn_35.advance_m", |turn| turn.advance_m),
+    ("turn_35.transfer_m", |turn| turn.transfer_m),
+    ("turn_35.tactical_diameter_m", |turn| turn.tactical_diameter_m),
+    ("turn_35.steady_radius_m", |turn| turn.steady_radius_m),
+];
+const ZIGZAGS: [(&str, f64, Zigzag); 6] = [
+    ("zigzag_10.first_overshoot_deg", 10.0, |zigzag| zigzag.first_overshoot_deg),
+    ("zigzag_10.second_overshoot_deg", 10.0, |zigzag| zigzag.second_overshoot_deg),
+    ("zigzag_10.period_s", 10.0, |zigzag| zigzag.period_s),
+    ("zigzag_20.first_overshoot_deg", 20.0, |zigzag| zigzag.first_overshoot_deg),
+    ("zigzag_20.second_overshoot_deg", 20.0, |zigzag| zigzag.second_overshoot_deg),
+    ("zigzag_20.period_s", 20.0, |zigzag| zigzag.period_s),
+];
+const INITIAL: &str = "initial_turning_m";
+
+/// The names of all metrics.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    TURNS
+        .iter()
+        .map(|(name, _)| *name)
+        .chain(ZIGZAGS.iter().map(|(name, ..)| *name))
+        .chain([INITIAL])
+}
+
+/// The metrics of a version: from its report where that has them, else sailed now. What it does
+/// not reach is left out.
+pub(super) fn metrics(version: &VersionDocument, laws: &Zoo) -> Vec<(&'static str, f64)> {
+    reported(&version.report)
+        .or_else(|| sailed(version, laws))
+        .map_or_else(Vec::new, |all| of(&all))
+}
+
+fn reported(report: &Value) -> Option<StandardManoeuvres> {
+    serde_json::from_value(report.get("manoeuvres")?.get("refined")?.clone()).ok()
+}
+
+fn sailed(version: &VersionDocument, laws: &Zoo) -> Option<StandardManoeuvres> {
+    let ship = Ship::new(&version.model, laws.law(&version.model.law)?).ok()?;
+    Some(standard(&ship, &ManoeuvreSettings::default()))
+}
+
+fn of(all: &StandardManoeuvres) -> Vec<(&'static str, f64)> {
+    let turns = TURNS.iter().map(|(name, of)| (*name, greatest(all.turns.iter().map(of))));
+    let zigzag = |angle: f64, of: Zigzag| {
+        greatest(all.zigzags.iter().filter(|zigzag| zigzag.switch_deg == angle).map(of))
+    };
+    let zigzags = ZIGZAGS.iter().map(|(name, angle, of)| (*name, zigzag(*angle, *of)));
+    let found = turns.chain(zigzags).chain([(INITIAL, all.initial_turning_m)]);
+    found
+        .filter_map(|(name, value)| Some((name, value.filter(|value| value.is_finite())?)))
+        .collect()
+}
+
+/// The greatest of several, unknown as soon as one is unknown.
+fn greatest(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let values: Option<Vec<f64>> = values.collect();
+    values?.into_iter().reduce(f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_published_ship_has_every_metric_of_what_it_sails() {
+        let zoo = Zoo::embedded().unwrap();
+        let (vessel, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let version =
+            crate::derive::published_document(vessel, &vessel.file.models[0].name, law, "", "")
+                .unwrap();
+        let metrics = metrics(&version, &zoo);
+        assert!(metrics.iter().map(|(name, _)| *name).eq(names()), "{metrics:?}");
+        let sailed = sailed(&version, &zoo).unwrap();
+        let diameters = sailed.turns.iter().map(|turn| turn.tactical_diameter_m.unwrap());
+        assert_eq!(metrics[2].1, diameters.fold(0.0, f64::max));
+        let report = serde_json::json!({ "manoeuvres": { "refined": StandardManoeuvres { turns: Vec::new(), ..sailed } } });
+        let reported = super::metrics(&VersionDocument { report, ..version }, &zoo);
+        assert!(reported.iter().map(|(name, _)| *name).eq(names().skip(4)), "{reported:?}");
+    }
+}

@@ -1,0 +1,162 @@
+//! Ships by their similarity to a ship: the correlation of characteristic vectors, within a
+//! category.
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+use sistership_model::Vessel;
+use sistership_priors::similarity::{CharacteristicVector, Definition, NormalisedComponents};
+use sistership_priors::source::definition_for;
+use sistership_store::{FoundShip, List, Page, ShipKey, ShipSearch, ShipVectors, StoreError};
+
+use super::facts;
+use super::known_vectors::KnownVectors;
+use super::query::Search;
+use crate::archive::{Archive, vessel};
+use crate::error::DeriveError;
+
+/// Ships that a search finds, the most similar first, without the ship itself.
+pub(super) async fn ships(
+    archive: &Archive,
+    known: &KnownVectors,
+    search: &Search,
+    ship: &str,
+    page: &Page<ShipKey>,
+) -> Result<List<FoundShip, ShipKey>, DeriveError> {
+    page.check()?;
+    let ship = archive.store.ships().get(ship).await?;
+    let target = vessel(&ship.name, &ship.document)?;
+    let definition = search.vector.unwrap_or_else(|| definition_for(&target));
+    if search.ships.tag.is_none() && search.ships.ranges.is_empty() {
+        let category = search.ships.category.as_ref().unwrap_or(&target.file.category);
+        let vectors = known.of(&archive.store, category, definition).await?;
+        return Ok(of_category(archive, &vectors, &target, definition, page).await?);
+    }
+    let mut found = ranked(archive, &search.ships, &target, definition).await?;
+    if let Some(after) = &page.after {
+        let after = (after.0, after.1.as_str());
+        found.retain(|ship| order(place(ship), after) == Ordering::Greater);
+    }
+    Ok(page.of(found, key))
+}
+
+/// A page of all ships of a category, the most similar first.
+async fn of_category(
+    archive: &Archive,
+    vectors: &[(String, NormalisedComponents)],
+    target: &Vessel,
+    definition: Definition,
+    page: &Page<ShipKey>,
+) -> Result<List<FoundShip, ShipKey>, StoreError> {
+    let components = CharacteristicVector::of(target, definition).components();
+    let mut keys = keys(vectors, target.name(), &components);
+    if let Some(after) = &page.after {
+        let after = (after.0, after.1.as_str());
+        keys.retain(|key| order(*key, after) == Ordering::Greater);
+    }
+    let wanted = usize::try_from(page.limit).unwrap_or(0);
+    let List { items, next } = page.of(keys, |key| (key.0, key.1.to_owned()));
+    let names: Vec<String> = items.iter().take(wanted).map(|key| key.1.to_owned()).collect();
+    let mut heads: BTreeMap<String, FoundShip> = BTreeMap::new();
+    for head in archive.store.ships().named(&names).await? {
+        heads.insert(head.name.clone(), head);
+    }
+    let found = |(value, name): (Option<f64>, &str)| {
+        heads.remove(name).map(|head| FoundShip { value, ..head })
+    };
+    Ok(List { items: items.into_iter().filter_map(found).collect(), next })
+}
+
+/// Correlation and name of each, the most similar first, without the ship itself.
+fn keys<'a>(
+    all: &'a [(String, NormalisedComponents)],
+    name: &str,
+    target: &NormalisedComponents,
+) -> Vec<(Option<f64>, &'a str)> {
+    let others = all.iter().filter(|(other, _)| other != name);
+    let mut found: Vec<_> = others
+        .filter_map(|(other, of)| Some((Some(target.correlation(of)?), other.as_str())))
+        .collect();
+    found.sort_unstable_by(|a, b| order(*a, *b));
+    found
+}
+
+/// The ships of a ship's category that are most similar to it, at most `count`, in no order.
+pub async fn nearest(
+    archive: &Archive,
+    known: &KnownVectors,
+    target: &Vessel,
+    count: usize,
+) -> Result<Vec<FoundShip>, StoreError> {
+    let definition = definition_for(target);
+    let vectors = known.of(&archive.store, &target.file.category, definition).await?;
+    let components = CharacteristicVector::of(target, definition).components();
+    archive.store.ships().named(&first(&vectors, target.name(), &components, count)).await
+}
+
+/// The names of the most similar, without the ship itself.
+fn first(
+    all: &[(String, NormalisedComponents)],
+    name: &str,
+    target: &NormalisedComponents,
+    count: usize,
+) -> Vec<String> {
+    let found = keys(all, name, target).into_iter().take(count);
+    found.map(|(_, other)| other.to_owned()).collect()
+}
+
+async fn ranked(
+    archive: &Archive,
+    search: &ShipSearch,
+    target: &Vessel,
+    definition: Definition,
+) -> Result<Vec<FoundShip>, StoreError> {
+    let category = search.category.clone().or_else(|| Some(target.file.category.clone()));
+    let all = archive.store.ships().vectors(&ShipSearch { category, ..search.clone() }).await?;
+    let name = target.name().to_owned();
+    let target = CharacteristicVector::of(target, definition);
+    let ranking = tokio::task::spawn_blocking(move || rank(all, &name, &target));
+    Ok(ranking.await.map_err(sistership_store::ObjectsError::from)?)
+}
+
+/// Those that share enough components with the target to be compared.
+fn rank(all: Vec<ShipVectors>, name: &str, target: &CharacteristicVector) -> Vec<FoundShip> {
+    let (definition, components) = (target.definition, target.components());
+    let correlated = |ship: ShipVectors| {
+        let values = facts::vector(&ship.vectors, definition.name())?;
+        let other = CharacteristicVector { definition, values };
+        let correlation = components.correlation(&other.components())?;
+        Some(FoundShip { value: Some(correlation), ..ship.head })
+    };
+    let mut found: Vec<FoundShip> =
+        all.into_iter().filter(|ship| ship.head.name != name).filter_map(correlated).collect();
+    found.sort_unstable_by(|a, b| order(place(a), place(b)));
+    found
+}
+
+fn key(ship: &FoundShip) -> ShipKey {
+    (ship.value, ship.name.clone())
+}
+
+/// The key, borrowed: there are as many comparisons as ships, times a dozen.
+fn place(ship: &FoundShip) -> (Option<f64>, &str) {
+    (ship.value, &ship.name)
+}
+
+/// Falling by value, then rising by name.
+fn order(a: (Option<f64>, &str), b: (Option<f64>, &str)) -> Ordering {
+    let value = |value: Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
+    value(b.0).total_cmp(&value(a.0)).then_with(|| a.1.cmp(b.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_most_similar_comes_first() {
+        let mut keys = [(Some(0.5), "b"), (Some(0.9), "z"), (Some(0.5), "a")];
+        keys.sort_by(|a, b| order(*a, *b));
+        assert_eq!(keys.map(|key| key.1).concat(), "zab");
+    }
+}

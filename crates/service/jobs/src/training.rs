@@ -1,0 +1,92 @@
+//! The recipe of a learned branch, from what is asked.
+
+use sistership_identification::refine::RefineError;
+use sistership_learned::{
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Kinds, choose,
+};
+use sistership_model::trial::Trial;
+use sistership_model::version::{RecipeTrial, SourceVersion, code_revision};
+use sistership_store::Version;
+
+use crate::archive::{Archive, document};
+use crate::derive::Progress;
+use crate::error::DeriveError;
+use crate::recipe::{TrainingKind, TrainingRecipe};
+use crate::start::library_of;
+
+/// The recipe of a branch beside a version, everything settled that was not asked.
+///
+/// # Errors
+/// The version has a branch already or does not sail, or something of it is missing.
+pub async fn training_recipe(
+    archive: &Archive,
+    version: &Version,
+    trials: Vec<RecipeTrial>,
+    settings: &BranchSettings,
+) -> Result<TrainingRecipe, DeriveError> {
+    let stored = document(version)?;
+    let law_sha256 = stored.recipe.law_sha256().to_owned();
+    let law = archive.law(&stored.model.law, &law_sha256).await?;
+    let read = archive.trials(&trials).await?;
+    let read: Vec<&Trial> = read.iter().collect();
+    let settings = settings
+        .training(&stored.model, &law, &read)
+        .map_err(|error| DeriveError::Lost(error.to_string()))?;
+    let head = &version.head;
+    let (ship, number, sha256) = (head.model.clone(), head.number, head.sha256.clone());
+    Ok(TrainingRecipe {
+        kind: TrainingKind::Branch,
+        foundation: SourceVersion { ship, number, sha256 },
+        law_sha256,
+        trials,
+        effects_sha256: library_of(archive).await?.sha256.clone(),
+        settings,
+        code_revision: code_revision().to_owned(),
+    })
+}
+
+/// Tries every kind on trials left out of its training; `settings` leave the kind open.
+///
+/// # Errors
+/// As [`training_recipe`], and where a trial cannot be learned from, or it was stopped.
+pub async fn chosen(
+    archive: &Archive,
+    version: &Version,
+    trials: &[RecipeTrial],
+    settings: BranchSettings,
+    progress: Progress,
+) -> Result<BranchChoice, DeriveError> {
+    let stored = document(version)?;
+    let law = archive.law(&stored.model.law, stored.recipe.law_sha256()).await?;
+    let read = archive.trials(trials).await?;
+    let work = move || -> Result<BranchChoice, DeriveError> {
+        let read: Vec<&Trial> = read.iter().collect();
+        let told = |kind: BranchKind| progress(0.1, &format!("trying {}", kind.name()));
+        let folds = HeldOutFold::of_one(&stored.model, read.len());
+        let on = HeldOutTrials { law: &law, trials: &read, folds: &folds };
+        let choice = choose(&stored.model, &on, (&settings, Kinds::Every), &told)?;
+        choice.ok_or(DeriveError::Refine(RefineError::Cancelled))
+    };
+    tokio::task::spawn_blocking(work).await?
+}
+
+/// The version of a line without a learned correction that one with such a correction came of; the
+/// version itself where it has none, nothing where it was made elsewhere.
+///
+/// # Errors
+/// The store does not answer, or a version does not read.
+pub async fn foundation_of(
+    archive: &Archive,
+    ship: &str,
+    number: i64,
+) -> Result<Option<i64>, DeriveError> {
+    let mut number = number;
+    loop {
+        let stored = document(&archive.store.versions().get(ship, number).await?)?;
+        if stored.model.branch.is_none() {
+            return Ok(Some(number));
+        }
+        let Some(earlier) = stored.recipe.starts_from() else { return Ok(None) };
+        number = earlier.number;
+    }
+}

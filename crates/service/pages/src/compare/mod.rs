@@ -1,0 +1,130 @@
+//! Two to five versions side by side: coefficients, standard manoeuvres, criteria, tracks.
+
+mod sailed;
+mod tables;
+
+use askama::Template;
+use sistership_jobs::Archive;
+use sistership_report::plots::Hull;
+
+use self::sailed::Sailed;
+use self::tables::{ValueRow, coefficients, criteria, figures};
+use crate::error::{PageError, Result};
+use crate::form::Fields;
+use crate::named::NamedVersion;
+use crate::picture::svg;
+use crate::plot::{channels, ground, legend};
+use crate::shell::Shell;
+
+/// The most versions that are compared at once.
+const MOST: usize = 5;
+
+/// What the page is made of.
+pub struct Gathered {
+    shell: Shell,
+    versions: Vec<NamedVersion>,
+    wrong: Option<String>,
+    asked: Vec<String>,
+}
+
+#[derive(Template)]
+#[template(path = "compare.html")]
+struct ComparePage<'a> {
+    shell: &'a Shell,
+    asked: Vec<&'a str>,
+    wrong: Option<&'a str>,
+    versions: Vec<Compared<'a>>,
+    legend: Vec<(&'static str, String)>,
+    track: Option<String>,
+    series: Option<String>,
+    figures: Vec<ValueRow>,
+    criteria: Vec<ValueRow>,
+    coefficients: Vec<ValueRow>,
+    notes: Vec<String>,
+}
+
+struct Compared<'a> {
+    label: String,
+    at: String,
+    law: &'a str,
+    method: &'a str,
+    speed: String,
+}
+
+/// Reads the versions that the query names.
+///
+/// # Errors
+/// The store does not answer. A name that stands for nothing is said on the page.
+pub async fn gather(archive: &Archive, shell: Shell, query: &Fields) -> Result<Gathered> {
+    let asked: Vec<String> = query.all("v").map(str::to_owned).collect();
+    let (mut versions, mut wrong) = (Vec::new(), None);
+    for name in asked.iter().take(MOST) {
+        match NamedVersion::find(archive, "v", name).await {
+            Ok(version) => versions.push(version),
+            Err(PageError::Invalid { message, .. }) => wrong = wrong.or(Some(message)),
+            Err(other) => return Err(other),
+        }
+    }
+    let many = asked.len() > MOST;
+    let wrong = wrong.or_else(|| many.then(|| format!("at most {MOST} are compared at once")));
+    Ok(Gathered { shell: shell.at("/compare"), versions, wrong, asked })
+}
+
+impl Gathered {
+    /// The page; the standard manoeuvres of each are sailed for it.
+    ///
+    /// # Errors
+    /// The page cannot be written.
+    pub fn html(&self) -> Result<String> {
+        let mut sailed: Vec<Sailed> = Vec::new();
+        for (place, version) in self.versions.iter().enumerate() {
+            sailed.push(Sailed::of(version, place));
+        }
+        let turns: Vec<_> = sailed.iter().filter_map(|one| one.turn.clone()).collect();
+        let zigzags: Vec<_> = sailed.iter().filter_map(|one| one.zigzag.clone()).collect();
+        let longest =
+            self.versions.iter().filter_map(|one| Hull::of(&one.document.model.particulars));
+        let hull = longest.max_by(|a, b| a.lpp_m.total_cmp(&b.lpp_m)).filter(|_| self.one_ship());
+        let page = ComparePage {
+            shell: &self.shell,
+            asked: self.shown_again(),
+            wrong: self.wrong.as_deref(),
+            versions: self.versions.iter().map(Compared::of).collect(),
+            legend: legend(&turns),
+            track: ground(&turns, hull, "Turning circles, 35 deg").as_ref().map(svg).transpose()?,
+            series: match zigzags.as_slice() {
+                [] => None,
+                all => Some(svg(&channels(all, "Zigzags 20/20 over time"))?),
+            },
+            figures: figures(&sailed),
+            criteria: criteria(&sailed),
+            coefficients: coefficients(&self.versions),
+            notes: sailed.iter().flat_map(|one| one.notes.clone()).collect(),
+        };
+        Ok(page.render()?)
+    }
+
+    /// Whether all are of one ship, whose outline is then drawn.
+    fn one_ship(&self) -> bool {
+        self.versions.windows(2).all(|pair| pair[0].head.model == pair[1].head.model)
+    }
+
+    /// What was asked, with room for more.
+    fn shown_again(&self) -> Vec<&str> {
+        let asked = self.asked.iter().map(String::as_str);
+        asked.chain(std::iter::repeat("")).take(MOST).collect()
+    }
+}
+
+impl<'a> Compared<'a> {
+    fn of(version: &'a NamedVersion) -> Self {
+        let speed = version.document.model.speed_m_s;
+        Self {
+            label: version.label(),
+            at: format!("/ships/{}/versions/{}", version.head.model, version.head.number),
+            law: &version.head.law,
+            method: &version.head.method,
+            speed: speed.map_or_else(String::new, |speed| format!("{speed:.2}")),
+        }
+    }
+}

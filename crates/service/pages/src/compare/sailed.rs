@@ -1,0 +1,47 @@
+//! What is simulated of each version that is compared.
+
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag,
+};
+
+use crate::named::NamedVersion;
+use crate::plot::{LINES, Track};
+
+/// The standard manoeuvres of a version.
+pub(super) struct Sailed {
+    pub figures: Option<StandardManoeuvres>,
+    pub turn: Option<Track>,
+    pub zigzag: Option<Track>,
+    pub notes: Vec<String>,
+}
+
+impl Sailed {
+    /// Of the version at a place of the comparison.
+    pub fn of(version: &NamedVersion, place: usize) -> Self {
+        let label = version.label();
+        match Ship::new(&version.document.model, &version.law) {
+            Ok(ship) => Self::by(&ship, &label, place),
+            Err(error) => Self {
+                figures: None,
+                turn: None,
+                zigzag: None,
+                notes: vec![format!("{label} does not sail: {error}")],
+            },
+        }
+    }
+
+    fn by(ship: &Ship, label: &str, place: usize) -> Self {
+        let settings = ManoeuvreSettings::default();
+        let style = LINES[place % LINES.len()];
+        let figures = standard(ship, &settings);
+        let notes = figures.failures.iter().map(|failure| format!("{label}: {failure}")).collect();
+        let track = |track| Track::simulated(style, label, &track, ship.has_roll());
+        Self {
+            turn: turn(ship, 35.0, &settings).ok().map(|turn| track(turn.track)),
+            zigzag: zigzag(ship, 20.0, 20.0, &settings).ok().map(|zigzag| track(zigzag.track)),
+            figures: Some(figures),
+            notes,
+        }
+    }
+}

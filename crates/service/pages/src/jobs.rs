@@ -1,0 +1,124 @@
+//! Jobs: what was asked, and where it stands.
+
+use askama::Template;
+use serde_json::Value;
+use sistership_jobs::Archive;
+use sistership_store::{Job, JobFilter, JobState, Page};
+
+use crate::cursor::{cursor, key};
+use crate::date::date;
+use crate::error::{PageError, Result};
+use crate::form::Fields;
+use crate::rows::JobRow;
+use crate::shell::Shell;
+
+/// Jobs on one page.
+const JOBS: i64 = 50;
+const STATES: [JobState; 5] = [
+    JobState::Queued,
+    JobState::Running,
+    JobState::Succeeded,
+    JobState::Failed,
+    JobState::Cancelled,
+];
+
+#[derive(Template)]
+#[template(path = "jobs.html")]
+struct JobsPage {
+    shell: Shell,
+    ship: String,
+    state: String,
+    states: Vec<&'static str>,
+    jobs: Vec<JobRow>,
+    next: Option<String>,
+}
+
+/// The list, the latest first; `ship` and `state` choose.
+///
+/// # Errors
+/// A field is wrong, or the store does not answer.
+pub async fn list(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
+    let state = query.text("state").map(state).transpose()?;
+    let filter = JobFilter { ship: query.text("ship").map(str::to_owned), state };
+    let page = Page { after: key(query.text("after"))?, limit: JOBS };
+    let jobs = archive.store.jobs().list(&filter, &page).await?;
+    let next = cursor(jobs.next.as_ref());
+    let page = JobsPage {
+        shell: shell.at("/jobs"),
+        ship: filter.ship.unwrap_or_default(),
+        state: state.map_or_else(String::new, |state| state.as_str().to_owned()),
+        states: STATES.map(JobState::as_str).to_vec(),
+        jobs: jobs.items.into_iter().map(JobRow::of).collect(),
+        next,
+    };
+    Ok(page.render()?)
+}
+
+fn state(name: &str) -> Result<JobState> {
+    let known = STATES.into_iter().find(|state| state.as_str() == name);
+    known.ok_or_else(|| PageError::invalid("state", format!("there is no state `{name}`")))
+}
+
+#[derive(Template)]
+#[template(path = "job.html")]
+struct JobPage {
+    shell: Shell,
+    row: JobRow,
+    progress: f64,
+    goes_on: bool,
+    may_retry: bool,
+    cancelling: bool,
+    error: Option<String>,
+    times: Vec<(&'static str, String)>,
+    attempt: i64,
+    version: Option<i64>,
+    report: Option<String>,
+    request: String,
+}
+
+/// One job.
+///
+/// # Errors
+/// There is none of this id, or the store does not answer.
+pub async fn one(archive: &Archive, shell: Shell, id: &str) -> Result<String> {
+    let job = archive.store.jobs().get(id).await?;
+    Ok(JobPage::of(shell, job).render()?)
+}
+
+impl JobPage {
+    fn of(shell: Shell, job: Job) -> Self {
+        let result: Value = job
+            .result
+            .as_deref()
+            .and_then(|text| serde_json::from_str(text).ok())
+            .unwrap_or_default();
+        let times = [
+            ("Asked for", Some(job.created_us)),
+            ("Begun", job.started_us),
+            ("Ended", job.finished_us),
+        ];
+        Self {
+            shell: shell.at("/jobs"),
+            progress: job.progress.clamp(0.0, 1.0),
+            goes_on: !job.state.is_final(),
+            may_retry: matches!(job.state, JobState::Failed | JobState::Cancelled),
+            cancelling: job.cancel_requested && !job.state.is_final(),
+            error: job.error.clone(),
+            times: times.into_iter().filter_map(|(what, at)| Some((what, date(at?)))).collect(),
+            attempt: job.attempt,
+            version: result["version"].as_i64(),
+            report: result["report"].as_str().map(str::to_owned),
+            request: asked(&job.request),
+            row: JobRow::of(job),
+        }
+    }
+}
+
+/// The request as it is kept, without the hash of its key.
+fn asked(request: &str) -> String {
+    let mut asked: Value = serde_json::from_str(request).unwrap_or_default();
+    if let Some(fields) = asked.as_object_mut() {
+        fields.remove("key_sha256");
+    }
+    serde_json::to_string_pretty(&asked).unwrap_or_default()
+}

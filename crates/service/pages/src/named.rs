@@ -1,0 +1,49 @@
+//! Versions by the names that people give them: `ship`, `ship/number`, `ship/alias`.
+
+use sistership_jobs::Archive;
+use sistership_jobs::archive::document;
+use sistership_jobs::line::{CHAMPION, alias};
+use sistership_jobs::version::VersionDocument;
+use sistership_model::Law;
+use sistership_store::{StoreError, Version, VersionHead};
+
+use crate::error::{PageError, Result};
+
+/// A version ready to sail.
+pub(crate) struct NamedVersion {
+    pub head: VersionHead,
+    pub document: VersionDocument,
+    pub law: Law,
+}
+
+impl NamedVersion {
+    /// The version that a name stands for; `field` is where it was written.
+    pub async fn find(archive: &Archive, field: &str, name: &str) -> Result<Self> {
+        let version = version(archive, field, name).await?;
+        let mut document = document(&version)?;
+        archive.attach(&mut document.model).await?;
+        let law = archive.law(&document.model.law, document.recipe.law_sha256()).await?;
+        Ok(Self { head: version.head, document, law })
+    }
+
+    /// Ship and number.
+    pub fn label(&self) -> String {
+        format!("{}/{}", self.head.model, self.head.number)
+    }
+}
+
+async fn version(archive: &Archive, field: &str, name: &str) -> Result<Version> {
+    let nothing = || {
+        let forms = "write a ship (its champion), ship/number or ship/alias";
+        PageError::invalid(field, format!("there is no model `{name}`; {forms}"))
+    };
+    let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
+    let number = match rest.parse() {
+        Ok(number) => number,
+        Err(_) => alias(&archive.store, ship, rest).await?.ok_or_else(nothing)?.version_number,
+    };
+    match archive.store.versions().get(ship, number).await {
+        Err(StoreError::NotFound { .. }) => Err(nothing()),
+        other => Ok(other?),
+    }
+}

@@ -1,0 +1,85 @@
+//! What is drawn: channels over time under one style.
+
+use std::collections::BTreeMap;
+
+use sistership_model::trial::{Channel, Trial};
+use sistership_simulation::Trajectory;
+use sistership_simulation::state::{RECORDED, at};
+
+/// The style of a line, of the outlines and of the dots on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Style {
+    /// As the legend has it.
+    pub name: &'static str,
+    pub line: &'static str,
+    pub hull: &'static str,
+    pub dot: &'static str,
+}
+
+/// What was measured.
+pub(crate) const MEASURED: Style =
+    Style { name: "measured", line: "line measured", hull: "hull measured", dot: "dot measured" };
+
+/// What was simulated, one after the other.
+pub(crate) const LINES: [Style; 5] = [
+    Style { name: "a", line: "line a", hull: "hull a", dot: "dot a" },
+    Style { name: "b", line: "line b", hull: "hull b", dot: "dot b" },
+    Style { name: "c", line: "line c", hull: "hull c", dot: "dot c" },
+    Style { name: "d", line: "line d", hull: "hull d", dot: "dot d" },
+    Style { name: "e", line: "line e", hull: "hull e", dot: "dot e" },
+];
+
+/// Channels over time, SI and radians.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    pub style: Style,
+    pub name: String,
+    pub t_s: Vec<f64>,
+    pub channels: BTreeMap<Channel, Vec<f64>>,
+    /// The places of samples before which the record has a gap.
+    pub gaps: Vec<usize>,
+}
+
+impl Track {
+    /// What was measured.
+    pub fn measured(trial: &Trial) -> Self {
+        Self {
+            style: MEASURED,
+            name: "measured".to_owned(),
+            t_s: trial.t_s.clone(),
+            channels: trial.channels.clone(),
+            gaps: trial.segments().into_iter().skip(1).map(|segment| segment.start).collect(),
+        }
+    }
+
+    /// What was simulated.
+    pub fn simulated(
+        style: Style,
+        name: impl Into<String>,
+        track: &Trajectory,
+        rolls: bool,
+    ) -> Self {
+        let state = RECORDED.into_iter().chain([(Channel::Delta, at::DELTA)]);
+        let state = state.filter(|(channel, _)| rolls || *channel != Channel::Phi);
+        let mut channels: BTreeMap<Channel, Vec<f64>> =
+            state.map(|(channel, place)| (channel, track.column(place))).collect();
+        channels.insert(Channel::N, track.n_rps.clone());
+        Self { style, name: name.into(), t_s: track.t_s.clone(), channels, gaps: Vec::new() }
+    }
+
+    /// Places `(north, east)`; none where a position is missing.
+    pub fn places(&self) -> Option<Vec<(f64, f64)>> {
+        let (north, east) = (self.channels.get(&Channel::X)?, self.channels.get(&Channel::Y)?);
+        Some(north.iter().copied().zip(east.iter().copied()).collect())
+    }
+
+    /// Whether a gap lies between two samples.
+    pub fn jumps(&self, from: usize, to: usize) -> bool {
+        self.gaps.iter().any(|gap| from < *gap && *gap <= to)
+    }
+}
+
+/// Class and name of each line.
+pub(crate) fn legend(tracks: &[Track]) -> Vec<(&'static str, String)> {
+    tracks.iter().map(|track| (track.style.name, track.name.clone())).collect()
+}

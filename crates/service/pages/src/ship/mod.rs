@@ -1,0 +1,223 @@
+//! A ship: what it is, whether its model holds, its versions, trials and jobs, and what to do.
+
+mod drawing;
+mod versions;
+
+use std::sync::Arc;
+
+use askama::Template;
+use sistership_jobs::Archive;
+use sistership_jobs::archive::vessel;
+use sistership_jobs::champions::most_similar_ships;
+use sistership_jobs::condition::{Condition, SinceTrial, WeighedDiagnosis};
+use sistership_jobs::line::CHAMPION;
+use sistership_jobs::search::standing::Class;
+use sistership_model::{Vessel, Zoo};
+use sistership_priors::similarity::RankedSource;
+use sistership_report::numbers::{significant, stated};
+use sistership_store::{Alias, JobFilter, Note, Page, Ship};
+
+use self::versions::{VersionRow, versions};
+use crate::date::date;
+use crate::error::Result;
+use crate::picture::svg;
+use crate::rows::{JobRow, TrialRow};
+use crate::shell::Shell;
+
+/// Lines of each list.
+const LINES: i64 = 50;
+/// Similar ships that are shown.
+pub const SIMILAR: usize = 5;
+
+/// What the page is made of.
+pub struct Gathered {
+    shell: Shell,
+    ship: Ship,
+    vessel: Vessel,
+    condition: Condition,
+    aliases: Vec<Alias>,
+    before: Option<i64>,
+    versions: (Vec<VersionRow>, bool),
+    trials: Vec<TrialRow>,
+    more_trials: bool,
+    jobs: Vec<JobRow>,
+    tags: Vec<String>,
+    notes: Vec<NoteRow>,
+    families: Vec<String>,
+    laws: Vec<String>,
+}
+
+#[derive(Template)]
+#[template(path = "ship.html")]
+struct ShipPage<'a> {
+    of: &'a Gathered,
+    shell: &'a Shell,
+    class: &'static str,
+    since: Option<String>,
+    evidence: Vec<EvidenceRow>,
+    revision: Option<i64>,
+    particulars: Vec<(String, String, String)>,
+    drawing: Option<String>,
+    similar: Vec<SimilarRow>,
+    compare: String,
+    methods: [(&'static str, &'static str); 5],
+}
+
+impl ShipPage<'_> {
+    /// Whether a version is what the ship is asked for.
+    fn is_champion(&self, number: &i64) -> bool {
+        self.of.condition.version == Some(*number)
+    }
+}
+
+/// A note as it is shown: when, by whom, and what.
+struct NoteRow {
+    made: String,
+    actor: String,
+    text: String,
+}
+
+impl NoteRow {
+    fn of(note: Note) -> Self {
+        Self { made: date(note.at_us), actor: note.actor, text: note.text }
+    }
+}
+
+/// A diagnosis that counts for the condition.
+struct EvidenceRow {
+    made: String,
+    what: String,
+    verdict: String,
+    report: String,
+}
+
+impl EvidenceRow {
+    fn of(diagnosis: &WeighedDiagnosis) -> Self {
+        let trials = match diagnosis.trials.len() {
+            1 => "1 trial".to_owned(),
+            count => format!("{count} trials"),
+        };
+        let what = if diagnosis.whole { format!("the whole: {trials}") } else { trials };
+        let (made, report) = (date(diagnosis.by.at_us), diagnosis.by.report.clone());
+        Self { made, what, verdict: diagnosis.verdict.clone(), report }
+    }
+}
+
+/// Since which trial a condition is so.
+fn since(since: &SinceTrial) -> String {
+    format!("{}, uploaded {}", since.name, date(since.at_us))
+}
+
+struct SimilarRow {
+    ship: String,
+    law: String,
+    correlation: String,
+    eligible: bool,
+    reasons: Vec<String>,
+}
+
+/// The methods of a refinement, by their names in requests.
+const METHODS: [(&str, &str); 5] = [
+    ("", "try all and take the best"),
+    ("weak", "weak: rows integrated over windows"),
+    ("trajectory", "trajectory: simulated segments"),
+    ("published", "published: one-step differences"),
+    ("cma-es", "cma-es: search among simulations"),
+];
+
+/// Reads what the page shows.
+///
+/// # Errors
+/// There is no such ship, or the store does not answer.
+pub async fn gather(archive: &Archive, shell: Shell, name: &str) -> Result<Gathered> {
+    let store = &archive.store;
+    let ship = store.ships().get(name).await?;
+    let aliases = store.aliases().list(name, &Page::first(LINES)).await?.items;
+    let trials = store.trials().list(name, &Page::first(LINES)).await?;
+    let filter = JobFilter { ship: Some(name.to_owned()), state: None };
+    let jobs = store.jobs().list(&filter, &Page::first(10)).await?;
+    let families = store.families().of_ship(name, &Page::first(LINES)).await?;
+    let laws = store.laws().list(&Page::first(200)).await?;
+    let notes = store.ships().notes(name, &Page::first(10)).await?;
+    Ok(Gathered {
+        vessel: vessel(&ship.name, &ship.document)?,
+        condition: Condition::of(store, name).await?,
+        before: before(archive, &aliases, name).await?,
+        versions: versions(archive, name, &aliases).await?,
+        more_trials: trials.next.is_some(),
+        trials: trials.items.into_iter().map(TrialRow::of).collect(),
+        jobs: jobs.items.into_iter().map(JobRow::of).collect(),
+        tags: store.ships().tags(name).await?,
+        notes: notes.items.into_iter().map(NoteRow::of).collect(),
+        families: families.items.into_iter().map(|family| family.name).collect(),
+        laws: laws.items.into_iter().map(|law| law.name).collect(),
+        aliases,
+        ship,
+        shell: shell.at("/"),
+    })
+}
+
+/// The version that was champion before the present one.
+async fn before(archive: &Archive, aliases: &[Alias], ship: &str) -> Result<Option<i64>> {
+    if !aliases.iter().any(|alias| alias.alias == CHAMPION) {
+        return Ok(None);
+    }
+    let history = archive.store.aliases().history(ship, CHAMPION, &Page::first(1)).await?;
+    Ok(history.items.first().and_then(|change| change.from_number))
+}
+
+impl Gathered {
+    /// The ship, among which others are similar.
+    pub fn vessel(&self) -> &Vessel {
+        &self.vessel
+    }
+
+    /// The ships of a zoo that are most similar, and whether each may be the source.
+    ///
+    /// # Errors
+    /// The store does not answer.
+    pub async fn similar(&self, archive: &Archive, zoo: Arc<Zoo>) -> Result<Vec<RankedSource>> {
+        Ok(most_similar_ships(archive, zoo, self.vessel.clone(), SIMILAR).await?)
+    }
+
+    /// The page with the ships that are most similar.
+    ///
+    /// # Errors
+    /// The page cannot be written.
+    pub fn html(&self, similar: Vec<RankedSource>) -> Result<String> {
+        let particulars = &self.vessel.particulars;
+        let drawing = drawing::drawing(particulars, &self.ship.title);
+        let champion = self.aliases.iter().find(|alias| alias.alias == CHAMPION);
+        let page = ShipPage {
+            of: self,
+            shell: &self.shell,
+            class: Class::of(&self.condition).name(),
+            since: self.condition.since.as_ref().map(since),
+            evidence: self.condition.diagnoses.iter().map(EvidenceRow::of).collect(),
+            revision: champion.map(|alias| alias.revision),
+            particulars: particulars
+                .iter()
+                .map(|(name, of)| (name.clone(), stated(of.value, 6), of.source.clone()))
+                .collect(),
+            drawing: drawing.as_ref().map(svg).transpose()?,
+            similar: similar.into_iter().map(SimilarRow::of).collect(),
+            compare: compare(&self.ship.name, &self.versions.0),
+            methods: METHODS,
+        };
+        Ok(page.render()?)
+    }
+}
+
+/// The address of a comparison of the two newest versions.
+fn compare(ship: &str, versions: &[VersionRow]) -> String {
+    let each = versions.iter().take(2).map(|version| format!("v={ship}/{}", version.number));
+    format!("/compare?{}", each.collect::<Vec<_>>().join("&"))
+}
+
+impl SimilarRow {
+    fn of(ranked: RankedSource) -> Self {
+        let RankedSource { ship, law, correlation, eligible, reasons, .. } = ranked;
+        let correlation = correlation.map_or_else(String::new, |value| significant(value, 4));
+        Self { ship, law: law.unwrap_or_default(), correlation, eligible, reasons }
+    }
+}

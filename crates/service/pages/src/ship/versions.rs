@@ -1,0 +1,105 @@
+//! The versions of a ship's model as its page lists them.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use sistership_jobs::Archive;
+use sistership_report::numbers::significant;
+use sistership_store::{Alias, Page, Store, StoreError, VersionHead};
+
+use crate::date::date;
+use crate::error::Result;
+
+/// Versions on the page; errors are read from their documents.
+const VERSIONS: i64 = 12;
+
+pub(super) struct VersionRow {
+    pub number: i64,
+    pub aliases: Vec<String>,
+    /// The version it was made from, and where that is.
+    pub parent: Option<(String, String)>,
+    pub law: String,
+    pub method: String,
+    pub error: String,
+    pub created: String,
+    pub author: String,
+    pub report: Option<String>,
+}
+
+/// What is read of a document; the rest is passed over.
+#[derive(Deserialize)]
+struct Reported {
+    report: Option<Options>,
+}
+
+#[derive(Deserialize)]
+struct Options {
+    #[serde(default)]
+    options: Vec<Step>,
+}
+
+#[derive(Deserialize)]
+struct Step {
+    #[serde(default)]
+    chosen: bool,
+    error: Option<f64>,
+}
+
+/// The newest versions, and whether there are more.
+pub(super) async fn versions(
+    archive: &Archive,
+    ship: &str,
+    aliases: &[Alias],
+) -> Result<(Vec<VersionRow>, bool)> {
+    let list = archive.store.versions().list(ship, &Page::first(VERSIONS)).await?;
+    let own = list.items.iter().map(|head| (head.id.clone(), label(head)));
+    let mut labels: BTreeMap<String, (String, String)> = own.collect();
+    let mut rows = Vec::new();
+    for head in &list.items {
+        if let Some(parent) = head.parent.as_ref().filter(|parent| !labels.contains_key(*parent)) {
+            let found = archive.store.versions().by_id(parent).await?.head;
+            labels.insert(parent.clone(), label(&found));
+        }
+        rows.push(row(&archive.store, head, aliases, &labels).await?);
+    }
+    Ok((rows, list.next.is_some()))
+}
+
+fn label(head: &VersionHead) -> (String, String) {
+    let VersionHead { model, number, .. } = head;
+    (format!("{model}/{number}"), format!("/ships/{model}/versions/{number}"))
+}
+
+async fn row(
+    store: &Store,
+    head: &VersionHead,
+    aliases: &[Alias],
+    labels: &BTreeMap<String, (String, String)>,
+) -> Result<VersionRow> {
+    let VersionHead { number, parent, law, method, created_us, author, .. } = head;
+    let reports = store.reports().by_version(&head.id, &Page::first(1)).await?;
+    let own = aliases.iter().filter(|alias| alias.version_number == *number);
+    Ok(VersionRow {
+        number: *number,
+        aliases: own.map(|alias| alias.alias.clone()).collect(),
+        parent: parent.as_ref().and_then(|parent| labels.get(parent).cloned()),
+        law: law.clone(),
+        method: method.clone(),
+        error: error(store, head).await?.map_or_else(String::new, |error| significant(error, 2)),
+        created: date(*created_us),
+        author: author.clone().unwrap_or_default(),
+        report: reports.items.into_iter().next().map(|report| report.id),
+    })
+}
+
+/// The error on manoeuvres left out, where the version was refined.
+async fn error(store: &Store, head: &VersionHead) -> Result<Option<f64>, StoreError> {
+    if head.method.starts_with("published") {
+        return Ok(None);
+    }
+    let document = store.versions().get(&head.model, head.number).await?.document;
+    let reported: Option<Reported> = serde_json::from_str(&document).ok();
+    let options = reported.and_then(|reported| reported.report).map(|report| report.options);
+    let chosen = options.into_iter().flatten().find(|step| step.chosen);
+    Ok(chosen.and_then(|step| step.error))
+}

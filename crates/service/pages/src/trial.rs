@@ -1,0 +1,165 @@
+//! A trial: its track and channels, what the checks remarked, and which versions were made of it.
+
+use askama::Template;
+use serde::Deserialize;
+use sistership_jobs::Archive;
+use sistership_jobs::archive::document;
+use sistership_jobs::line::{CHAMPION, alias};
+use sistership_model::trial::{Channel, Finding, Trial as Samples};
+use sistership_model::version::RecipeTrial;
+use sistership_model::{Law, Model};
+use sistership_report::numbers::significant;
+use sistership_report::plots::Hull;
+use sistership_simulation::Ship;
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_store::{Page, Trial};
+
+use crate::date::date;
+use crate::error::Result;
+use crate::picture::svg;
+use crate::plot::{LINES, Track, channels, ground, legend};
+use crate::shell::Shell;
+
+/// Versions of the ship that are looked through.
+const VERSIONS: i64 = 30;
+
+/// What the page is made of.
+pub struct Gathered {
+    shell: Shell,
+    trial: Trial,
+    samples: Samples,
+    champion: Option<Champion>,
+    versions: Vec<(i64, String)>,
+}
+
+struct Champion {
+    number: i64,
+    model: Model,
+    law: Law,
+}
+
+#[derive(Template)]
+#[template(path = "trial.html")]
+struct TrialPage<'a> {
+    of: &'a Gathered,
+    shell: &'a Shell,
+    created: String,
+    findings: Vec<Finding>,
+    legend: Vec<(&'static str, String)>,
+    track: Option<String>,
+    series: String,
+    errors: Vec<(String, String)>,
+    said: Option<String>,
+    manifest: String,
+}
+
+/// The trials that a version was made of.
+#[derive(Deserialize)]
+struct MadeOf {
+    recipe: Recipe,
+}
+
+#[derive(Deserialize)]
+struct Recipe {
+    #[serde(default)]
+    trials: Vec<RecipeTrial>,
+}
+
+/// Reads what the page shows.
+///
+/// # Errors
+/// There is no such trial, or the archive does not give its samples.
+pub async fn gather(archive: &Archive, shell: Shell, id: &str) -> Result<Gathered> {
+    let trial = archive.store.trials().get(id).await?;
+    let named = RecipeTrial { name: trial.name.clone(), sha256: trial.object_key.clone() };
+    let samples = archive.trials(&[named]).await?.pop().unwrap_or_default();
+    Ok(Gathered {
+        champion: champion(archive, &trial.ship).await?,
+        versions: made_of(archive, &trial).await?,
+        shell: shell.at("/"),
+        trial,
+        samples,
+    })
+}
+
+async fn champion(archive: &Archive, ship: &str) -> Result<Option<Champion>> {
+    let Some(alias) = alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
+    let number = alias.version_number;
+    let mut version = document(&archive.store.versions().get(ship, number).await?)?;
+    archive.attach(&mut version.model).await?;
+    let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
+    Ok(Some(Champion { number, model: version.model, law }))
+}
+
+/// The versions of the ship that were made of a trial, with their method.
+async fn made_of(archive: &Archive, trial: &Trial) -> Result<Vec<(i64, String)>> {
+    let mut found = Vec::new();
+    let versions = archive.store.versions();
+    for head in versions.list(&trial.ship, &Page::first(VERSIONS)).await?.items {
+        let text = versions.get(&trial.ship, head.number).await?.document;
+        let made: Option<MadeOf> = serde_json::from_str(&text).ok();
+        if made.is_some_and(|made| made.recipe.trials.iter().any(|one| one.sha256 == trial.sha256))
+        {
+            found.push((head.number, head.method));
+        }
+    }
+    Ok(found)
+}
+
+impl Gathered {
+    /// The page; the champion is simulated for it.
+    ///
+    /// # Errors
+    /// The page cannot be written.
+    pub fn html(&self) -> Result<String> {
+        let mut tracks = vec![Track::measured(&self.samples)];
+        let (mut errors, mut said) = (Vec::new(), None);
+        if let Some(champion) = &self.champion {
+            match champion.sailed(&self.samples) {
+                Ok((track, found)) => {
+                    tracks.push(track);
+                    errors = found;
+                }
+                Err(reason) => said = Some(reason),
+            }
+        }
+        let hull = self.champion.as_ref().and_then(|known| Hull::of(&known.model.particulars));
+        let label = format!("Track of {}", self.trial.name);
+        let page = TrialPage {
+            of: self,
+            shell: &self.shell,
+            created: date(self.trial.created_us),
+            findings: serde_json::from_str(&self.trial.warnings).unwrap_or_default(),
+            legend: legend(&tracks),
+            track: ground(&tracks, hull, &label).as_ref().map(svg).transpose()?,
+            series: svg(&channels(&tracks, &format!("Channels of {} over time", self.trial.name)))?,
+            errors,
+            said,
+            manifest: pretty(&self.trial.manifest),
+        };
+        Ok(page.render()?)
+    }
+}
+
+fn pretty(json: &str) -> String {
+    let value: serde_json::Value = serde_json::from_str(json).unwrap_or_default();
+    serde_json::to_string_pretty(&value).unwrap_or_default()
+}
+
+impl Champion {
+    /// What it says of a trial whose rudder and revolutions it is given, and its errors; or why it
+    /// says nothing.
+    fn sailed(&self, trial: &Samples) -> Result<(Track, Vec<(String, String)>), String> {
+        let mut ship = Ship::new(&self.model, &self.law).map_err(|error| error.to_string())?;
+        let speeds = trial.channel(Channel::U).into_iter().flatten();
+        ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
+        let run =
+            replay(&ship, trial, &ReplaySettings::default()).map_err(|error| error.to_string())?;
+        let errors = SquaredError::of(trial, &run).rmse();
+        let errors =
+            errors.into_iter().map(|(name, value)| (name, significant(value, 3))).collect();
+        let name = format!("champion, version {}", self.number);
+        Ok((Track::simulated(LINES[0], name, &run.track, run.has_roll), errors))
+    }
+}

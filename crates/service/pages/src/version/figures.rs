@@ -1,0 +1,86 @@
+//! What a version says of the standard manoeuvres, with bands where its report has them.
+
+use serde_json::Value;
+use sistership_report::numbers::{fixed, known, significant};
+use sistership_simulation::manoeuvre::{Figure, StandardManoeuvres};
+
+/// A band wider than this share of the figure is called wide.
+const WIDE: f64 = 0.5;
+
+/// A figure of a manoeuvre.
+#[derive(Debug)]
+pub(super) struct FigureRow {
+    pub name: String,
+    pub unit: String,
+    pub value: String,
+    pub band: String,
+    pub wide: bool,
+}
+
+/// A criterion of IMO MSC.137(76).
+#[derive(Debug)]
+pub(super) struct CriterionRow {
+    pub name: String,
+    pub unit: String,
+    pub value: String,
+    pub limit: String,
+    pub verdict: &'static str,
+    pub class: &'static str,
+    /// The share of models drawn from the posterior that meet it.
+    pub share: String,
+}
+
+/// Figures and criteria.
+pub(super) fn rows(
+    sailed: &StandardManoeuvres,
+    report: &Value,
+) -> (Vec<FigureRow>, Vec<CriterionRow>) {
+    let bands = &report["manoeuvres"]["bands"]["figures"];
+    let figures = sailed.figures();
+    let plain = figures.iter().filter(|figure| figure.pass.is_none());
+    let plain = plain.filter(|figure| !figure.name.starts_with("IMO"));
+    let criteria = sailed.imo.iter().map(|criterion| {
+        let name = format!("IMO: {}", criterion.criterion);
+        let share = band_of(&name, bands).and_then(|band| band["pass"].as_f64());
+        let (verdict, class) = match criterion.pass {
+            Some(true) => ("met", "good"),
+            Some(false) => ("not met", "bad"),
+            None => ("unknown", ""),
+        };
+        CriterionRow {
+            name: criterion.criterion.clone(),
+            unit: criterion.unit.clone(),
+            value: known_value(criterion.value),
+            limit: significant(criterion.limit, 3),
+            verdict,
+            class,
+            share: share.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 0))),
+        }
+    });
+    (plain.map(|figure| row(figure, bands)).collect(), criteria.collect())
+}
+
+fn known_value(value: Option<f64>) -> String {
+    known(value, |value| significant(value, 4))
+}
+
+fn row(figure: &Figure, bands: &Value) -> FigureRow {
+    let band = band_of(&figure.name, bands)
+        .and_then(|band| Some((band["low"].as_f64()?, band["high"].as_f64()?)));
+    let wide =
+        |(low, high): (f64, f64)| figure.value.is_some_and(|value| high - low > WIDE * value.abs());
+    FigureRow {
+        name: figure.name.clone(),
+        unit: figure.unit.clone(),
+        value: known_value(figure.value),
+        band: band.map_or_else(String::new, |(low, high)| {
+            format!("{} to {}", significant(low, 3), significant(high, 3))
+        }),
+        wide: band.is_some_and(wide),
+    }
+}
+
+/// The band of a figure, by its name.
+fn band_of<'a>(name: &str, bands: &'a Value) -> Option<&'a Value> {
+    bands.as_array()?.iter().find(|band| band["figure"] == name)
+}

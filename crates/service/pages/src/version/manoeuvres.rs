@@ -1,0 +1,188 @@
+//! The standard manoeuvres of a version, as its page shows them.
+//!
+//! A version never changes, so that what it says of them does not either: sailing takes most of the
+//! page's time, and is done once.
+
+use std::sync::Arc;
+
+use quick_cache::Weighter;
+use quick_cache::sync::Cache;
+use sistership_jobs::version::VersionDocument;
+use sistership_model::Law;
+use sistership_report::plots::Hull;
+use sistership_simulation::manoeuvre::{
+    Manoeuvre, ManoeuvreSettings, STANDARD, StandardManoeuvres, sail_together, standard_with_tracks,
+};
+use sistership_simulation::{PlantError, Ship, Trajectory};
+
+use super::figures::{self, CriterionRow, FigureRow};
+use crate::error::Result;
+use crate::picture::svg;
+use crate::plot::{LINES, Track, channels, ground, legend};
+
+/// What all of them may take, bytes.
+const MOST: u64 = 32 << 20;
+/// About as many versions as that is.
+const COUNT: usize = 500;
+/// What is drawn, by its place among the standard manoeuvres.
+const DRAWN: [(usize, &str); 3] =
+    [(0, "turn, 35 deg to starboard"), (1, "turn, 35 deg to port"), (4, "zigzag 20/20")];
+/// The one that is drawn over time.
+const OVER_TIME: &str = DRAWN[2].1;
+
+/// Manoeuvres by the version's id; those that were not looked at for longest go first.
+#[derive(Debug)]
+pub struct KnownManoeuvres(Cache<String, Arc<Manoeuvres>, Size>);
+
+/// What the page shows of the manoeuvres.
+#[derive(Debug)]
+pub(super) struct Manoeuvres {
+    pub figures: Vec<FigureRow>,
+    pub criteria: Vec<CriterionRow>,
+    pub banded: bool,
+    pub wide: bool,
+    pub notes: Vec<String>,
+    pub legend: Vec<(&'static str, String)>,
+    /// Turning circles over ground, SVG.
+    pub track: Option<String>,
+    /// The zigzag over time, SVG.
+    pub series: Option<String>,
+}
+
+#[derive(Debug, Clone)]
+struct Size;
+
+impl Weighter<String, Arc<Manoeuvres>> for Size {
+    fn weight(&self, _: &String, manoeuvres: &Arc<Manoeuvres>) -> u64 {
+        let drawn = [&manoeuvres.track, &manoeuvres.series];
+        let drawn: usize = drawn.into_iter().flatten().map(String::len).sum();
+        let row = 300;
+        (drawn + row * (manoeuvres.figures.len() + manoeuvres.criteria.len() + 1)) as u64
+    }
+}
+
+impl Default for KnownManoeuvres {
+    fn default() -> Self {
+        Self(Cache::with_weighter(COUNT, MOST, Size))
+    }
+}
+
+impl KnownManoeuvres {
+    /// Those of a version.
+    ///
+    /// # Errors
+    /// A picture cannot be written.
+    pub(super) fn of(
+        &self,
+        id: &str,
+        document: &VersionDocument,
+        law: &Law,
+    ) -> Result<Arc<Manoeuvres>> {
+        if let Some(known) = self.0.get(id) {
+            return Ok(known);
+        }
+        let manoeuvres = Arc::new(Manoeuvres::of(document, law)?);
+        self.0.insert(id.to_owned(), Arc::clone(&manoeuvres));
+        Ok(manoeuvres)
+    }
+}
+
+impl Manoeuvres {
+    fn of(document: &VersionDocument, law: &Law) -> Result<Self> {
+        let model = &document.model;
+        let (figures, tracks) = match sailed(document, law) {
+            Ok((figures, tracks)) => (figures, tracks),
+            Err(error) => {
+                let failures = vec![error.to_string()];
+                (StandardManoeuvres { failures, ..StandardManoeuvres::default() }, Vec::new())
+            }
+        };
+        let (notes, legend) = (figures.failures.clone(), legend(&tracks));
+        let (figures, criteria) = figures::rows(&figures, &document.report);
+        let (zigzags, circles): (Vec<Track>, Vec<Track>) =
+            tracks.into_iter().partition(|track| track.name == OVER_TIME);
+        let label = format!("Turning circles of {}", model.name);
+        Ok(Self {
+            banded: figures.iter().any(|figure| !figure.band.is_empty()),
+            wide: figures.iter().any(|figure| figure.wide),
+            figures,
+            criteria,
+            notes,
+            legend,
+            track: ground(&circles, Hull::of(&model.particulars), &label)
+                .as_ref()
+                .map(svg)
+                .transpose()?,
+            series: match zigzags.as_slice() {
+                [] => None,
+                zigzags => Some(svg(&channels(zigzags, "Zigzag 20/20 over time"))?),
+            },
+        })
+    }
+}
+
+/// Figures, as they were when the version was made where its report has them, and tracks.
+fn sailed(
+    document: &VersionDocument,
+    law: &Law,
+) -> std::result::Result<(StandardManoeuvres, Vec<Track>), PlantError> {
+    let ship = Ship::new(&document.model, law)?;
+    let settings = ManoeuvreSettings::default();
+    let (figures, tracks) = match reported(document) {
+        Some(figures) => (figures, drawn_alone(&ship, &settings)),
+        None => {
+            let (figures, mut all) = standard_with_tracks(&ship, &settings);
+            (figures, DRAWN.map(|(place, _)| all[place].take()).into_iter().collect())
+        }
+    };
+    let named = tracks.into_iter().zip(DRAWN).zip(LINES);
+    let tracks = named.filter_map(|((track, (_, name)), style)| {
+        Some(Track::simulated(style, name, &track?, ship.has_roll()))
+    });
+    Ok((figures, tracks.collect()))
+}
+
+/// The figures as they were sailed when the version was made.
+fn reported(document: &VersionDocument) -> Option<StandardManoeuvres> {
+    let refined = document.report.pointer("/manoeuvres/refined")?;
+    serde_json::from_value(refined.clone()).ok()
+}
+
+fn drawn_alone(ship: &Ship, settings: &ManoeuvreSettings) -> Vec<Option<Trajectory>> {
+    let manoeuvres: [(Manoeuvre, &[f64]); 3] = DRAWN.map(|(place, _)| (STANDARD[place], &[][..]));
+    let sailed = sail_together(ship, &manoeuvres, settings);
+    sailed.into_iter().map(|sailed| Some(sailed.ok()?.track)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use serde_json::json;
+    use sistership_jobs::derive::published_document;
+    use sistership_model::Zoo;
+    use sistership_simulation::manoeuvre::standard;
+
+    #[test]
+    fn manoeuvres_are_sailed_once_and_as_the_report_has_them_where_it_does() {
+        let zoo = Zoo::embedded().unwrap();
+        let (vessel, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let name = &vessel.file.models[0].name;
+        let mut document = published_document(vessel, name, law, "", "").unwrap();
+        let known = KnownManoeuvres::default();
+        let first = known.of("a", &document, law).unwrap();
+        assert!(Arc::ptr_eq(&first, &known.of("a", &document, law).unwrap()));
+        assert_eq!(
+            (first.legend.len(), first.track.is_some(), first.series.is_some()),
+            (3, true, true)
+        );
+        let ship = Ship::new(&document.model, law).unwrap();
+        let refined = standard(&ship, &ManoeuvreSettings::default());
+        document.report = json!({ "manoeuvres": { "refined": refined } });
+        let reported = known.of("b", &document, law).unwrap();
+        let values =
+            |of: &Manoeuvres| of.figures.iter().map(|row| row.value.clone()).collect::<Vec<_>>();
+        assert_eq!(values(&reported), values(&first));
+        assert_eq!((&reported.track, &reported.series), (&first.track, &first.series));
+    }
+}

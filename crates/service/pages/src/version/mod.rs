@@ -1,0 +1,136 @@
+//! A version: its coefficients, what it says of the standard manoeuvres, where it holds, and how it
+//! was made.
+
+mod coefficients;
+mod figures;
+mod lineage;
+mod manoeuvres;
+
+use std::sync::Arc;
+
+use askama::Template;
+use sistership_jobs::Archive;
+use sistership_jobs::archive::document;
+use sistership_jobs::line::CHAMPION;
+use sistership_jobs::version::VersionDocument;
+use sistership_model::Law;
+use sistership_report::numbers::stated;
+use sistership_store::{Page, Version};
+
+use self::coefficients::CoefficientRow;
+use self::lineage::Lineage;
+use self::manoeuvres::Manoeuvres;
+use crate::date::date;
+use crate::error::Result;
+use crate::picture::svg;
+use crate::shell::Shell;
+
+pub use self::manoeuvres::KnownManoeuvres;
+
+/// What the page is made of.
+pub struct Gathered {
+    shell: Shell,
+    version: Version,
+    document: VersionDocument,
+    law: Law,
+    aliases: Vec<String>,
+    /// The revision of the alias `champion`, if there is one.
+    champion: Option<i64>,
+    report: Option<String>,
+    lineage: Lineage,
+    recipe: String,
+}
+
+#[derive(Template)]
+#[template(path = "version.html")]
+struct VersionPage<'a> {
+    of: &'a Gathered,
+    shell: &'a Shell,
+    created: String,
+    coefficients: Vec<CoefficientRow>,
+    effects: Vec<EffectRow>,
+    sailed: Arc<Manoeuvres>,
+    validity: Vec<(String, String, String)>,
+    lineage: String,
+    promotable: bool,
+}
+
+struct EffectRow {
+    name: String,
+    meaning: String,
+    parameters: Vec<(String, String, String)>,
+}
+
+/// Reads what the page shows.
+///
+/// # Errors
+/// There is no such version, or the store does not answer.
+pub async fn gather(archive: &Archive, shell: Shell, ship: &str, number: i64) -> Result<Gathered> {
+    let store = &archive.store;
+    let version = store.versions().get(ship, number).await?;
+    let mut parsed = document(&version)?;
+    archive.attach(&mut parsed.model).await?;
+    let law = archive.law(&parsed.model.law, parsed.recipe.law_sha256()).await?;
+    let aliases = store.aliases().list(ship, &Page::first(50)).await?.items;
+    let reports = store.reports().by_version(&version.head.id, &Page::first(1)).await?;
+    let champion = aliases.iter().find(|alias| alias.alias == CHAMPION);
+    Ok(Gathered {
+        champion: champion.map(|alias| alias.revision),
+        aliases: aliases
+            .into_iter()
+            .filter(|alias| alias.version_number == number)
+            .map(|alias| alias.alias)
+            .collect(),
+        report: reports.items.into_iter().next().map(|report| report.id),
+        lineage: Lineage::of(archive, &version.head, &parsed).await?,
+        recipe: serde_json::to_string_pretty(&parsed.recipe)?,
+        shell: shell.at("/"),
+        document: parsed,
+        version,
+        law,
+    })
+}
+
+impl Gathered {
+    /// The page; the standard manoeuvres are sailed for it unless they are known.
+    ///
+    /// # Errors
+    /// The page cannot be written.
+    pub fn html(&self, known: &KnownManoeuvres) -> Result<String> {
+        let model = &self.document.model;
+        let page = VersionPage {
+            of: self,
+            shell: &self.shell,
+            created: date(self.version.head.created_us),
+            coefficients: coefficients::rows(model, &self.law),
+            effects: effects(model),
+            sailed: known.of(&self.version.head.id, &self.document, &self.law)?,
+            validity: validity(model),
+            lineage: svg(&self.lineage.drawn())?,
+            promotable: !self.aliases.iter().any(|alias| alias == CHAMPION),
+        };
+        Ok(page.render()?)
+    }
+}
+
+fn effects(model: &sistership_model::Model) -> Vec<EffectRow> {
+    let row = |effect: &sistership_model::effect::AppliedEffect| EffectRow {
+        name: effect.name.clone(),
+        meaning: effect.form.meaning.clone(),
+        parameters: effect
+            .parameters
+            .iter()
+            .map(|(name, of)| {
+                let unit = effect.form.parameters.get(name).map(|one| one.unit.clone());
+                (name.clone(), stated(of.value, 4), unit.unwrap_or_default())
+            })
+            .collect(),
+    };
+    model.effects.iter().map(row).collect()
+}
+
+/// Name, least and greatest of what the trials covered.
+fn validity(model: &sistership_model::Model) -> Vec<(String, String, String)> {
+    let ranges = model.validity.iter().flat_map(|region| &region.ranges);
+    ranges.map(|(name, [low, high])| (name.clone(), stated(*low, 4), stated(*high, 4))).collect()
+}

@@ -1,0 +1,99 @@
+//! The page of an effect: its forms with their parameters and formulas.
+
+use askama::Template;
+use sistership_jobs::error::DeriveError;
+use sistership_jobs::library::library;
+use sistership_model::effect::{ActsOn, FormFile};
+use sistership_store::StoreError;
+
+use super::citation::{Citation, citations};
+use super::equations::mathml;
+use crate::error::Result;
+use crate::shell::Shell;
+
+#[derive(Template)]
+#[template(path = "effect.html")]
+struct EffectPage {
+    shell: Shell,
+    name: String,
+    title: String,
+    acts_on: &'static str,
+    note: Option<String>,
+    forms: Vec<FormRows>,
+    searched: bool,
+    citations: Vec<Citation>,
+}
+
+/// One form.
+struct FormRows {
+    name: String,
+    meaning: String,
+    needs: String,
+    /// Name, unit, meaning, bounds.
+    parameters: Vec<(String, String, String, String)>,
+    /// What is said, and the formula.
+    formulas: Vec<(String, String)>,
+}
+
+/// The page of an effect of this release.
+///
+/// # Errors
+/// There is no such effect.
+pub fn effect(shell: Shell, name: &str) -> Result<String> {
+    let known = library()?.effects.iter().find(|effect| effect.name == name);
+    let effect = known.ok_or_else(|| {
+        DeriveError::Store(StoreError::NotFound { kind: "effect", id: name.to_owned() })
+    })?;
+    let page = EffectPage {
+        shell: shell.at("/zoo"),
+        name: effect.name.clone(),
+        title: effect.title.clone(),
+        acts_on: words(effect.acts_on),
+        note: effect.note.clone(),
+        forms: effect.forms.iter().map(|form| rows(&form.file)).collect(),
+        searched: effect.grammar.is_some(),
+        citations: citations(&effect.sources),
+    };
+    Ok(page.render()?)
+}
+
+fn words(acts_on: ActsOn) -> &'static str {
+    match acts_on {
+        ActsOn::Force => "adds forces",
+        ActsOn::Inflow => "changes what hull, propeller or rudder see",
+        ActsOn::Measurement => "changes what the instruments say",
+    }
+}
+
+fn rows(form: &FormFile) -> FormRows {
+    let parameters = form.parameters.iter().map(|(name, of)| {
+        let [low, high] = of.bounds;
+        (name.clone(), of.unit.clone(), of.meaning.clone(), format!("{low} to {high}"))
+    });
+    let values = form.values.iter().map(|(name, formula)| (format!("{name} ="), formula));
+    let sees =
+        form.sees.iter().map(|(name, formula)| (format!("sees in place of {name}"), formula));
+    let forces = form.forces.iter().map(|(axis, formula)| (format!("adds to {axis}"), formula));
+    let accelerates =
+        form.accelerates.iter().map(|(axis, formula)| (format!("accelerates {axis} by"), formula));
+    let coefficients =
+        form.coefficients.iter().map(|(name, formula)| (format!("{name} becomes"), formula));
+    let lags = form.lags.iter().map(|(name, formula)| (format!("{name} lags by"), formula));
+    let bands =
+        form.bands.iter().map(|(name, formula)| (format!("{name} is left for within"), formula));
+    let measures =
+        form.measures.iter().map(|(channel, formula)| (format!("{channel} is read as"), formula));
+    let all = values.chain(sees).chain(forces).chain(accelerates).chain(coefficients);
+    FormRows {
+        name: form.name.clone(),
+        meaning: form.meaning.clone(),
+        needs: form.needs.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+        parameters: parameters.collect(),
+        formulas: all
+            .chain(lags)
+            .chain(bands)
+            .chain(measures)
+            .map(|(what, formula)| (what, mathml(formula)))
+            .collect(),
+    }
+}

@@ -1,0 +1,88 @@
+//! The page of a law: its equations, parameters and sources.
+
+use askama::Template;
+use sistership_jobs::Archive;
+use sistership_model::law::{AxisFile, LawFile, TermFile};
+use sistership_model::{FileError, yaml};
+
+use super::citation::{Citation, citations};
+use super::equations::{mathml, symbol};
+use crate::error::Result;
+use crate::shell::Shell;
+
+#[derive(Template)]
+#[template(path = "law.html")]
+struct LawPage {
+    shell: Shell,
+    law: LawFile,
+    sha256: String,
+    values: Vec<(String, String)>,
+    factors: Vec<(String, String)>,
+    axes: Vec<AxisRows>,
+    mass: Vec<(String, String)>,
+    citations: Vec<Citation>,
+}
+
+/// One equation of motion.
+struct AxisRows {
+    name: String,
+    scale: Option<String>,
+    /// Coefficient and what it multiplies; only a name where its factors say that.
+    terms: Vec<(String, Option<String>)>,
+    rest: Option<String>,
+    open: bool,
+}
+
+/// The page of a law.
+///
+/// # Errors
+/// There is no such law, or the store does not answer.
+pub async fn law(archive: &Archive, shell: Shell, name: &str) -> Result<String> {
+    let stored = archive.store.laws().get(name).await?;
+    let law: LawFile =
+        yaml::read(&stored.document).map_err(|error| FileError::of_yaml(name, error))?;
+    let set = |formulas: &mut dyn Iterator<Item = (&String, &String)>| {
+        let pair = |(name, formula): (&String, &String)| (symbol_alone(name), mathml(formula));
+        formulas.map(pair).collect::<Vec<_>>()
+    };
+    let page = LawPage {
+        values: set(&mut law.values.iter()),
+        factors: set(&mut law.factors.iter()),
+        axes: law.axes.iter().map(|(axis, file)| axis_rows(&axis.to_string(), file)).collect(),
+        mass: law
+            .mass
+            .iter()
+            .flat_map(|(row, entries)| {
+                entries.iter().map(move |(column, formula)| {
+                    (symbol_alone(&format!("M_{row}{column}")), mathml(formula))
+                })
+            })
+            .collect(),
+        citations: citations(&law.sources),
+        sha256: stored.sha256,
+        shell: shell.at("/zoo"),
+        law,
+    };
+    Ok(page.render()?)
+}
+
+fn symbol_alone(name: &str) -> String {
+    format!("<math>{}</math>", symbol(name))
+}
+
+fn axis_rows(name: &str, file: &AxisFile) -> AxisRows {
+    let terms = file.terms.iter().flat_map(|term| match term {
+        TermFile::Name(name) => vec![(symbol_alone(name), None)],
+        TermFile::Formula(pairs) => pairs
+            .iter()
+            .map(|(name, formula)| (symbol_alone(name), Some(mathml(formula))))
+            .collect(),
+    });
+    AxisRows {
+        name: name.to_owned(),
+        scale: file.scale.as_deref().map(mathml),
+        terms: terms.collect(),
+        rest: file.rest.as_deref().map(mathml),
+        open: file.open,
+    }
+}

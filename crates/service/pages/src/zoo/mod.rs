@@ -1,0 +1,50 @@
+//! The zoo: laws with their equations, effects, ships with a published model.
+
+mod citation;
+mod effect;
+mod equations;
+mod law;
+
+use askama::Template;
+use sistership_jobs::library::library;
+use sistership_model::{Effect, Law, Zoo};
+
+pub use effect::effect;
+pub use law::law;
+
+use crate::error::Result;
+use crate::shell::Shell;
+
+#[derive(Template)]
+#[template(path = "zoo.html")]
+struct ZooPage<'a> {
+    shell: Shell,
+    laws: Vec<LawRow<'a>>,
+    effects: Vec<&'a Effect>,
+}
+
+struct LawRow<'a> {
+    law: &'a Law,
+    coefficients: usize,
+    roll: bool,
+    inputs: String,
+}
+
+/// The laws of the database and the effects of this release.
+///
+/// # Errors
+/// The page cannot be written.
+pub fn index(zoo: &Zoo, shell: Shell) -> Result<String> {
+    let row = |law| {
+        let law: &Law = law;
+        LawRow {
+            law,
+            coefficients: law.coefficient_names().len(),
+            roll: law.has_roll(),
+            inputs: law.inputs.keys().cloned().collect::<Vec<_>>().join(", "),
+        }
+    };
+    let effects = library()?.effects.iter().map(|effect| &**effect).collect();
+    let laws = zoo.laws().map(|law| row(&**law)).collect();
+    Ok(ZooPage { shell: shell.at("/zoo"), laws, effects }.render()?)
+}

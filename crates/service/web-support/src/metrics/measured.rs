@@ -1,0 +1,87 @@
+//! What is asked of the archive for each scrape: jobs, their age, and the size of the object store.
+
+use std::time::{Duration, Instant};
+
+use futures::TryStreamExt as _;
+use prometheus_client::encoding::EncodeLabelSet;
+use prometheus_client::metrics::family::Family;
+use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::registry::Registry;
+use sistership_store::{JobCount, JobState, Result};
+use tokio::sync::Mutex;
+
+use sistership_jobs::archive::Archive;
+
+/// How long a size is good for: to know it, every object is asked for.
+const FRESH: Duration = Duration::from_secs(60);
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Kind {
+    kind: String,
+    state: &'static str,
+}
+
+/// The number of objects and their bytes.
+type Size = (i64, i64);
+
+/// Remembers the size of the object store for a while.
+#[derive(Debug, Default)]
+pub(super) struct Measured(Mutex<Option<(Instant, Size)>>);
+
+impl Measured {
+    /// What there is now.
+    pub(super) async fn registry(&self, archive: &Archive) -> Result<Registry> {
+        let counts = archive.store.jobs().counts().await?;
+        let (objects, bytes) = self.size(archive).await?;
+        let mut registry = Registry::with_prefix("sistership");
+        registry.register("jobs", "Jobs by kind and state", jobs(&counts));
+        let age = Gauge::<f64, std::sync::atomic::AtomicU64>::default();
+        age.set(queue_age_s(&counts, archive.store.now_us()));
+        registry.register(
+            "queue_age_seconds",
+            "How long the oldest job that no worker has taken up has waited",
+            age,
+        );
+        for (name, help, value) in [
+            ("object_store_objects", "Objects in the object store, at most a minute ago", objects),
+            ("object_store_bytes", "Bytes in the object store, at most a minute ago", bytes),
+        ] {
+            let gauge = Gauge::<i64>::default();
+            gauge.set(value);
+            registry.register(name, help, gauge);
+        }
+        Ok(registry)
+    }
+
+    async fn size(&self, archive: &Archive) -> Result<Size> {
+        let mut known = self.0.lock().await;
+        if let Some((_, size)) = known.filter(|(when, _)| when.elapsed() < FRESH) {
+            return Ok(size);
+        }
+        let count = |(objects, bytes): Size, head: sistership_store::ObjectHead| async move {
+            Ok((objects + 1, bytes + i64::try_from(head.bytes).unwrap_or(i64::MAX)))
+        };
+        let size = archive.objects.list().try_fold((0, 0), count).await?;
+        *known = Some((Instant::now(), size));
+        Ok(size)
+    }
+}
+
+fn jobs(counts: &[JobCount]) -> Family<Kind, Gauge> {
+    let jobs = Family::<Kind, Gauge>::default();
+    for count in counts {
+        jobs.get_or_create(&Kind { kind: count.kind.clone(), state: count.state.as_str() })
+            .set(count.jobs);
+    }
+    jobs
+}
+
+/// 0 where nothing waits.
+fn queue_age_s(counts: &[JobCount], now_us: i64) -> f64 {
+    let oldest = counts
+        .iter()
+        .filter(|count| count.state == JobState::Queued)
+        .map(|count| count.oldest_us)
+        .min();
+    oldest.map_or(0.0, |oldest| (now_us - oldest).max(0) as f64 / 1e6)
+}

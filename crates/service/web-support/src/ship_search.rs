@@ -1,0 +1,195 @@
+//! The query of the list of ships.
+
+use std::str::FromStr;
+
+use serde::Deserialize;
+use sistership_priors::similarity::Definition;
+use sistership_store::{FactRange, MAX_RANGES, Page, ShipKey};
+use utoipa::IntoParams;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
+
+use crate::field::{Cursor, Limit, Name, Word, one_of};
+use crate::page;
+use crate::problem::{Fault, Problem, Result};
+use sistership_jobs::search::{self, Search, metric, particular};
+
+/// What the query may hold. Everything that is given must be true of a ship.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
+pub struct Query {
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
+    /// `next` of the page before.
+    #[param(inline)]
+    after: Option<Cursor>,
+    /// Of this category only.
+    #[param(inline)]
+    category: Option<Name>,
+    /// With this tag only.
+    #[param(inline)]
+    tag: Option<Word>,
+    /// Ranges of particulars in SI, such as `lpp_m:100..200`, `beam_m:..32`; with those of metrics
+    /// at most four.
+    #[param(style = Form, explode, schema_with = particulars)]
+    particular: Option<Vec<String>>,
+    /// Ranges of the champion's metrics, such as `turn_35.tactical_diameter_m:..900`: `turn_35.`
+    /// with `advance_m`, `transfer_m`, `tactical_diameter_m`, `steady_radius_m`; `zigzag_10.` and
+    /// `zigzag_20.` with `first_overshoot_deg`, `second_overshoot_deg`, `period_s`;
+    /// `initial_turning_m`. The greater of both sides counts.
+    #[param(style = Form, explode, schema_with = metrics)]
+    metric: Option<Vec<String>>,
+    /// Ships of this ship's category, the most similar first.
+    #[param(inline)]
+    similar_to: Option<Name>,
+    /// The vector by which ships are similar: `mei-2019` or `kanazawa-2023`.
+    #[param(schema_with = vectors)]
+    vector: Option<Definition>,
+}
+
+/// Reads the query, parameter by parameter.
+///
+/// # Errors
+/// The parameter at fault.
+pub fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey>)> {
+    let (mut search, mut limit, mut after) = (Search::default(), None, None);
+    for (name, value) in pairs {
+        match name.as_str() {
+            "limit" => once(&name, &mut limit, parsed::<Limit>(&name, &value)?)?,
+            "after" => once(&name, &mut after, parsed::<Cursor>(&name, &value)?)?,
+            "category" => once(
+                &name,
+                &mut search.ships.category,
+                parsed::<Name>(&name, &value)?.into_string(),
+            )?,
+            "tag" => {
+                once(&name, &mut search.ships.tag, parsed::<Word>(&name, &value)?.into_string())?
+            }
+            "particular" => add(&name, &mut search.ships.ranges, particular(&value))?,
+            "metric" => add(&name, &mut search.ships.ranges, metric(&value))?,
+            "similar_to" => {
+                once(&name, &mut search.similar_to, parsed::<Name>(&name, &value)?.into_string())?
+            }
+            "vector" => once(&name, &mut search.vector, definition(&value)?)?,
+            _ => return Err(unknown(&name)),
+        }
+    }
+    Ok((search, page::page(limit, after.as_ref())?))
+}
+
+fn parsed<T: FromStr<Err = String>>(name: &str, value: &str) -> Result<T> {
+    value.parse().map_err(|message: String| wrong(name, message))
+}
+
+/// The names of the vectors.
+pub fn vectors() -> RefOr<Schema> {
+    one_of(Definition::ALL.map(Definition::name))
+}
+
+fn particulars() -> RefOr<Schema> {
+    ranges(search::particulars())
+}
+
+fn metrics() -> RefOr<Schema> {
+    ranges(search::metrics())
+}
+
+/// Ranges of what has one of these names.
+fn ranges(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
+    let range = ObjectBuilder::new()
+        .schema_type(Type::String)
+        .pattern(Some(search::pattern(names)))
+        .build();
+    ArrayBuilder::new().items(range).min_items(Some(1)).max_items(Some(MAX_RANGES)).build().into()
+}
+
+fn once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {
+    match slot.replace(value) {
+        None => Ok(()),
+        Some(_) => Err(wrong(name, "may be given once only")),
+    }
+}
+
+fn add(
+    name: &str,
+    ranges: &mut Vec<FactRange>,
+    range: std::result::Result<FactRange, String>,
+) -> Result<()> {
+    ranges.push(range.map_err(|message| wrong(name, message))?);
+    match ranges.len() <= MAX_RANGES {
+        true => Ok(()),
+        false => Err(wrong(name, format!("at most {MAX_RANGES} ranges can be asked for at once"))),
+    }
+}
+
+fn definition(value: &str) -> Result<Definition> {
+    let known = Definition::ALL.map(Definition::name).join(" and ");
+    Definition::by_name(value)
+        .ok_or_else(|| wrong("vector", format!("there are {known}, not `{value}`")))
+}
+
+fn unknown(name: &str) -> Problem {
+    wrong(
+        name,
+        "is no parameter here; there are limit, after, category, tag, particular, metric, \
+         similar_to, vector",
+    )
+}
+
+/// The refusal of a parameter.
+pub fn wrong(name: &str, message: impl Into<String>) -> Problem {
+    let message = message.into();
+    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn pairs(text: &str) -> Vec<(String, String)> {
+        let pair = |pair: &str| {
+            pair.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()))
+        };
+        text.split('&').filter_map(pair).collect()
+    }
+
+    #[test]
+    fn every_parameter_is_read() {
+        let text = "category=tanker&tag=own&particular=lpp_m:1..2&metric=initial_turning_m:..9&similar_to=kcs&vector=mei-2019&limit=7";
+        let (search, page) = read(pairs(text)).unwrap();
+        assert_eq!(
+            (page.limit, search.ships.ranges.len(), search.vector),
+            (7, 2, Some(Definition::Mei2019))
+        );
+        assert_eq!(search.ships.category.as_deref(), Some("tanker"));
+        assert_eq!(
+            (search.ships.tag.as_deref(), search.similar_to.as_deref()),
+            (Some("own"), Some("kcs"))
+        );
+    }
+
+    #[test]
+    fn the_wrong_parameter_is_named() {
+        let five = "particular=lpp_m:1..2&".repeat(5);
+        for (text, field) in [
+            ("limit=many", "limit"),
+            ("after=7", "after"),
+            ("tag=a&tag=b", "tag"),
+            ("particular=length_m:1..2", "particular"),
+            ("metric=speed", "metric"),
+            (five.as_str(), "particular"),
+            ("vector=other", "vector"),
+            ("categorie=tanker", "categorie"),
+        ] {
+            let problem = read(pairs(text)).unwrap_err();
+            assert_eq!(
+                (problem.status, problem.errors[0].field.as_deref()),
+                (400, Some(field)),
+                "{text}"
+            );
+        }
+    }
+}

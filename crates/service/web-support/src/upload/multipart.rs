@@ -1,0 +1,193 @@
+//! A manifest and its files as the parts of a form.
+
+use axum::extract::multipart::{Field, Multipart};
+use axum::extract::{FromRequest as _, Request};
+use axum::http::StatusCode;
+use sistership_model::manifest::ManifestTrial;
+use sistership_trials::{ManifestFile, read_manifest_file};
+
+use super::place::UploadPlace;
+use super::received::{Upload, canonical};
+use crate::payload::read_yaml;
+use crate::problem::{Fault, Problem, Result};
+use crate::spool::{Spooled, spool};
+use sistership_jobs::budget;
+
+/// The parts of a form as they have arrived.
+#[derive(Default)]
+struct Parts {
+    manifest: Option<String>,
+    ship: Option<String>,
+    files: Vec<Part>,
+}
+
+struct Part {
+    field: String,
+    name: String,
+    file: Spooled,
+}
+
+pub(super) async fn receive(request: Request, place: &UploadPlace) -> Result<Upload> {
+    let form = Multipart::from_request(request, &()).await;
+    let mut form = form.map_err(|error| {
+        Problem::bad_request(format!("the form cannot be read: {}", error.body_text()))
+    })?;
+    let mut parts = Parts::default();
+    while let Some(field) = form.next_field().await? {
+        parts.take(field, place).await?;
+    }
+    match (parts.manifest.take(), parts.ship.take()) {
+        (Some(manifest), None) => {
+            let manifest = read(&manifest).await?;
+            if manifest.manifest.ship.is_empty() {
+                let message = "the manifest names no ship; add `ship:`";
+                return Err(Problem::invalid("manifest", message));
+            }
+            parts.listed(manifest)
+        }
+        (None, Some(ship)) => parts.canonical(ship),
+        (Some(_), Some(_)) => {
+            Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out"))
+        }
+        (None, None) => Err(Problem::invalid(
+            "manifest",
+            "send a part `manifest` (YAML), or a part `ship` for files with canonical columns",
+        )),
+    }
+}
+
+async fn read(manifest: &str) -> Result<ManifestFile> {
+    read_yaml(manifest.len()).await?;
+    Ok(read_manifest_file("manifest", manifest)?)
+}
+
+impl Upload {
+    /// Of files by their names, which a manifest lists.
+    ///
+    /// # Errors
+    /// One is missing, or is not listed.
+    pub fn listed(manifest: ManifestFile, files: Vec<(String, Spooled)>) -> Result<Self> {
+        let part = |(name, file): (String, Spooled)| Part { field: name.clone(), name, file };
+        let files = files.into_iter().map(part).collect();
+        Parts { files, ..Parts::default() }.listed(manifest)
+    }
+}
+
+impl Parts {
+    async fn take(&mut self, field: Field<'_>, place: &UploadPlace) -> Result<()> {
+        let name = field.name().unwrap_or_default().to_owned();
+        match (name.as_str(), field.file_name().map(str::to_owned)) {
+            ("manifest", _) => set(&mut self.manifest, "manifest", text(field, place).await?),
+            ("ship", None) => {
+                set(&mut self.ship, "ship", text(field, place).await?.trim().to_owned())
+            }
+            (_, Some(file_name)) => self.file(name, file_name, field, place).await,
+            (other, None) => Err(Problem::invalid(
+                other,
+                "is not known here: parts are `manifest`, `ship`, and files with a filename",
+            )),
+        }
+    }
+
+    async fn file(
+        &mut self,
+        field: String,
+        name: String,
+        content: Field<'_>,
+        place: &UploadPlace,
+    ) -> Result<()> {
+        let most = place.files;
+        if self.files.len() >= most {
+            return Err(Problem::new(
+                StatusCode::PAYLOAD_TOO_LARGE,
+                format!("an upload has at most {most} files; send several uploads"),
+            ));
+        }
+        self.files.push(Part { field, name, file: spool(&place.spool, content).await? });
+        Ok(())
+    }
+
+    /// The files that a manifest lists; each must be there, and no other.
+    fn listed(mut self, manifest: ManifestFile) -> Result<Upload> {
+        let (mut files, mut names, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let mut place = |parts: &mut Self, field: String, name: &str| -> Result<usize> {
+            if let Some(known) = names.iter().position(|known| known == name) {
+                return Ok(known);
+            }
+            let found = parts.find(name).ok_or_else(|| parts.missing(field, name))?;
+            files.push(parts.files.swap_remove(found).file);
+            names.push(name.to_owned());
+            Ok(files.len() - 1)
+        };
+        for (index, trial) in manifest.manifest.trials.iter().enumerate() {
+            let main = place(&mut self, format!("trials[{index}].file"), &trial.file)?;
+            let sensors = manifest.sensors[index].iter().enumerate().map(|(at, sensor)| {
+                place(&mut self, format!("trials[{index}].sensors[{at}].file"), &sensor.file)
+            });
+            places.push((main, sensors.collect::<Result<_>>()?));
+        }
+        match self.files.first() {
+            Some(extra) => Err(Problem::invalid(
+                &extra.name,
+                "is not listed under `trials` of the manifest; list it or leave it out",
+            )),
+            None => Ok(Upload { manifest, diagnose: true, files, places }),
+        }
+    }
+
+    /// By its whole path; else by its name alone, where only one has it: many programs send no more
+    /// than that.
+    fn find(&self, path: &str) -> Option<usize> {
+        let exact = self.files.iter().position(|part| part.name == path || part.field == path);
+        let base = |path: &str| path.rsplit('/').next().map(str::to_owned);
+        let mut alike = self
+            .files
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| base(&part.name) == base(path))
+            .map(|(index, _)| index);
+        exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
+    }
+
+    fn missing(&self, field: String, path: &str) -> Problem {
+        let sent: Vec<&str> = self.files.iter().map(|part| part.name.as_str()).collect();
+        let sent = if sent.is_empty() {
+            "none is left".to_owned()
+        } else {
+            format!("left are {}", sent.join(", "))
+        };
+        let message = format!("the manifest lists `{path}`, but no part has that filename; {sent}");
+        Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone())
+            .with(Fault::at(field, message))
+    }
+
+    fn canonical(self, ship: String) -> Result<Upload> {
+        if self.files.is_empty() {
+            return Err(Problem::invalid("file", "send at least one part with a filename"));
+        }
+        let trial = |part: &Part| ManifestTrial::of(part.name.clone());
+        let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
+        Ok(Upload::of(manifest, true, self.files.into_iter().map(|part| part.file).collect()))
+    }
+}
+
+fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
+    match place.replace(text) {
+        Some(_) => Err(Problem::invalid(name, "is sent twice")),
+        None => Ok(()),
+    }
+}
+
+/// A part that is a short text.
+async fn text(mut field: Field<'_>, place: &UploadPlace) -> Result<String> {
+    let mut bytes = Vec::new();
+    while let Some(chunk) = field.chunk().await? {
+        budget::take(2 * chunk.len() as u64).await?;
+        bytes.extend_from_slice(&chunk);
+        if bytes.len() > place.yaml_bytes {
+            return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));
+        }
+    }
+    String::from_utf8(bytes)
+        .map_err(|error| Problem::bad_request(format!("a part is not UTF-8: {error}")))
+}
