@@ -66,7 +66,7 @@ fn exchanged(design: &Design, budget_s: f64, chosen: &mut [usize]) -> bool {
     any
 }
 
-/// What gains most a minute first: whoever has to stop early has sailed the best.
+/// Orders trials by information per minute, the most informative first.
 fn ordered(design: &Design, mut rest: Vec<usize>) -> Vec<usize> {
     let mut order = Vec::new();
     while let Some(place) = next(design, &order, &rest, f64::INFINITY) {

@@ -1,4 +1,4 @@
-//! What may be written on the command line.
+//! Arguments of the command line.
 
 use std::path::PathBuf;
 
@@ -31,17 +31,18 @@ Examples:
   sistership estimate --ship my-ship.yaml
   sistership zoo add my-ship.yaml
 
-Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
+Exit status: 0 success, 1 the data or the model was refused, 2 the command is wrong.";
 
-/// Ship manoeuvring models: find the most similar ship, refine its model against trials, sail it.
+/// Ship manoeuvring models: find the most similar ship, refine its model against trials, simulate
+/// it.
 #[derive(Debug, Parser)]
 #[command(name = "sistership", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Arguments {
-    /// Add laws/*.yaml, effects/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable.
-    /// SISTERSHIP_ZOO holds further ones.
+    /// Add laws/*.yaml, effects/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable, and
+    /// in addition to the folders in SISTERSHIP_ZOO.
     #[arg(long, value_name = "DIR", global = true)]
     pub zoo: Vec<PathBuf>,
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -53,59 +54,60 @@ pub enum Command {
     Similar(similar::SimilarArguments),
     /// Check trial files: units, signs, gaps, jumps, time.
     Check(check::CheckArguments),
-    /// Look at trial files and write a manifest that reads them.
+    /// Identify the columns of trial files and write a manifest that reads them.
     Import(import::ImportArguments),
     /// Refine a source model against a ship's trials.
     Refine(Box<refine::RefineArguments>),
-    /// Train a learned branch beside a model, on what it leaves of trials.
+    /// Train a learned correction on the residual accelerations of a model.
     Branch(branch::BranchArguments),
     /// Simulate recorded trials with a model and measure its errors.
     Simulate(simulate::SimulateArguments),
-    /// Find what a model lacks, by trials that it has not seen.
+    /// Find the physical effects that a model lacks, from trials that it was not fitted on.
     Diagnose(diagnose::DiagnoseArguments),
-    /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by
-    /// the IMO criteria.
+    /// Simulate turning circles, zigzags, stops, pull-outs and spirals and compare them with the
+    /// IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
-    /// Sail a model over a horizon under orders to come, in wind and current, with a band.
+    /// Predict the motion over a horizon under future orders, in wind and current, with a
+    /// prediction interval.
     Predict(Box<predict::PredictArguments>),
-    /// Plan the trials that narrow the bands of the IMO criteria most in a given time.
+    /// Design the trials that reduce the uncertainty of the IMO criteria most within a given time.
     Plan(plan::PlanArguments),
     /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
     Compare(compare::CompareArguments),
-    /// Validate a model by its ship's trials: comparison error, validation uncertainty, verdict.
+    /// Validate a model against trials of its ship by ITTC 7.5-02-06-03.
     Validate(validate::ValidateArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
-    /// Write a model down for another tool: C, Python, MATLAB, FMU; or a ship for another store.
+    /// Export a model to C, Python, MATLAB, Modelica or FMU, or a ship to another store.
     Export(export::ExportArguments),
-    /// Estimate a model of a ship from its particulars alone, with bands.
+    /// Estimate a model of a ship from its particulars alone, with uncertainty bands.
     Estimate(estimate::EstimateArguments),
-    /// What the models of the zoo are worth; check a ship that is to join it.
+    /// List the models of the zoo with their validation status, or check a ship before it is added.
     Zoo(zoo::ZooArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion,
     /// report.
     Demo(DemoArguments),
     /// Run the REST server.
     Serve(serve::ServeArguments),
-    /// Work on the jobs that servers queue, without serving.
+    /// Run a worker for the jobs that servers have queued.
     Work(work::WorkArguments),
     /// Find ships of a store by category, tag, particulars, metrics and similarity.
     Ships(Box<ships::ShipsArguments>),
-    /// Derive a version again from its recipe and compare the bytes.
+    /// Repeat the recorded recipe of a version and compare the bytes.
     Verify(verify::VerifyArguments),
-    /// Families of ships: make one, learn from it, refine all of it.
+    /// Manage families of ships: create, learn the prior, refine all members.
     Family(family::FamilyArguments),
-    /// Users of the servers on a store: add, list, give roles, disable.
+    /// Manage the users of a store: add, list, assign roles, disable.
     Users(users::UsersArguments),
-    /// Service keys of programs: add, list, revoke.
+    /// Manage the service keys of programs: add, list, revoke.
     Keys(keys::KeysArguments),
     /// Check every hash and every reference of a store.
     Fsck(fsck::FsckArguments),
-    /// Remove objects that nothing refers to.
+    /// Remove unreferenced objects.
     Gc(gc::GcArguments),
-    /// Copy a store, while it is written, into a folder.
+    /// Back up a store into a folder while servers keep writing.
     Backup(backup::BackupArguments),
-    /// Make a store of a backup, in an empty place.
+    /// Restore a backup into an empty store.
     Restore(backup::RestoreArguments),
 }
 

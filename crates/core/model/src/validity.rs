@@ -249,8 +249,8 @@ impl Excursion {
         let Self { first_s, share, along, beyond } = self;
         let percent = 100.0 * share;
         format!(
-            "outside what its trials covered from {first_s:.0} s, {percent:.0} % of the time, \
-             furthest in {along}: {:.0} % of the half range beyond",
+            "outside the range covered by its trials from {first_s:.0} s on, {percent:.0} % of the \
+             time; by at most {:.0} % of the half range, in {along}",
             100.0 * beyond
         )
     }

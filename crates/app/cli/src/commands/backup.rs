@@ -14,23 +14,23 @@ Examples:
   sistership backup /backup/2026-11-21 --data-dir /var/lib/sistership
   sistership backup /backup/2026-11-21 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
 
-Servers and workers may go on: the backup holds the database as it was at one moment after the
-command began, and the samples that it refers to. Exit status 1 where samples were missing or
-damaged; the rest is copied all the same.";
+Servers and workers may keep running: the backup is a consistent snapshot of the database, taken
+after the command began, with the samples that it refers to. Exit status 1 when samples are missing
+or damaged; everything else is copied.";
 
 const RESTORE_EXAMPLES: &str = "\
 Examples:
   sistership restore /backup/2026-11-21 --data-dir /var/lib/sistership-2
   sistership restore /backup/2026-11-21 --database-url postgres://user@host/empty --data-dir /mnt/shared/sistership-2
 
-The place must be empty: no database file, or a database without tables, and no samples.
-`sistership fsck` then checks all of it.";
+The target must be empty: no database file, or a database without tables, and no samples. Run
+`sistership fsck` afterwards.";
 
-/// Copy a store, while it is written, into a folder.
+/// Back up a store into a folder while servers keep writing.
 #[derive(Debug, Args)]
 #[command(after_help = BACKUP_EXAMPLES)]
 pub struct BackupArguments {
-    /// The folder; it must be empty or not be there.
+    /// The folder; it must be empty or absent.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub struct BackupArguments {
     json: bool,
 }
 
-/// Make a store of a backup, in an empty place.
+/// Restore a backup into an empty store.
 #[derive(Debug, Args)]
 #[command(after_help = RESTORE_EXAMPLES)]
 pub struct RestoreArguments {

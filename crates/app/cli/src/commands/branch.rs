@@ -26,38 +26,39 @@ Examples:
   sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
   sistership branch --model mariner --trials a.csv b.csv c.csv --kind forest --mode parallel --out m.yaml --json
 
-Weights are written beside the model: with-branch.weights.json for with-branch.yaml. Without
---kind, every kind is tried on trials left out of its training, and none is taken that does not
-win by more than its uncertainty: then --out writes nothing, which is a result (exit status 0).";
+The weights are written next to the model: with-branch.weights.json for with-branch.yaml. By default
+every kind is compared on held-out trials, and none is used that is not significantly better than
+the model without a correction: --out then writes nothing, and the exit status is 0.";
 
-/// Train a learned branch beside a model, on what it leaves of trials.
+/// Train a learned correction on the residual accelerations of a model.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct BranchArguments {
-    /// The model, its foundation: a name in the zoo, a model file, or a vessel file with a model.
+    /// The model to be corrected: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// What learns.
+    /// Kind of regressor.
     #[arg(long, value_enum, default_value_t)]
     kind: Kind,
-    /// How it is joined to the law: `parallel` adds to its accelerations, `serial` takes them as
-    /// inputs, `convert` knows nothing of them.
+    /// Combination with the law: `parallel` adds to its accelerations, `serial` replaces them and
+    /// takes them as inputs, `convert` replaces them without.
     #[arg(long, value_enum, default_value_t)]
     mode: Mode,
-    /// What every random number follows from.
+    /// Seed of the random numbers.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Time over which accelerations are taken; where absent, half of that of sailing its length.
+    /// Interval over which accelerations are estimated; the default is half the time to travel a
+    /// ship length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     window_s: Option<f64>,
-    /// How far beyond what the trials covered nothing of it is left, by half ranges; 1 where
-    /// absent.
+    /// Distance outside the range covered by the trials at which the correction has faded to zero,
+    /// in half ranges; 1 by default.
     #[arg(long, value_name = "HALF_RANGES", value_parser = positive, allow_negative_numbers = true)]
     fade: Option<f64>,
-    /// Write the model with the branch, and its weights beside it.
+    /// Write the model with the correction, and its weights next to it.
     #[arg(long, value_name = "MODEL.yaml")]
     out: Option<PathBuf>,
     /// Print one JSON document.
@@ -65,10 +66,10 @@ pub struct BranchArguments {
     json: bool,
 }
 
-/// What learns.
+/// Kinds of regressors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 enum Kind {
-    /// The best on trials left out, if any wins.
+    /// The best on held-out trials, if it is significantly better than none.
     #[default]
     Auto,
     /// A random forest.
@@ -84,12 +85,12 @@ enum Kind {
 /// How a branch is joined to its foundation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 enum Mode {
-    /// It adds to the law's accelerations.
+    /// Adds to the accelerations of the law.
     #[default]
     Parallel,
-    /// It gives the accelerations, those of the law among its inputs.
+    /// Replaces the accelerations of the law, which are among its inputs.
     Serial,
-    /// It gives the accelerations, without the law's.
+    /// Replaces the accelerations of the law, without them as inputs.
     Convert,
 }
 

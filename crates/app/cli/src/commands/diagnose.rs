@@ -26,11 +26,11 @@ Examples:
   sistership diagnose --model my-model.yaml --trials a.csv b.csv c.csv --out with-effects.yaml --json
   sistership diagnose --zoo my-effects --model kvlcc2 --trials trials.yaml
 
-Give trials that the model was not fitted on, several of them and on several headings: what a
-current does and what a wind does look alike on one. The verdict is `complete`, `effects` or
-`unexplained`; each is a result (exit status 0).";
+Give several trials that the model was not fitted on, on several headings: on a single heading a
+current and a wind cannot be distinguished. The verdict is `complete`, `effects` or `unexplained`;
+the exit status is 0 for each.";
 
-/// Find what a model lacks, by trials that it has not seen.
+/// Find the physical effects that a model lacks, from trials that it was not fitted on.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct DiagnoseArguments {
@@ -40,26 +40,25 @@ pub struct DiagnoseArguments {
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// Start simulations that judge anew every so often; where absent, every ten ship lengths
-    /// sailed.
+    /// Interval at which held-out simulations restart from the measured state; the default is ten
+    /// ship lengths.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
-    /// Shortest interval between samples that are used; where absent, that of sailing a fiftieth of
-    /// its length.
+    /// Shortest interval between samples; the default is the time to travel a fiftieth of a ship
+    /// length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     least_step_s: Option<f64>,
-    /// How far a coefficient may be from the truth, as a share of its value, where the model does
-    /// not say itself.
+    /// Relative standard deviation of coefficients of a model without a posterior.
     #[arg(long, value_name = "SHARE", value_parser = positive, allow_negative_numbers = true)]
     slack: Option<f64>,
-    /// Least evidence (natural logarithm) for an effect to be named.
+    /// Smallest log evidence (natural logarithm) of a reported effect.
     #[arg(long, value_name = "EVIDENCE", allow_negative_numbers = true)]
     least_evidence: Option<f64>,
-    /// Most effects that are named together.
+    /// Largest number of effects in a combination.
     #[arg(long, value_name = "N")]
     most_effects: Option<usize>,
-    /// Odds that the trials have an effect, before they are looked at, against that they do not;
-    /// where absent, those of the library. May be given more than once.
+    /// Prior odds of an effect against its absence; the defaults are those of the effect library;
+    /// repeatable.
     #[arg(long, value_name = "EFFECT=ODDS", value_parser = odds)]
     prior_odds: Vec<(String, f64)>,
     /// Write the model with the effects found.

@@ -32,7 +32,8 @@ The ship needs lpp_m, beam_m and draught_m. What else it does not state (block c
 centre of gravity, rudder, propeller) is estimated and named with its band. What comes out is an
 estimate by published regressions (models/regressions), not a measurement.";
 
-/// Estimate a model of a ship from its particulars, with bands on the standard manoeuvres.
+/// Estimate a model of a ship from its particulars, with uncertainty bands of the standard
+/// manoeuvres.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct EstimateArguments {
@@ -46,7 +47,7 @@ pub struct EstimateArguments {
     /// Write the model to a file.
     #[arg(long, value_name = "MODEL.yaml")]
     out: Option<PathBuf>,
-    /// What the draws of the bands follow from.
+    /// Seed of the draws for the bands.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
     /// Print one JSON document.

@@ -27,10 +27,10 @@ Examples:
 What is written is what `sistership manoeuvre` sails: the law with the model's effects, the steering
 gear, what was learned beside them, and a current as an input.
 
-A bundle is of a ship in a store: its versions with what they were derived from, trials and reports,
-which another store takes with every hash and all lineage.";
+A bundle holds a ship of a store: its versions with all inputs, trials and reports. Another store
+imports it with all hashes and the whole lineage.";
 
-/// Write a model down for another tool.
+/// Export a model to another tool, or a ship to another store.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ExportArguments {

@@ -23,7 +23,7 @@ Examples:
   sistership work & sistership work &
   sistership family status 0192f3c4-...";
 
-/// Families of ships: make one, learn from it, refine all of it.
+/// Manage families of ships: create, learn the prior, refine all members.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct FamilyArguments {
@@ -38,11 +38,11 @@ pub struct FamilyArguments {
 
 #[derive(Debug, Subcommand)]
 enum FamilyAction {
-    /// Make a family on a foundation.
+    /// Create a family on a foundation.
     Create {
         /// Its name.
         family: String,
-        /// The version that its models are founded on: `SHIP` (its champion) or `SHIP/NUMBER`.
+        /// Version on which its models are based: `SHIP` (its champion) or `SHIP/NUMBER`.
         #[arg(long, value_name = "SHIP[/NUMBER]")]
         foundation: String,
         /// A member; repeatable.
@@ -57,7 +57,8 @@ enum FamilyAction {
         #[arg(required = true)]
         ships: Vec<String>,
     },
-    /// Learn how the coefficients vary over the members, and keep it as the family's prior.
+    /// Estimate mean and covariance of the coefficients over the members and store them as the
+    /// prior of the family.
     Learn {
         /// The family.
         family: String,
@@ -66,28 +67,28 @@ enum FamilyAction {
     Refine {
         /// The family.
         family: String,
-        /// Where each member starts.
+        /// Start of each member.
         #[arg(long, value_enum, default_value_t = StartArgument::Champion)]
         start: StartArgument,
-        /// What holds the coefficients.
+        /// Prior of the coefficients.
         #[arg(long, value_enum, default_value_t = PriorArgument::Family)]
         prior: PriorArgument,
-        /// A refined model becomes champion where no axis' error grows by more than this share;
-        /// without it, none does by itself.
+        /// Promote a refined model to champion if the held-out error of no axis grows by more than
+        /// this share; by default none is promoted.
         #[arg(long, value_name = "SHARE")]
         no_worse_than: Option<f64>,
     },
-    /// How far a refinement is.
+    /// Show the progress of a refinement.
     Status {
         /// Its id.
         id: String,
     },
-    /// Cancel what is left of a refinement.
+    /// Cancel the remaining work of a refinement.
     Cancel {
         /// Its id.
         id: String,
     },
-    /// Go on with what failed or was cancelled.
+    /// Repeat the failed or cancelled parts of a refinement.
     Retry {
         /// Its id.
         id: String,

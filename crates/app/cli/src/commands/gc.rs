@@ -15,19 +15,19 @@ Examples:
   sistership gc --dry-run
   sistership gc --grace-h 72 --data-dir /var/lib/sistership
 
-Removes the samples that no trial (deleted ones count) and no version refers to, as refused and
-broken uploads leave them. Servers and workers may go on.";
+Removes samples that no trial (deleted trials included) and no version refers to, such as the
+remains of refused or interrupted uploads. Servers and workers may keep running.";
 
-/// Remove objects that nothing refers to.
+/// Remove unreferenced objects.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct GcArguments {
     #[command(flatten)]
     store: StoreArguments,
-    /// Hours for which an object is left alone after it was put.
+    /// Hours for which a new object is kept in any case.
     #[arg(long, value_name = "HOURS", default_value = "24", value_parser = hours)]
     grace_h: Duration,
-    /// Only tell what would be removed.
+    /// List what would be removed without removing it.
     #[arg(long)]
     dry_run: bool,
     /// Print one JSON document.

@@ -23,7 +23,7 @@ A key is printed once; only its hash is kept. A program sends it as `Authorizati
 /// A day, µs.
 const DAY: i64 = 86_400_000_000;
 
-/// Service keys of programs: add, list, revoke.
+/// Manage the service keys of programs: add, list, revoke.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct KeysArguments {
@@ -38,25 +38,25 @@ pub struct KeysArguments {
 
 #[derive(Debug, Subcommand)]
 enum KeysAction {
-    /// Make a key, and print it.
+    /// Create and print a key.
     Add {
-        /// What it is for.
+        /// Purpose of the key.
         title: String,
         /// A role; repeatable.
         #[arg(long = "role", value_name = "ROLE[@ship:NAME|@family:NAME]")]
         roles: Vec<Grant>,
-        /// The user in whose name it acts.
+        /// User on whose behalf it acts.
         #[arg(long, value_name = "NAME")]
         user: Option<String>,
-        /// Days after which it ends; without them it ends when it is revoked.
+        /// Days until it expires; by default it is valid until revoked.
         #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(i64).range(1..=36500))]
         days: Option<i64>,
     },
-    /// List the keys, those that have ended too.
+    /// List all keys, expired ones included.
     List,
-    /// End a key, for ever.
+    /// Revoke a key permanently.
     Revoke {
-        /// What it begins with, after `sis_`.
+        /// Prefix of the key, after `sis_`.
         prefix: String,
     },
 }

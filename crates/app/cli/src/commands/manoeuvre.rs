@@ -27,12 +27,11 @@ Examples:
   sistership manoeuvre --model csl-spirit --stop --reversal-s 30
   sistership manoeuvre --model esso-tanker --pull-out 20 --pull-out -20 --spiral
 
-Positive rudder turns to starboard. A criterion that is not met is a result: the exit status is 0.
-Exit status 1 when a manoeuvre leaves the physical range, or the law cannot sail what was asked
-for.";
+Positive rudder turns to starboard. The exit status is 0 when a criterion is not met, and 1 when a
+manoeuvre leaves the physical range or the law does not support it.";
 
-/// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
-/// IMO criteria.
+/// Simulate turning circles, zigzags, stops, pull-outs and spirals and compare them with the IMO
+/// criteria.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ManoeuvreArguments {
@@ -51,29 +50,29 @@ pub struct ManoeuvreArguments {
     /// law can, pull-outs, spirals of an unstable ship, IMO criteria: the default.
     #[arg(long)]
     all: bool,
-    /// Approach speed; the model's own where absent.
+    /// Approach speed; by default that of the model.
     #[arg(long, value_name = "U", value_parser = positive, allow_negative_numbers = true)]
     speed_m_s: Option<f64>,
-    /// Propeller revolutions per second; those of the approach speed where absent.
+    /// Propeller revolutions per second; by default those of the approach speed.
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     n_rps: Option<f64>,
-    /// Water depth; deep water where absent.
+    /// Water depth; deep water by default.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     depth_m: Option<f64>,
-    /// Longest duration of a manoeuvre; scaled with ship and speed where absent.
+    /// Longest duration of a manoeuvre; by default scaled with ship length and speed.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     duration_s: Option<f64>,
-    /// Step; 0.1 s where absent, shorter for small models.
+    /// Integration step; by default 0.1 s, shorter for small models.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     step_s: Option<f64>,
     /// Integration method.
     #[arg(long, value_enum, default_value_t)]
     method: Integration,
-    /// Draw so many models from the posterior of a refined one, for confidence bands of the
-    /// standard manoeuvres.
+    /// Number of draws from the posterior of a refined model, for uncertainty bands of the standard
+    /// manoeuvres.
     #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag", "stop", "pull_out", "spiral"])]
     bands: Option<usize>,
-    /// What these draws follow from.
+    /// Seed of these draws.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "bands")]
     seed: u64,
     /// Write the track of the single manoeuvre (canonical columns).

@@ -1,4 +1,4 @@
-//! Stopping, pull-outs and spirals: what a call says of them, and their tables.
+//! Arguments and tables of stopping, pull-outs and spirals.
 
 use clap::Args;
 use sistership_simulation::manoeuvre::{AskedSpiral, AsternOrder, FurtherAsked, FurtherManoeuvres};
@@ -7,16 +7,16 @@ use sistership_simulation::metrics::{PullOutMetrics, SpiralMetrics, SpiralPoint,
 use crate::table::{TextTable, number, optional};
 use crate::values::{not_negative, positive, rudder_deg};
 
-/// Which manoeuvres are sailed beside turns and zigzags.
+/// Manoeuvres in addition to turns and zigzags.
 #[derive(Debug, Args)]
 pub struct FurtherArguments {
-    /// A full astern stop, where the law is told of a reversed propeller.
+    /// A full astern stop, if the law covers a reversed propeller.
     #[arg(long, conflicts_with = "all")]
     stop: bool,
-    /// Revolutions astern per second in a stop; as many as ahead where absent.
+    /// Revolutions astern per second in a stop; by default as many as ahead.
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     astern_rps: Option<f64>,
-    /// The time in which the revolutions are reversed in a stop.
+    /// Duration of the reversal in a stop.
     #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value = "0", allow_negative_numbers = true)]
     reversal_s: f64,
     /// A pull-out: a steady turn with this rudder, then amidships; repeatable.

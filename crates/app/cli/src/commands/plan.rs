@@ -20,26 +20,26 @@ Examples:
   sistership plan --ship my-ship.yaml --json
   sistership plan --ship my-model.yaml --trials since.yaml --apart wind --apart current
 
-SHIP is a model that was refined (its posterior says what is open), or a ship: one without a model
-is estimated from its particulars. Times hold the approach of each trial, and how long the ship
-needs until it is steady at its full speed again; both are simulated.";
+SHIP is a refined model (its posterior gives the present uncertainty), or a ship: without a model it
+is estimated from its particulars. Durations include the approach to each trial and the time to
+return to steady full speed; both are simulated.";
 
-/// Plan the trials that narrow the bands of the IMO criteria most in a given time.
+/// Design the trials that reduce the uncertainty of the IMO criteria most within a given time.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct PlanArguments {
     /// The ship or its model: a name in the zoo, a model file, or a vessel file.
     #[arg(long, value_name = "SHIP")]
     ship: String,
-    /// Time for all trials, with their approaches.
+    /// Total duration of all trials including their approaches.
     #[arg(long, value_name = "MIN", default_value_t = 60.0, value_parser = positive, allow_negative_numbers = true)]
     budget_min: f64,
-    /// An effect that is to be told apart from the others named so, as a diagnosis asks for;
-    /// repeatable.
+    /// An effect that the trials shall distinguish from the others given here, as a diagnosis asks
+    /// for; repeatable.
     #[arg(long, value_name = "EFFECT")]
     apart: Vec<String>,
-    /// Trials sailed since the model was fitted: what they tell counts, and new ones will be
-    /// recorded like them.
+    /// Trials since the model was fitted: their information counts, and new trials are assumed to
+    /// be recorded like them.
     #[arg(long, value_name = "TRIALS", num_args = 1..)]
     trials: Vec<PathBuf>,
     /// Print one JSON document.

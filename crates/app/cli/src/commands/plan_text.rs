@@ -7,10 +7,7 @@ use crate::table::{TextTable, number};
 /// Everything that came of it.
 pub fn text(plan: &Plan) -> String {
     let mut parts = vec![format!("{}\n{}\n", plan.model, summary(plan))];
-    parts.push(format!(
-        "In this order: whoever has to stop early has sailed the best\n{}",
-        trials(&plan.trials)
-    ));
+    parts.push(format!("Most informative first\n{}", trials(&plan.trials)));
     parts.push(format!("Bands of 95 %, plus or minus\n{}", bands(&plan.bands)));
     parts.extend(plan.remarks.iter().map(|remark| format!("remark: {remark}")));
     parts.join("\n")

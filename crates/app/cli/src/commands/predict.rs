@@ -25,10 +25,11 @@ Examples:
     --duration-s 300
 
 Orders are a CSV file with the columns t_s, delta_deg or delta_rad, and n_rps; a cell that is empty
-leaves what was ordered before. The answer is that of `POST /v1/predictions` with a horizon.
+keeps the previous order. The result is that of `POST /v1/predictions` with a horizon.
 Exit status 1 when the motion leaves the physical range.";
 
-/// Sail a model over a horizon under orders to come, in wind and current, with a band.
+/// Predict the motion over a horizon under future orders, in wind and current, with a prediction
+/// interval.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct PredictArguments {
@@ -36,22 +37,22 @@ pub struct PredictArguments {
     /// `ship` (its champion), `ship/number` or `ship/alias`.
     #[arg(long)]
     model: String,
-    /// How far ahead.
+    /// Duration of the prediction.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     duration_s: f64,
-    /// Orders in time.
+    /// Orders over time.
     #[arg(long, value_name = "CSV", conflicts_with_all = ["rudder_deg", "n_rps"])]
     orders: Option<PathBuf>,
-    /// Rudder angle ordered throughout, positive to starboard.
+    /// Constant rudder order, positive to starboard.
     #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
     rudder_deg: Option<f64>,
-    /// Propeller revolutions ordered throughout; those of the speed now where absent.
+    /// Constant order of propeller revolutions; by default those of the initial speed.
     #[arg(long, value_name = "N", value_parser = number, allow_negative_numbers = true)]
     n_rps: Option<f64>,
-    /// Speed ahead over the ground now; the model's approach speed where absent.
+    /// Initial speed ahead over ground; by default the approach speed of the model.
     #[arg(long, value_name = "U", value_parser = number, allow_negative_numbers = true)]
     speed_m_s: Option<f64>,
-    /// Heading now, clockwise from north; needs a speed.
+    /// Initial heading, clockwise from north; requires --speed-m-s.
     #[arg(long, value_name = "DEG", value_parser = number, requires = "speed_m_s")]
     #[arg(allow_negative_numbers = true)]
     heading_deg: Option<f64>,
@@ -59,14 +60,14 @@ pub struct PredictArguments {
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 0.5)]
     #[arg(allow_negative_numbers = true)]
     dt_s: f64,
-    /// Water depth; deep water where absent.
+    /// Water depth; deep water by default.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     depth_m: Option<f64>,
     /// Speed of a steady wind.
     #[arg(long, value_name = "M/S", value_parser = not_negative, requires = "wind_from_deg")]
     #[arg(allow_negative_numbers = true)]
     wind_m_s: Option<f64>,
-    /// Where it comes from, clockwise from north.
+    /// Direction the wind comes from, clockwise from north.
     #[arg(long, value_name = "DEG", value_parser = number, requires = "wind_m_s")]
     #[arg(allow_negative_numbers = true)]
     wind_from_deg: Option<f64>,
@@ -74,14 +75,14 @@ pub struct PredictArguments {
     #[arg(long, value_name = "M/S", value_parser = not_negative, requires = "current_towards_deg")]
     #[arg(allow_negative_numbers = true)]
     current_m_s: Option<f64>,
-    /// Where it goes, clockwise from north.
+    /// Direction the current sets towards, clockwise from north.
     #[arg(long, value_name = "DEG", value_parser = number, requires = "current_m_s")]
     #[arg(allow_negative_numbers = true)]
     current_towards_deg: Option<f64>,
-    /// Draw so many models from the posterior of a refined one, for a band of 95 %.
+    /// Number of draws from the posterior of a refined model, for a 95 % prediction interval.
     #[arg(long, value_name = "NUMBER")]
     draws: Option<u32>,
-    /// What these draws follow from.
+    /// Seed of these draws.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "draws")]
     seed: u64,
     #[command(flatten)]

@@ -36,17 +36,16 @@ Examples:
   sistership refine --ship my-ship.yaml --source kvlcc2 --law low-speed --trials trials.yaml --method weak
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
-Without --source, --law and --method, every eligible source is tried under every law that was
-measured, laws without a source, and what the published models of all other ships say. What these
-hold is taken unless something is better on manoeuvres left out at a level of 95 %; else, of what is
-within one standard error of the best there, that which has the least error together with what
-single trials move elsewhere. The most similar ship, refined with the l2 prior, is always among
-them, marked as the reference. With twelve trials and more learned corrections are tried beside what
-is taken, on trials that neither half has seen, and one that is surely better there, no worse at
-other rudder angles and speeds, and no less certain of the standard manoeuvres is taken: its weights
-are written beside the model, m.weights.json for m.yaml.
-The source's coefficients are the prior: with a method named, options go from the source outwards,
-and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
+By default, without --source, --law and --method, models are selected by cross-validation: each
+candidate (a source model, the estimate from particulars, a population of published ships or no
+source, with a law of motion and an estimator) is fitted with whole manoeuvres held out and
+simulated on those. The candidate with the least held-out error is used; candidates that are
+statistically tied are ranked by how much their predictions vary where no trial reaches. The
+selection report lists all of them. With enough trials learned corrections are candidates as well;
+the weights of one are written next to the model (m.weights.json for m.yaml).
+
+With --source, --law or --method, the coefficients of the source are the mean of an l2 prior, whose
+strength is chosen by the error on held-out manoeuvres. Give several manoeuvres of different kinds.";
 
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]
@@ -55,45 +54,45 @@ pub struct RefineArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
-    /// The source: a model's name or file, or `auto`, which it is where absent. Without --law,
-    /// --method, settings and constraints, `auto` tries every eligible source, and none, under
-    /// every law measured; with one of them, it is the most similar eligible ship of the zoo.
+    /// Source model: a name in the zoo, a model file, or `auto` (the default). Alone, `auto`
+    /// compares all eligible sources and laws; with --law, --method, --settings or --constrain it
+    /// is the most similar eligible ship of the zoo.
     #[arg(long, value_name = "MODEL|auto")]
     source: Option<String>,
-    /// The law to fit, such as `low-speed`. With a source of another law, what that says over the
-    /// states of the trials and of its standard manoeuvres becomes the prior; without --source, the
-    /// trials alone make the model.
+    /// Law of motion to fit, such as `low-speed`. With a source model of another law, the
+    /// accelerations of the source become the prior; without --source there is no prior.
     #[arg(long, value_name = "LAW")]
     law: Option<String>,
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// The estimator: `published` (one-step differences), `weak` (integrated over windows),
-    /// `trajectory` (simulated segments) or `cma-es` (simulated segments by a random search, slow).
+    /// Estimator: `published` (one-step differences), `weak` (equations integrated over windows),
+    /// `trajectory` (least squares on simulated segments) or `cma-es` (evolutionary search on
+    /// simulated segments, slow).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
-    /// What the prior is about: `source`, which it is where absent, `mixture`, the source moved
-    /// towards the estimate from particulars, or `population`, what published models of other ships say.
+    /// Prior of the coefficients: `source` (the default), `mixture` (between the source and the
+    /// estimate from particulars) or `population` (published models of other ships).
     #[arg(long, value_name = "NAME", value_parser = prior)]
     prior: Option<Prior>,
-    /// Settings of the refinement (YAML); the flags below win over it.
+    /// Settings of the refinement (YAML); flags override them.
     #[arg(long, value_name = "FILE.yaml")]
     settings: Option<PathBuf>,
-    /// Trials kept out of fit and choice altogether, to be judged on.
+    /// Trials that are used neither for fitting nor for model selection, but for the final errors.
     #[arg(long, value_name = "NAME", num_args = 1..)]
     held_out: Vec<String>,
-    /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship
-    /// lengths at the approach speed, and every five where everything is tried.
+    /// Interval at which simulations of held-out manoeuvres restart from the measured state; the
+    /// default is ten ship lengths at approach speed, five in model selection.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
-    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of its
-    /// length.
+    /// Interval of finite differences of velocities; the default is the time to travel a tenth of a
+    /// ship length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     difference_s: Option<f64>,
-    /// What the refined model must keep to; bounds of single coefficients go into the settings.
+    /// Constraints on the refined model; bounds of single coefficients are given in the settings.
     #[arg(long, value_name = "WHAT", value_enum, num_args = 1..)]
     constrain: Vec<Constrain>,
-    /// No coefficient moves further from the source than so many standard deviations of its prior.
+    /// Largest distance of a coefficient from the source, in standard deviations of the prior.
     #[arg(long, value_name = "SD", value_parser = positive, allow_negative_numbers = true)]
     trust_sd: Option<f64>,
     /// Write the refined model.
@@ -111,13 +110,13 @@ pub struct RefineArguments {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 enum Constrain {
-    /// Damped in drift and yaw, turned by the rudder to its side.
+    /// Damping in sway and yaw, and a rudder that turns the ship to its own side.
     PhysicalSigns,
-    /// Surge terms brake.
+    /// Resistance opposes surge.
     Dissipative,
-    /// It keeps a straight line with the rudder amidships.
+    /// Straight-line stable with the rudder amidships.
     Stable,
-    /// It does not.
+    /// Straight-line unstable with the rudder amidships.
     Unstable,
 }
 

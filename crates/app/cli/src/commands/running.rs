@@ -23,11 +23,11 @@ const MOST_MEMORY_MB: u64 = 1 << 20;
 /// How workers hold their jobs.
 #[derive(Debug, Args)]
 pub struct LeaseArguments {
-    /// Seconds without a sign of life after which a job goes to another worker, 0.5 to 3600
+    /// Seconds without renewal of a lease after which a job passes to another worker, 0.5 to 3600
     /// [default: 15].
     #[arg(long, value_name = "SECONDS", env = "SISTERSHIP_LEASE_S")]
     lease_s: Option<f64>,
-    /// Seconds for which a job under way goes on when the process is told to stop, 0 to 86400
+    /// Seconds that running jobs are given to finish when the process is stopped, 0 to 86400
     /// [default: 20].
     #[arg(long, value_name = "SECONDS", env = "SISTERSHIP_DRAIN_S")]
     drain_s: Option<f64>,

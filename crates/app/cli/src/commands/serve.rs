@@ -41,32 +41,31 @@ pub struct ServeArguments {
     listen: Option<SocketAddr>,
     #[command(flatten)]
     store: StoreArguments,
-    /// File that holds the API key; wins over SISTERSHIP_API_KEY.
+    /// File with the API key; overrides SISTERSHIP_API_KEY.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
     api_key_file: Option<PathBuf>,
-    /// People sign in by name and password (`sistership users`), and nobody is let in without that
-    /// or a key.
+    /// Require everybody to sign in with name and password (`sistership users`) or a key.
     #[arg(long, env = "SISTERSHIP_ACCOUNTS")]
     accounts: bool,
-    /// Jobs worked on at a time, 0 to 64; 0 leaves them to other processes on the same database
-    /// (`sistership work`) [default: 1].
+    /// Number of concurrent jobs, 0 to 64; with 0 jobs are left to other processes on the same
+    /// database (`sistership work`) [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
     workers: Option<u16>,
-    /// Work on no jobs, whatever --workers says.
+    /// Run no jobs; overrides --workers.
     #[arg(long)]
     no_worker: bool,
-    /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is
-    /// refused [default: 256].
+    /// Memory for all requests together, MB, at least 32; requests beyond it wait or are refused
+    /// [default: 256].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_REQUEST_MEMORY_MB")]
     request_memory_mb: Option<u64>,
-    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
+    /// Memory for all jobs together, MB, at least 32 [default: 1024].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
     job_memory_mb: Option<u64>,
-    /// Connections at a time, 16 to 65536 [default: 1024].
+    /// Largest number of connections, 16 to 65536 [default: 1024].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS")]
     connections: Option<u32>,
-    /// Connections of one address at a time; all of them where the clients are behind a proxy
-    /// [default: half of the connections].
+    /// Largest number of connections of one address; raise it behind a proxy [default: half of the
+    /// connections].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
     connections_per_address: Option<u32>,
     /// A proxy, by its address or network such as 10.0.0.0/8, whose word for the address of a client
@@ -76,8 +75,8 @@ pub struct ServeArguments {
     /// The header in which these write it, x-forwarded-for or forwarded [default: x-forwarded-for].
     #[arg(long, value_name = "NAME", env = "SISTERSHIP_FORWARDED_HEADER")]
     forwarded_header: Option<String>,
-    /// Let webhooks lead into private networks, and speak plain http: their addresses are set by
-    /// admins, and a server asks them.
+    /// Allow webhooks to addresses of private networks and over plain http; administrators set the
+    /// addresses.
     #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
     webhooks_private: bool,
     #[command(flatten)]

@@ -30,22 +30,23 @@ standard manoeuvres, the greater of both sides.";
 pub struct ShipsArguments {
     #[command(flatten)]
     store: StoreArguments,
-    /// Of this category only.
+    /// Only ships of this category.
     #[arg(long, value_name = "NAME")]
     category: Option<String>,
-    /// With this tag only.
+    /// Only ships with this tag.
     #[arg(long, value_name = "TAG")]
     tag: Option<String>,
-    /// A range of a particular, either end of which may be left out; may be given several times.
+    /// Range of a particular; either end may be omitted; repeatable.
     #[arg(long, value_name = "NAME:MIN..MAX", value_parser = search::particular)]
     particular: Vec<FactRange>,
-    /// A range of a metric of the champion, in the same way.
+    /// Range of a metric of the champion; either end may be omitted; repeatable.
     #[arg(long, value_name = "NAME:MIN..MAX", value_parser = search::metric)]
     metric: Vec<FactRange>,
-    /// Ships like this one, of its category.
+    /// Only ships of the category of this ship, the most similar first.
     #[arg(long, value_name = "SHIP")]
     similar_to: Option<String>,
-    /// Definition of the characteristic vector; mei-2019 where the ship has every component of it.
+    /// Definition of the characteristic vector; by default mei-2019 if the ship has all of its
+    /// components.
     #[arg(long, value_name = "NAME", value_parser = definition, requires = "similar_to")]
     vector: Option<Definition>,
     /// The most ships to print.

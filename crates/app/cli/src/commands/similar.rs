@@ -35,10 +35,11 @@ that may serve as a source.";
 pub struct SimilarArguments {
     /// The ship: a name in the zoo or the store, or a vessel file.
     ship: String,
-    /// Definition of the characteristic vector; mei-2019 where the ship has every component of it.
+    /// Definition of the characteristic vector; by default mei-2019 if the ship has all of its
+    /// components.
     #[arg(long, value_name = "NAME", value_parser = definition)]
     vector: Option<Definition>,
-    /// Trials of the ship, by which sources are judged too.
+    /// Trials of the ship, with which source models are compared as well.
     #[arg(long, value_name = "TRIALS", num_args = 1..)]
     trials: Vec<PathBuf>,
     #[command(flatten)]

@@ -38,13 +38,15 @@ pub struct SimulateArguments {
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// Start anew from the recorded state every so often; never where absent.
+    /// Interval at which the simulation restarts from the recorded state; by default it never
+    /// restarts.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
     /// Integration method.
     #[arg(long, value_enum, default_value_t)]
     method: Integration,
-    /// Longest step; sampling intervals are cut into equal steps no longer than this.
+    /// Longest integration step; sampling intervals are divided into equal steps no longer than
+    /// this.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true, default_value_t = 0.5)]
     step_s: f64,
     /// Write one CSV per trial of the simulated states at the recorded times into this folder.

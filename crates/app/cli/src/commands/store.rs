@@ -1,4 +1,4 @@
-//! Where the store is: flags and environment that `serve` and `verify` share.
+//! Location of the store: flags and environment variables.
 
 use std::path::{Path, PathBuf};
 
@@ -9,17 +9,18 @@ use sistership_store::{Actor, ObjectsPlace};
 use super::config_file::{self, ConfigFile};
 use crate::failure::Failure;
 
-/// The data folder when nobody says otherwise.
+/// Default data folder.
 const DATA_DIR: &str = "sistership-data";
 
-/// Where the store is, as it is told.
+/// Location of the store, from flags and environment.
 #[derive(Debug, Default, Args)]
 pub struct StoreArguments {
-    /// YAML file of settings, named as the flags are; flags and environment win over it.
+    /// YAML file of settings with the names of the flags; flags and environment variables override
+    /// it.
     #[arg(long, global = true, value_name = "FILE", env = "SISTERSHIP_CONFIG")]
     config: Option<PathBuf>,
-    /// `sqlite://path/file.db` or `postgres://...`; the file sistership.db in the data folder where
-    /// absent.
+    /// Database URL, `sqlite://path/file.db` or `postgres://...`; by default sistership.db in the
+    /// data folder.
     #[arg(
         long,
         global = true,
@@ -28,18 +29,18 @@ pub struct StoreArguments {
         hide_env_values = true
     )]
     database_url: Option<String>,
-    /// Folder of trial samples, of uploads under way, and of the embedded database [default:
+    /// Folder of trial samples, unfinished uploads and the embedded database [default:
     /// sistership-data].
     #[arg(long, global = true, value_name = "DIR", env = "SISTERSHIP_DATA_DIR")]
     data_dir: Option<PathBuf>,
-    /// `s3://bucket/prefix`: where trial samples are instead, with the credentials that
-    /// AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY or the machine's role give.
+    /// Store trial samples in a bucket, `s3://bucket/prefix`, with the credentials in
+    /// AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY or of the role of the machine.
     #[arg(long, global = true, value_name = "URL", env = "SISTERSHIP_OBJECTS_URL")]
     objects_url: Option<String>,
-    /// The S3-compatible server, such as http://host:9000; Amazon's where absent.
+    /// URL of the S3-compatible server, such as http://host:9000; by default Amazon S3.
     #[arg(long, global = true, value_name = "URL", env = "SISTERSHIP_OBJECTS_ENDPOINT")]
     objects_endpoint: Option<String>,
-    /// The bucket's region [default: AWS_REGION, else us-east-1].
+    /// Region of the bucket [default: AWS_REGION, else us-east-1].
     #[arg(long, global = true, value_name = "NAME", env = "SISTERSHIP_OBJECTS_REGION")]
     objects_region: Option<String>,
 }

@@ -24,10 +24,10 @@ Examples:
   sistership users second-person on
 
 Roles are reader, engineer, approver and admin, each with the rights of those before it;
-@ship:NAME and @family:NAME limit one. Without --password-file a password is drawn and printed.
-Servers go on; they notice within a second.";
+@ship:NAME and @family:NAME restrict one. Without --password-file a random password is printed.
+Running servers apply changes within a second.";
 
-/// Users of the servers on a store: add, list, give roles, disable.
+/// Manage the users of a store: add, list, assign roles, disable.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct UsersArguments {
@@ -44,9 +44,9 @@ pub struct UsersArguments {
 enum UsersAction {
     /// Create a user.
     Add {
-        /// The name, for ever.
+        /// User name; it cannot be changed later.
         name: String,
-        /// What people call them; the name where absent.
+        /// Displayed name; by default the user name.
         #[arg(long)]
         title: Option<String>,
         /// A role; repeatable.
@@ -58,15 +58,15 @@ enum UsersAction {
     },
     /// List the users.
     List,
-    /// Give a user these roles instead of all others.
+    /// Replace the roles of a user.
     Roles {
         /// The user.
         name: String,
-        /// The roles; none takes every right.
+        /// The new roles; none removes all rights.
         #[arg(value_name = "ROLE[@ship:NAME|@family:NAME]")]
         roles: Vec<Grant>,
     },
-    /// Let an OpenID provider know a user by this subject, and no other; by none where absent.
+    /// Link a user to one subject of an OpenID provider; without a subject, remove the link.
     Identity {
         /// The user.
         name: String,
@@ -74,7 +74,7 @@ enum UsersAction {
         #[arg(num_args = 2, value_names = ["ISSUER", "SUBJECT"])]
         identity: Vec<String>,
     },
-    /// Set a password, and sign the user out everywhere.
+    /// Set a password and end all sessions of the user.
     Password {
         /// The user.
         name: String,
@@ -82,19 +82,19 @@ enum UsersAction {
         #[arg(long, value_name = "FILE")]
         password_file: Option<PathBuf>,
     },
-    /// Take every right from a user; the name stays taken.
+    /// Remove all rights of a user; the name stays reserved.
     Disable {
         /// The user.
         name: String,
     },
-    /// Give a disabled user the rights again that they had.
+    /// Restore the rights of a disabled user.
     Enable {
         /// The user.
         name: String,
     },
-    /// Whether a version becomes champion only by the word of an approver who has not made it.
+    /// Require that champions are approved by somebody other than their author.
     SecondPerson {
-        /// Shown as it is where absent.
+        /// New value; by default the present value is shown.
         set: Option<Switch>,
     },
 }

@@ -19,23 +19,23 @@ Examples:
   sistership validate --model my-model.yaml --ship my-ship.yaml --trials kept-out.yaml
   sistership validate --model my-model.yaml --ship my-ship.yaml --trials kept-out.yaml --report validation.html
 
-The trials must not be those that the model was made from. Repeats of a manoeuvre tell the
-uncertainty of the data. A quantity that is not validated is a result: the exit status is 0.";
+The trials must not be those that the model was fitted on. Repeated manoeuvres give the uncertainty
+of the data. The exit status is 0 also when a quantity is not validated.";
 
-/// Validate a model by its ship's trials: comparison error, validation uncertainty, verdict.
+/// Validate a model against trials of its ship by ITTC 7.5-02-06-03.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ValidateArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
-    /// The ship, whose published free-running trials count: a name in the zoo or a vessel file.
+    /// The ship, with its published free-running trials: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
     /// Trials that the model was not fitted on: manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1..)]
     trials: Vec<PathBuf>,
-    /// How many models are drawn from the posterior of a refined one.
+    /// Number of draws from the posterior of a refined model.
     #[arg(long, value_name = "DRAWS", default_value_t = 40)]
     draws: usize,
     /// Write the report as a page.

@@ -19,7 +19,7 @@ Examples:
 
 Exit status 1 when the bytes differ or the version cannot be derived.";
 
-/// Derive a version again from its recipe and compare the bytes.
+/// Repeat the recorded recipe of a version and compare the bytes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct VerifyArguments {

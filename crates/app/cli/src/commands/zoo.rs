@@ -25,7 +25,7 @@ Examples:
   sistership zoo cite kvlcc2 --json
   sistership manoeuvre --zoo zoo --model my-ship --all";
 
-/// The zoo: what its models are worth, and a ship that is to join it.
+/// List the models of the zoo with their validation status, or check a ship before it is added.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ZooArguments {
@@ -38,27 +38,29 @@ pub struct ZooArguments {
 
 #[derive(Debug, Subcommand)]
 enum ZooAction {
-    /// Every model with its law, its status and the published trials that it is held against.
+    /// List every model with its law, its validation status and the published trials it was
+    /// compared with.
     List {
-        /// Ships; all where none is named.
+        /// Ships; all by default.
         #[arg(value_name = "SHIP")]
         ships: Vec<String>,
     },
-    /// Check a ship's file: schema, units, particulars, physics, published trials; and say what a
-    /// reviewer should look at.
+    /// Check a vessel file: schema, units, particulars, physics, published trials; list what a
+    /// reviewer should examine.
     Add {
         /// The vessel file.
         file: PathBuf,
-        /// Copy it into `DIR/vessels` where nothing is refused.
+        /// Copy it to `DIR/vessels` if nothing is refused.
         #[arg(long, value_name = "DIR")]
         into: Option<PathBuf>,
-        /// Write the ship's page, in Markdown, whether it is taken or not.
+        /// Write a page about the ship (Markdown), accepted or not.
         #[arg(long, value_name = "FILE")]
         page: Option<PathBuf>,
     },
-    /// What a ship's figures are taken from and on what terms; with `--json` as schema.org Dataset.
+    /// Cite the sources of the data of a ship and their licences; with `--json` as schema.org
+    /// Dataset.
     Cite {
-        /// Ships, or vessel files; all of the zoo where none is named.
+        /// Ships or vessel files; all ships of the zoo by default.
         #[arg(value_name = "SHIP")]
         ships: Vec<String>,
     },

@@ -85,7 +85,7 @@ struct IdentitiesRequest {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct UserRequest {
-    /// The name, for ever.
+    /// User name; it cannot be changed later.
     #[schema(inline)]
     name: UserName,
     /// What people call them; the name where absent.

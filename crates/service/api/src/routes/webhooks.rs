@@ -191,7 +191,7 @@ async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Webhoo
     Ok(Json(WebhookView::of(&app, webhook).await?))
 }
 
-/// End a webhook, for ever
+/// Delete a webhook permanently
 #[utoipa::path(delete, path = "/v1/webhooks/{id}", tag = "webhooks",
     params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
 async fn end(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<WebhookView>> {

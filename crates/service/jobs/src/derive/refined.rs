@@ -128,7 +128,7 @@ pub fn refined_document(
         },
         progress,
     )?;
-    if !progress(0.97, "learning what the trials leave open") {
+    if !progress(0.97, "estimating the noise model") {
         return Err(RefineError::Cancelled.into());
     }
     let refinement = with_uncertainty(refinement, law, &ingredients.library.effects, &trials);

@@ -64,7 +64,7 @@ struct ShipPage<'a> {
 }
 
 impl ShipPage<'_> {
-    /// Whether a version is what the ship is asked for.
+    /// Whether a version is the champion, the version in use.
     fn is_champion(&self, number: &i64) -> bool {
         self.of.condition.version == Some(*number)
     }
