@@ -2,6 +2,7 @@
 //! their dependencies, circles between the modules of a crate, and the language of the sources.
 
 mod circles;
+mod language;
 mod modules;
 
 use std::path::{Path, PathBuf};
@@ -170,4 +171,20 @@ fn doc_comments_have_no_code_that_nobody_runs() {
             assert!(!text.lines().any(fenced), "{}: move the code into a test", path.display());
         }
     }
+}
+
+#[test]
+fn the_language_does_not_get_worse() {
+    let mut language = language::Language::default();
+    for one in crates() {
+        for (path, text) in modules::texts(&one.folder.join("src")) {
+            language.add(&path, &text);
+        }
+    }
+    let rows = language.rows();
+    for (name, value, bound) in rows {
+        println!("{name:<48} {value:8.2} of at most {bound}");
+    }
+    let worse: Vec<_> = rows.iter().filter(|(_, value, bound)| value > bound).collect();
+    assert!(worse.is_empty(), "worse than before: {worse:?}");
 }
