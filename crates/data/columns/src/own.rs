@@ -15,6 +15,8 @@ const OTHER_UNIT: f64 = 9.0;
 /// Log odds lost with a reversed sign, and of a rudder's, which is common.
 const REVERSED: f64 = 4.5;
 const REVERSED_RUDDER: f64 = 3.6;
+/// The same of a column without a name, whose sign nobody has stated.
+const UNNAMED_RUDDER: f64 = 0.7;
 /// Standard deviation, in natural logarithms, with which ranges fade.
 const FADE: f64 = 0.45;
 /// Log odds that a range can take.
@@ -111,6 +113,7 @@ impl OwnEvidence {
         match (self.header.is_port_positive, what.is_reversed) {
             (true, false) => -OTHER_UNIT,
             (true, true) | (false, false) => 0.0,
+            (false, true) if is_rudder && self.is_blank => -UNNAMED_RUDDER,
             (false, true) if is_rudder => -REVERSED_RUDDER,
             (false, true) => -REVERSED,
         }

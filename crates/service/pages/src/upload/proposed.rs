@@ -4,7 +4,7 @@ use sistership_model::manifest::ColumnMapping;
 use sistership_trials::{Derivable, Guess, ManifestFile};
 
 /// Names of what a column may be, as manifests have them.
-pub(super) const TARGETS: [&str; 26] = [
+pub(super) const TARGETS: [&str; 28] = [
     "t",
     "x",
     "y",
