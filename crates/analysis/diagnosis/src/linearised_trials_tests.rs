@@ -38,7 +38,7 @@ fn a_channel_of_which_no_noise_can_be_told_is_refused_with_its_trial() {
         LinearisedTrials::new(&model, Columns::default(), &trials, Some(0.5))
             .map(|all| all.noise.keys().copied().collect::<Vec<Channel>>())
     };
-    assert_eq!(made(40).unwrap(), [Channel::U, Channel::V, Channel::R, Channel::Psi]);
+    assert_eq!(made(40).unwrap(), [Channel::Psi, Channel::U, Channel::V, Channel::R]);
     let refusal = made(6).unwrap_err().to_string();
     assert!(refusal.starts_with("trial `straight`: no noise is known of the channel"), "{refusal}");
     assert!(refusal.contains("seven readings"), "{refusal}");

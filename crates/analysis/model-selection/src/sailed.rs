@@ -8,6 +8,7 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Steering;
 use sistership_priors::transfer::ready;
+use sistership_propulsion::{PropulsionFault, check, check_turning};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, zigzags};
 use sistership_simulation::recorded::{Recorded, ReplaySettings, replay_all};
@@ -35,6 +36,13 @@ pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<St
     stopped
         .map(|(helm, stopped)| format!("does not sail {}: {stopped}", helm.name))
         .or_else(|| unsailed_zigzag(&ship, &model.steering))
+        .or_else(|| propulsion_fault(&ship))
+}
+
+/// What a ship does wrong with her propeller stopped or reversed, straight ahead or out of a turn.
+fn propulsion_fault(ship: &Ship) -> Option<String> {
+    let fault = check(ship).and_then(|()| check_turning(ship)).err()?;
+    (fault != PropulsionFault::NoRevolutions).then(|| fault.to_string())
 }
 
 /// Zigzags to both sides, from small angles to the gear's limit.

@@ -68,7 +68,7 @@ struct Motion {
     arrived: fn(f64) -> bool,
 }
 
-const MOTIONS: [Motion; 6] = [
+const STRAIGHT: [Motion; 4] = [
     Motion {
         name: "propeller stopped",
         start: 1.0,
@@ -97,6 +97,9 @@ const MOTIONS: [Motion; 6] = [
         turning: false,
         arrived: |u| u > CHECK.ahead[0],
     },
+];
+
+const TURNING: [Motion; 2] = [
     Motion {
         name: "propeller stopped in a turn",
         start: 1.0,
@@ -114,17 +117,29 @@ const MOTIONS: [Motion; 6] = [
 ];
 
 /// Checks that a ship comes to rest with the propeller stopped, stops and goes astern with it
-/// reversed, and gathers way from rest.
+/// reversed, and gathers way from rest, all straight ahead.
 ///
 /// # Errors
-/// What it does instead.
+/// The first motion that ends otherwise.
 pub fn check(ship: &Ship) -> Result<(), PropulsionFault> {
+    check_motions(ship, &STRAIGHT)
+}
+
+/// Checks that a ship comes to rest and stops out of a turn as well.
+///
+/// # Errors
+/// The first motion that ends otherwise.
+pub fn check_turning(ship: &Ship) -> Result<(), PropulsionFault> {
+    check_motions(ship, &TURNING)
+}
+
+fn check_motions(ship: &Ship, motions: &[Motion]) -> Result<(), PropulsionFault> {
     let speed = ship.approach_speed_m_s();
     if !ship.has_propeller() || ship.revolutions_at(speed) <= 0.0 {
         return Err(PropulsionFault::NoRevolutions);
     }
     let longest_s = CHECK.patience * stopping_time_s(ship)?;
-    MOTIONS.iter().try_for_each(|motion| sailed(ship, motion, longest_s))
+    motions.iter().try_for_each(|motion| sailed(ship, motion, longest_s))
 }
 
 /// The speed over the deceleration with the propeller stopped, s.

@@ -21,22 +21,19 @@ pub struct Context<'a> {
 
 impl Context<'_> {
     /// The model as it is where its law has a propeller, or the trials stopped it, and it stops and
-    /// goes astern; otherwise with a surge balance. Both with the range of the trials.
-    ///
-    /// # Errors
-    /// What it does with the propeller stopped or reversed all the same.
-    pub fn with_propulsion(&self, model: Model) -> Result<Model, PropulsionFault> {
+    /// goes astern; otherwise with a surge balance, where its revolutions are known. Both with the
+    /// range of the trials.
+    pub fn with_propulsion(&self, model: Model) -> Model {
         let model = self.with_range(model);
         let least = model.validity.as_ref().and_then(|region| region.ranges.get("n"));
         let is_told = !needs_balance(self.law) || least.is_some_and(|[least, _]| *least <= 0.0);
-        let own = if is_told { self.fault(&model) } else { Some(PropulsionFault::NoRevolutions) };
-        let Some(own) = own else { return Ok(model) };
-        let model = self.with_balance(model);
-        match (model.propulsion.is_some(), own) {
-            (true, _) => self.fault(&model).map_or(Ok(model), Err),
-            (false, PropulsionFault::NoRevolutions) => Ok(model),
-            (false, own) => Err(own),
+        if is_told && self.fault(&model).is_none() {
+            return model;
         }
+        let balanced = self.with_balance(model.clone());
+        // A propeller of the law's own is kept where a balance would not mend it.
+        let keeps = !needs_balance(self.law) && self.fault(&balanced).is_some();
+        if keeps || balanced.propulsion.is_none() { model } else { balanced }
     }
 
     /// The model with its surge balance, if it has one, by its posterior.
@@ -55,8 +52,9 @@ impl Context<'_> {
         self.with_range(model)
     }
 
-    /// What is wrong with a model's propulsion; what cannot sail at all is refused elsewhere.
-    fn fault(&self, model: &Model) -> Option<PropulsionFault> {
+    /// What a model does wrong with the propeller stopped or reversed; a model that cannot be
+    /// simulated at all is refused elsewhere.
+    pub fn fault(&self, model: &Model) -> Option<PropulsionFault> {
         Ship::new(model, self.law).ok().and_then(|ship| check(&ship).err())
     }
 

@@ -9,5 +9,5 @@ mod slope;
 mod thresholds;
 
 pub use balance::{Evidence, balance, needs_balance};
-pub use check::{PropulsionFault, check};
+pub use check::{PropulsionFault, check, check_turning};
 pub use context::{Context, words};

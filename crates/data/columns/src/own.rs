@@ -114,6 +114,8 @@ impl OwnEvidence {
             (true, false) => -OTHER_UNIT,
             (true, true) | (false, false) => 0.0,
             (false, true) if is_rudder && self.is_blank => -UNNAMED_RUDDER,
+            // The rudders of a ship count the same way: each of two bears half of it.
+            (false, true) if is_rudder && what.role != Role::Delta => -0.5 * REVERSED_RUDDER,
             (false, true) if is_rudder => -REVERSED_RUDDER,
             (false, true) => -REVERSED,
         }

@@ -40,7 +40,7 @@ impl Signals {
     pub(crate) fn new(recording: &RecordingSample, time: Option<usize>) -> Self {
         let columns = &recording.columns;
         let summaries: Vec<Summary> =
-            columns.iter().map(|column| Summary::new(&column.values)).collect();
+            columns.iter().map(|column| Summary::new(&column.values, &recording.breaks)).collect();
         let continuous: Vec<Vec<f64>> = columns
             .iter()
             .zip(&summaries)

@@ -43,13 +43,15 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(values: &[f64]) -> Self {
-        let mut sorted: Vec<f64> =
-            values.iter().copied().filter(|value| value.is_finite()).collect();
+    /// Summary of the values of one recording, or of several one after the other: no step leads
+    /// from before a break to behind it, since clocks begin anew there.
+    pub(crate) fn new(values: &[f64], breaks: &[usize]) -> Self {
+        let finite = |value: &f64| value.is_finite();
+        let mut sorted: Vec<f64> = values.iter().copied().filter(finite).collect();
         if sorted.is_empty() {
             return Self::default();
         }
-        let steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let steps = steps_within(values, breaks);
         let period = period(&sorted);
         let first = sorted[0];
         let swings = swings(&sorted);
@@ -90,6 +92,20 @@ impl Summary {
         // One step in fifty may be out of order: that is a fault of the file.
         self.count > 1 && self.forward > 0.98 && self.step > 0.0 && self.still < 0.9
     }
+}
+
+/// Steps between finite values that follow each other, none across a break.
+fn steps_within(values: &[f64], breaks: &[usize]) -> Vec<f64> {
+    let ends = breaks.iter().copied().chain([values.len()]);
+    let mut steps = Vec::with_capacity(values.len());
+    let mut from = 0;
+    for end in ends.map(|end| end.min(values.len())) {
+        let part = values.get(from..end).unwrap_or_default();
+        let part: Vec<f64> = part.iter().copied().filter(|value| value.is_finite()).collect();
+        steps.extend(part.windows(2).map(|pair| pair[1] - pair[0]));
+        from = end;
+    }
+    steps
 }
 
 pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
@@ -216,13 +232,13 @@ mod tests {
     #[test]
     fn directions_clocks_and_counters_are_seen() {
         let heading: Vec<f64> = (0..500).map(|k| f64::from(k) * 3.0 % 360.0).collect();
-        let summary = Summary::new(&heading);
+        let summary = Summary::new(&heading, &[]);
         assert_eq!(summary.period.map(|(_, unit)| unit), Some("deg"));
         assert!((continuous(&heading, &summary)[499] - 1497.0).abs() < 1e-9);
         let clock: Vec<f64> = (0..500).map(|k| 2.7e6 + 100.0 * f64::from(k)).collect();
-        assert!(Summary::new(&clock).is_clock() && !Summary::new(&clock).is_counter);
-        assert!(Summary::new(&(0..9).map(f64::from).collect::<Vec<_>>()).is_counter);
-        assert!(Summary::new(&heading[..100]).period.is_none());
+        assert!(Summary::new(&clock, &[]).is_clock() && !Summary::new(&clock, &[]).is_counter);
+        assert!(Summary::new(&(0..9).map(f64::from).collect::<Vec<_>>(), &[]).is_counter);
+        assert!(Summary::new(&heading[..100], &[]).period.is_none());
     }
 
     #[test]
@@ -231,7 +247,14 @@ mod tests {
         (heading[10], heading[11]) = (180.0, 120.0);
         let mut long = heading.clone();
         long.extend((0..300).map(|k| (190.0 + f64::from(k)) % 360.0));
-        let signal = continuous(&long, &Summary::new(&long));
+        let signal = continuous(&long, &Summary::new(&long, &[]));
         assert!((signal[150] - 500.0).abs() < 1e-9, "{}", signal[150]);
+    }
+
+    #[test]
+    fn a_clock_that_begins_anew_in_each_file_is_a_clock() {
+        let clock = [0.0, 1.0, 0.0, 1.0];
+        assert!(!Summary::new(&clock, &[]).is_clock());
+        assert!(Summary::new(&clock, &[2]).is_clock());
     }
 }

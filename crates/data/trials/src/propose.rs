@@ -118,7 +118,8 @@ fn common_folder(files: &[&Path]) -> PathBuf {
 
 /// A path as it is seen from a folder, with `/` between its parts.
 fn relative(path: &Path, folder: &Path) -> String {
-    let plain = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    let here = |path: &Path| if path.as_os_str().is_empty() { ".".into() } else { path.to_owned() };
+    let plain = |path: &Path| std::path::absolute(here(path)).unwrap_or_else(|_| path.to_owned());
     let (path, folder) = (plain(path), plain(folder));
     let same = path.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     let up = folder.components().skip(same).filter(|part| *part != Component::CurDir);

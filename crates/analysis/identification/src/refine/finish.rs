@@ -29,8 +29,6 @@ enum CandidateRefusal {
     Constraints(LimitError),
     #[error("fails a standard manoeuvre that the source sails: {0}")]
     Manoeuvre(String),
-    #[error(transparent)]
-    Propulsion(#[from] PropulsionFault),
 }
 
 /// Why trials alone make a model or none.
@@ -90,8 +88,8 @@ pub(super) fn finish(
                 return take(problem, (candidates, best), (fitted, variants), before, progress);
             }
             Err(refusal) => {
-                (candidates[best].option.reason, candidates[best].option.error) =
-                    (Some(refusal.to_string()), None)
+                let option = &mut candidates[best].option;
+                (option.reason, option.error) = (Some(refusal.to_string()), None);
             }
         }
     }
@@ -125,10 +123,8 @@ fn sailed(
         fitted => fitted?,
     };
     let model = context(problem).with_propulsion(model_of(problem, fitted.as_ref()));
-    Ok(model.map_err(CandidateRefusal::from).map(|model| {
-        let manoeuvres = standard_manoeuvres(&model, problem.law);
-        FittedCandidate { fit: fitted, model, manoeuvres }
-    }))
+    let manoeuvres = standard_manoeuvres(&model, problem.law);
+    Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
 }
 
 /// What a candidate gives, where it sails what the source sails.
@@ -176,13 +172,17 @@ fn take(
         let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
         widen(&mut model, fitted.as_mut(), factor);
     }
-    let model = context(problem).with_posterior(model);
+    let propulsion = context(problem);
+    let model = propulsion.with_posterior(model);
+    let fault = propulsion.fault(&model).filter(|fault| *fault != PropulsionFault::NoRevolutions);
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;
     let bands =
         bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
     let manoeuvres = Manoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
-    refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
+    let propulsion_fault = fault.map(|fault| fault.to_string());
+    let chosen = ChosenCandidate { candidates, best, model, fitted, propulsion_fault };
+    refinement(problem, chosen, manoeuvres)
 }
 
 /// Makes every standard error so many times as large.

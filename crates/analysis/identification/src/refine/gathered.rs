@@ -20,6 +20,8 @@ pub(super) struct ChosenCandidate {
     pub best: usize,
     pub model: Model,
     pub fitted: Option<Fit>,
+    /// What the model does wrong with the propeller stopped or reversed.
+    pub propulsion_fault: Option<String>,
 }
 
 /// The refinement by what was taken.
@@ -31,7 +33,7 @@ pub(super) fn refinement(
     taken: ChosenCandidate,
     manoeuvres: Manoeuvres,
 ) -> Result<Refinement, RefineError> {
-    let ChosenCandidate { candidates, best, model, fitted } = taken;
+    let ChosenCandidate { candidates, best, model, fitted, propulsion_fault } = taken;
     let held_out = held_out(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
     let (condition_number, collinear_groups) = fitted
@@ -39,6 +41,8 @@ pub(super) fn refinement(
         .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
     let mut remarks = remarks(problem, best, &lambdas);
     remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::words));
+    remarks
+        .extend(propulsion_fault.map(|fault| format!("WITHOUT propulsion like a ship's: {fault}")));
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }

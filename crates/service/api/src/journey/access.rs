@@ -311,6 +311,7 @@ async fn one_client_behind_a_proxy_does_not_shut_out_others() {
         let body = serde_urlencoded::to_string(form).unwrap();
         let post = harness.client.post(harness.url("/sign-in")).body(body);
         let post = post.header("content-type", "application/x-www-form-urlencoded");
+        let post = post.header("origin", harness.url(""));
         post.header("x-forwarded-for", from).send().await.unwrap().status()
     };
     for guess in 0..5 {

@@ -43,7 +43,7 @@ pub fn choose(shell: &Shell, ship: &str) -> Result<String> {
 struct MappingPage<'a> {
     shell: &'a Shell,
     of: &'a Proposed,
-    targets: [&'static str; 26],
+    targets: [&'static str; 28],
     units: [&'static str; 17],
     columns: Vec<ColumnRow<'a>>,
     previews: &'a [Preview],
