@@ -92,6 +92,9 @@ fn a_branch_is_taken_where_a_rudder_stalls_and_not_where_the_law_holds() {
         let (alone, size) = (both.foundation(), ship.dimensions());
         let [alone, with] = [&alone, &both].map(|model| error(&zoo, model, size, &unseen));
         println!("law alone {alone:.5}, as written {with:.5}: {}", said["ladder"]["branch"]);
+        let lines = said["ladder"]["lines"].as_array().expect("what was tried");
+        assert!(lines.iter().any(|line| line["source"] == "population"), "of twelve trials, too");
+        assert_eq!(lines.iter().filter(|line| line["reference"] == true).count(), 1);
         assert_eq!(both.branch.is_some(), is_taken, "{}", said["ladder"]["branch"]);
         assert!(!is_taken || with < alone, "{with} against {alone}");
     }

@@ -106,7 +106,8 @@ async fn does_not_hold(server: &TestServer) {
         (&json!(1), &json!(2)),
         "{condition}"
     );
-    assert_eq!(condition["since"], condition["found_by"], "one diagnosis so far");
+    assert_eq!(condition["since"]["trial"], condition["trials"][0], "from the first trial on");
+    assert_eq!(condition["against"], condition["trials"], "the effect is in all of them");
     let report = server.get(condition["found_by"]["report"].as_str().expect("a link")).await;
     assert_eq!(report["format"], "sistership-diagnosis/1", "{report}");
     let made = server.get(condition["with_effects"]["at"].as_str().expect("a link")).await;
@@ -231,10 +232,11 @@ async fn asked_for(server: &TestServer) {
     );
     let condition = condition(server).await;
     assert_eq!(condition["model"], "holds", "{condition}");
-    assert_ne!(
-        condition["since"], condition["found_by"],
-        "it has held since the diagnosis that it came of"
+    assert_eq!(
+        condition["since"]["trial"], condition["trials"][0],
+        "it has held since the trials that it came of"
     );
+    assert_eq!(condition["trials"].as_array().map(Vec::len), Some(5), "{condition}");
     assert!(page(server, &format!("/ships/{NAME}")).await.contains("Its model holds"));
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
     assert_eq!(versions["items"].as_array().map(Vec::len), Some(2), "nothing found, no version");
@@ -285,6 +287,44 @@ async fn sound_trials(server: TestServer) {
     assert_eq!(condition(&server).await["model"], "holds");
     let candidate = server.get(&format!("/v1/models/{NAME}/aliases/candidate")).await;
     assert_eq!(candidate["status"], 404, "no version, no candidate");
+}
+
+/// Uploads one trial and waits until it is diagnosed; returns its id and the job's result.
+async fn diagnosed(server: &TestServer, trial: Trial) -> (Value, Value) {
+    let uploaded = upload(server, &[trial], "").await;
+    let done = server.finished(uploaded["diagnosis"].as_str().expect("a job follows")).await;
+    assert_eq!(done["state"], "succeeded", "{done}");
+    (uploaded["trials"][0]["id"].clone(), done["result"].clone())
+}
+
+/// Trials of a damaged ship uploaded one by one, then a clean one: that alone is complete, and does
+/// not clear the others.
+async fn one_by_one(server: TestServer) {
+    create(&server).await;
+    let (first, alone) = diagnosed(&server, trials().remove(0)).await;
+    assert_eq!(alone["verdict_of_new"], Value::Null, "nothing came before it: {alone}");
+    for trial in trials().split_off(1) {
+        let (_, both) = diagnosed(&server, trial).await;
+        assert_ne!(both["verdict_of_new"], "complete", "{both}");
+    }
+    let (last, both) = diagnosed(&server, sound().remove(0)).await;
+    assert_eq!(both["verdict_of_new"], "complete", "{both}");
+    assert_eq!(both["trials"].as_array().map(Vec::len), Some(4), "the whole: {both}");
+    let condition = condition(&server).await;
+    assert_eq!(condition["model"], "does_not_hold", "{condition}");
+    assert_eq!(condition["since"]["trial"], first, "{condition}");
+    assert_eq!(condition["diagnoses"].as_array().map(Vec::len), Some(5), "{condition}");
+    assert_eq!(condition["trials"][3], last, "{condition}");
+    let name = condition["since"]["name"].as_str().expect("a name");
+    let says = format!("does not hold since the trial {name}");
+    assert!(condition["sentence"].as_str().is_some_and(|text| text.contains(&says)), "{condition}");
+    assert!(page(&server, &format!("/ships/{NAME}")).await.contains(&says));
+    assert!(page(&server, "/").await.contains("does not hold"), "the fleet says the same");
+}
+
+#[tokio::test]
+async fn one_clean_trial_does_not_clear_three_of_a_damaged_ship() {
+    one_by_one(TestServer::sqlite().await).await;
 }
 
 #[tokio::test]

@@ -3,6 +3,7 @@
 
 mod across_laws;
 mod foreign;
+mod propulsion;
 mod recovery;
 mod scaling;
 mod stopping;

@@ -7,7 +7,6 @@ use sistership_model::Model;
 use sistership_model::effect::EffectFile;
 use sistership_model::hybrid::HybridFile;
 use sistership_model::law::LawFile;
-use sistership_model::manifest::Manifest;
 use sistership_model::vessel::VesselFile;
 
 fn check<T: JsonSchema>(name: &str) {
@@ -35,5 +34,4 @@ fn schemas_are_those_of_the_types() {
     check::<HybridFile>("hybrid");
     check::<VesselFile>("vessel");
     check::<Model>("model");
-    check::<Manifest>("trials");
 }

@@ -56,7 +56,7 @@ fn refined(source: &Model, blocks: &Blocks, trials: &[Trial], rng: &mut ChaCha8R
     let (training, validation) = split(&tables, rng);
     let fold =
         Fold::new(blocks, source, &moments(blocks, &training), &moments(blocks, &validation));
-    let choices = tune(&[fold], &RANGE, LAMBDAS);
+    let choices = tune(&[fold], &RANGE, LAMBDAS).expect("finite errors");
     let fit = fit(blocks, &moments(blocks, &tables), source, &choices);
     let mut model = source.clone();
     model.coefficients.extend(
@@ -89,9 +89,9 @@ pub fn noisy(track: &Trajectory, index: usize, deviation: f64, rng: &mut ChaCha8
 
 /// One table for each regression over the samples of all trials.
 fn samples(blocks: &Blocks, trials: &[Trial]) -> Vec<Table> {
-    let tables = trials
-        .iter()
-        .map(|trial| trial_tables(blocks, trial, None).expect("every channel that the law needs"));
+    let tables = trials.iter().map(|trial| {
+        trial_tables(blocks, trial, None, &|_, _| 0.0).expect("every channel that the law needs")
+    });
     let append = |mut all: Vec<Table>, more: Vec<Table>| {
         all.iter_mut()
             .flatten()

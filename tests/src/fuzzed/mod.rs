@@ -22,10 +22,9 @@ fn text(data: &[u8]) -> Option<&str> {
 
 /// Bounds small enough that an input of a few kB cannot ask for more.
 fn small() -> Mapping {
-    Mapping {
-        limits: Limits { rows: 10_000, columns: 50, line_bytes: 4096, ..Limits::default() },
-        ..Mapping::canonical()
-    }
+    let mut mapping = Mapping::canonical();
+    mapping.limits = Limits { rows: 10_000, columns: 50, line_bytes: 4096, ..Limits::default() };
+    mapping
 }
 
 /// What holds of every trial that is accepted: as many samples in each channel as in time, all

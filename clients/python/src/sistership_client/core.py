@@ -35,7 +35,7 @@ ComparedCoefficient = TypedDict('ComparedCoefficient', {'name': 'str', 'values':
 ComparedFigure = TypedDict('ComparedFigure', {'name': 'str', 'unit': 'str', 'values': 'List[Union[FigureValue, None]]'}, total=True)
 ComparedTrial = TypedDict('ComparedTrial', {'duration_s': 'float', 'errors': 'List[TrialError]', 'samples': 'int', 'trial': 'str'}, total=True)
 Comparison = TypedDict('Comparison', {'coefficients': 'List[ComparedCoefficient]', 'figures': 'List[ComparedFigure]', 'models': 'List[Column]', 'trials': 'List[ComparedTrial]'}, total=True)
-Condition = TypedDict('Condition', {'effects': 'List[str]', 'found_by': 'Union[FoundBy, None]', 'model': 'Standing', 'sentence': 'str', 'since': 'Union[FoundBy, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[MadeVersion, None]'}, total=False)
+Condition = TypedDict('Condition', {'against': 'List[str]', 'diagnoses': 'List[WeighedDiagnosis]', 'drift': 'Union[RecentDrift, None]', 'effects': 'List[str]', 'found_by': 'Union[FoundBy, None]', 'model': 'Standing', 'sentence': 'str', 'since': 'Union[SinceTrial, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[MadeVersion, None]'}, total=False)
 Constraints = TypedDict('Constraints', {'bounds': 'Dict[str, Bound]', 'dissipative': 'bool', 'physical_signs': 'bool', 'straight_line': 'Union[StraightLine, None]', 'trust_sd': 'Union[float, None]'}, total=False)
 CurrentRequest = TypedDict('CurrentRequest', {'speed_m_s': 'float', 'towards_rad': 'float'}, total=True)
 DeliveryView = TypedDict('DeliveryView', {'answer': 'Union[str, None]', 'attempts': 'int', 'body': 'Dict[str, Any]', 'created_us': 'int', 'delivered_us': 'Union[int, None]', 'due_us': 'Union[int, None]', 'event': 'str', 'id': 'str'}, total=False)
@@ -98,7 +98,7 @@ Me = TypedDict('Me', {'kind': 'str', 'name': 'str', 'roles': 'List[RoleView]'}, 
 MemberDrift = TypedDict('MemberDrift', {'condition': 'Condition', 'drift': 'Union[Drift, None]', 'ship': 'str'}, total=False)
 MemberView = TypedDict('MemberView', {'added_us': 'int', 'champion': 'Union[int, None]', 'method': 'Union[str, None]', 'ship': 'str'}, total=False)
 Mirror = Any  # What a parameter becomes when the ship is mirrored port to starboard.
-Model = TypedDict('Model', {'branch': 'Union[Branch, None]', 'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
+Model = TypedDict('Model', {'branch': 'Union[Branch, None]', 'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'propulsion': 'Union[Propulsion, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
 ModelKind = Any  # The word `model`.
 NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]', 'name': 'str', 'title': 'Union[str, None]'}, total=False)
 NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
@@ -121,13 +121,15 @@ PriorView = TypedDict('PriorView', {'created_us': 'int', 'document': 'Dict[str, 
 Problem = TypedDict('Problem', {'detail': 'str', 'errors': 'List[Fault]', 'instance': 'Union[str, None]', 'status': 'int', 'title': 'str', 'type': 'str'}, total=False)
 Promoted = TypedDict('Promoted', {'champions': 'int'}, total=True)
 Promotion = TypedDict('Promotion', {'actor': 'str', 'reason': 'str', 'ships': 'Union[List[str], None]'}, total=False)
+Propulsion = TypedDict('Propulsion', {'parameters': 'Dict[str, Quantity]'}, total=True)
 PublishedModelFile = TypedDict('PublishedModelFile', {'coefficients': 'Section', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Section', 'revolutions_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering'}, total=False)
 PublishedTurn = TypedDict('PublishedTurn', {'advance': 'Union[float, None]', 'both_sides': 'bool', 'rudder_deg': 'float', 'steady_radius': 'Union[float, None]', 'tactical_diameter': 'Union[float, None]', 'transfer': 'Union[float, None]', 'uncertainty': 'float'}, total=False)
 PublishedZigzag = TypedDict('PublishedZigzag', {'both_sides': 'bool', 'first_overshoot_deg': 'Union[float, None]', 'rudder_deg': 'float', 'second_overshoot_deg': 'Union[float, None]', 'switch_deg': 'float', 'uncertainty_deg': 'float'}, total=False)
 Quantity = TypedDict('Quantity', {'note': 'Union[str, None]', 'source': 'str', 'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
 QuotedVectorFile = TypedDict('QuotedVectorFile', {'note': 'Union[str, None]', 'source': 'str', 'values': 'Dict[str, Written]'}, total=False)
+RecentDrift = TypedDict('RecentDrift', {'axis': 'str', 'ratio': 'float', 'since': 'Union[str, None]'}, total=False)
 RefinementRequest = TypedDict('RefinementRequest', {'law': 'Union[str, None]', 'settings': 'RefinementSettings', 'ship': 'str', 'source': 'Union[str, None]', 'trials': 'Union[List[str], None]'}, total=False)
-RefinementSettings = TypedDict('RefinementSettings', {'bands': 'Sampling', 'calibration_samples': 'Union[int, None]', 'cma_es': 'Union[CmaEs, None]', 'constraints': 'Constraints', 'difference_s': 'Union[float, None]', 'economical': 'bool', 'expected_rates': 'bool', 'families': 'List[TermFamily]', 'folds': 'int', 'folds_pooled': 'bool', 'held_out': 'List[str]', 'hop_s': 'Union[float, None]', 'hydrostatic_roll': 'bool', 'in_parts': 'bool', 'lambda_count': 'int', 'method': 'Estimator', 'mixture_positions': 'List[float]', 'part_s': 'Union[float, None]', 'plane_source': 'bool', 'posterior_by_folds': 'bool', 'prior': 'Prior', 'ranges': 'List[TuningRange]', 'reading_interval': 'bool', 'recorded_revolutions': 'bool', 'recorded_terms': 'bool', 'regressions_sha256': 'Union[str, None]', 'residual_s': 'Union[float, None]', 'restart_s': 'Union[float, None]', 'roll_strength': 'Union[float, None]', 'segment_s': 'Union[float, None]', 'smoothing_s': 'Union[float, None]', 'steering_above_noise': 'bool', 'steering_from_trials': 'bool', 'step_s': 'Union[float, None]', 'strengths': 'List[float]', 'window_s': 'Union[float, None]'}, total=False)
+RefinementSettings = TypedDict('RefinementSettings', {'bands': 'Sampling', 'calibration_samples': 'Union[int, None]', 'cma_es': 'Union[CmaEs, None]', 'constraints': 'Constraints', 'difference_s': 'Union[float, None]', 'economical': 'bool', 'expected_rates': 'bool', 'families': 'List[TermFamily]', 'folds': 'int', 'folds_pooled': 'bool', 'held_out': 'List[str]', 'hop_s': 'Union[float, None]', 'hydrostatic_roll': 'bool', 'in_parts': 'bool', 'lambda_count': 'int', 'longer_restarts_s': 'List[float]', 'method': 'Estimator', 'mixture_positions': 'List[float]', 'part_s': 'Union[float, None]', 'plane_source': 'bool', 'posterior_by_folds': 'bool', 'prior': 'Prior', 'ranges': 'List[TuningRange]', 'reading_interval': 'bool', 'recorded_revolutions': 'bool', 'recorded_terms': 'bool', 'regressions_sha256': 'Union[str, None]', 'residual_s': 'Union[float, None]', 'restart_s': 'Union[float, None]', 'roll_strength': 'Union[float, None]', 'segment_s': 'Union[float, None]', 'smoothing_s': 'Union[float, None]', 'steering_above_noise': 'bool', 'steering_from_trials': 'bool', 'step_s': 'Union[float, None]', 'strengths': 'List[float]', 'window_s': 'Union[float, None]'}, total=False)
 Region = TypedDict('Region', {'pairs': 'Dict[str, List[float]]', 'ranges': 'Dict[str, List[float]]'}, total=True)
 RegisterRequest = TypedDict('RegisterRequest', {'model': 'Model', 'origin': 'str', 'parent': 'Union[int, None]'}, total=False)
 RoleName = Any  # What somebody may do; each has the rights of those before it.
@@ -143,6 +145,7 @@ Settings = TypedDict('Settings', {'second_person': 'bool'}, total=True)
 ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
 ShipHead = TypedDict('ShipHead', {'category': 'str', 'created_us': 'int', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int', 'value': 'Union[float, None]'}, total=False)
 Signal = Any  # What a branch can be told from.
+SinceTrial = TypedDict('SinceTrial', {'at_us': 'int', 'name': 'str', 'trial': 'str'}, total=True)
 Source = TypedDict('Source', {'citation': 'str', 'doi': 'Union[str, None]', 'note': 'Union[str, None]'}, total=False)
 Standing = Any  # Whether a model holds.
 Start = Any  # Where a member starts.
@@ -172,6 +175,7 @@ VesselKind = Any  # The word `vessel`.
 WebhookEvent = Any  # What a webhook may be told.
 WebhookRequest = TypedDict('WebhookRequest', {'drift_above': 'Union[float, None]', 'events': 'List[WebhookEvent]', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)
 WebhookView = TypedDict('WebhookView', {'created_us': 'int', 'drift_above': 'float', 'ended_us': 'Union[int, None]', 'events': 'List[str]', 'id': 'str', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)
+WeighedDiagnosis = Any  # A diagnosis that counts.
 WindRequest = TypedDict('WindRequest', {'from_rad': 'float', 'speed_m_s': 'float'}, total=True)
 Written = Any  # The ways in which a file may write a value.
 WrittenInFull = TypedDict('WrittenInFull', {'note': 'Union[str, None]', 'source': 'Union[str, None]', 'standard_error': 'Union[float, None]', 'value': 'NumberOrExpression'}, total=False)
@@ -565,7 +569,7 @@ class Core:
         return self.http.json('POST', '/v1/webhooks', json=body)
 
     def delete_webhooks_id(self, id: str) -> WebhookView:
-        """Delete a webhook permanently."""
+        """End a webhook, for ever."""
         return self.http.json('DELETE', f'/v1/webhooks/{id}')
 
     def get_webhooks_id(self, id: str) -> WebhookView:

@@ -3,6 +3,7 @@
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 use sistership_simulation::Trajectory;
+use sistership_simulation::instruments::THROUGH_WATER;
 use sistership_simulation::state::{RECORDED, at};
 
 /// A track begun at a heading (rad), with the channels and the interval of a trial that it is to be
@@ -31,8 +32,8 @@ pub fn as_recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial 
         let constant = values.get(values.len() / 2).copied().unwrap_or_default();
         trial.channels.insert(channel, vec![constant; count]);
     }
-    for &(channel, index) in RECORDED.iter().filter(|(channel, _)| like.channel(*channel).is_some())
-    {
+    let moving = RECORDED.iter().chain(&THROUGH_WATER);
+    for &(channel, index) in moving.filter(|(channel, _)| like.channel(*channel).is_some()) {
         trial.channels.insert(channel, every(turned(channel, index)));
     }
     trial.channels.insert(Channel::Delta, every(track.column(at::DELTA)));

@@ -55,7 +55,7 @@ pub(super) fn choose(
 ) -> Result<EffectChoice, RefineError> {
     let (level, alone) = search.alone(base)?;
     let limits = match search.states_odds {
-        true => limits(search, base, level, settings.least_evidence),
+        true => limits(search, base, level, settings.least_evidence)?,
         false => Vec::new(),
     };
     let alone_at_any = search.alone_at(base, &|_| true)?.1.log_evidence;
@@ -74,20 +74,12 @@ pub(super) fn choose(
     Ok(choice)
 }
 
-fn most_believed(
-    search: &HypothesisSearch<'_>,
-    found: &[JudgedHypothesis],
-    accepted: impl Fn(&JudgedHypothesis) -> bool,
-) -> Option<usize> {
-    let places = (0..found.len()).filter(|&place| accepted(&found[place]));
-    places.max_by(|&a, &b| {
-        last_evidence(search, &found[a]).total_cmp(&last_evidence(search, &found[b]))
-    })
-}
-
 /// The evidence for the effect that came last.
-fn last_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> f64 {
-    search.evidence(judged, judged.candidates.len() - 1).unwrap_or(f64::NEG_INFINITY)
+fn last_evidence(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+) -> Result<f64, RefineError> {
+    search.evidence(judged, judged.candidates.len() - 1)
 }
 
 /// The most probable sets of those of a base and one more, judged where they stand.
@@ -96,7 +88,7 @@ fn companions(
     base: &FilteredBase<'_>,
     count: usize,
 ) -> Result<Vec<JudgedHypothesis>, RefineError> {
-    let likely = likely(screen(search, base), count);
+    let likely = likely(screen(search, base)?, count);
     let judged = |ScreenedEffect { candidate, level, .. }: &ScreenedEffect| {
         base.once((candidate.key(), *level), || search.judge(base, candidate, *level))
     };
@@ -155,12 +147,17 @@ impl EffectChoice {
         count: usize,
     ) -> Result<bool, RefineError> {
         let found = companions(search, base, count)?;
-        let mut accepted: Vec<usize> =
-            (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
+        let mut believed = Vec::new();
+        for (place, hypothesis) in found.iter().enumerate() {
+            let evidence = self.last_evidence(search, hypothesis)?;
+            if self.accepts(search, hypothesis, settings, evidence)? {
+                believed.push((evidence, place));
+            }
+        }
         // What is believed decides, not what fits: an instrument that always erred would stand
         // before what is new.
-        let belief = |place: &usize| self.last_evidence(search, &found[*place]);
-        accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
+        believed.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut accepted: Vec<usize> = believed.into_iter().map(|(_, place)| place).collect();
         fitting_first(search, &found, &mut accepted);
         let mut better = None;
         for place in accepted {
@@ -187,13 +184,16 @@ impl EffectChoice {
             others.remove(place);
             let base = search.base(&others, &self.levels)?;
             let found = companions(search, &base, THRESHOLDS.search.companions)?;
-            let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY)
-                + THRESHOLDS.search.exchange;
-            let is_better = |judged: &JudgedHypothesis| {
-                let evidence = last_evidence(search, judged);
-                evidence > best && self.stands(search, judged, settings, evidence)
-            };
-            let better = most_believed(search, &found, is_better);
+            let best = search.evidence(self.best(), place)? + THRESHOLDS.search.exchange;
+            let mut better: Option<(f64, usize)> = None;
+            for (at, judged) in found.iter().enumerate() {
+                let evidence = last_evidence(search, judged)?;
+                let least = better.map_or(best, |(known, _)| known.max(best));
+                if evidence > least && self.stands(search, judged, settings, evidence)? {
+                    better = Some((evidence, at));
+                }
+            }
+            let better = better.map(|(_, at)| at);
             self.take(found, better);
             if better.is_some() {
                 break;
@@ -243,7 +243,7 @@ impl EffectChoice {
             if rounds > 0 {
                 continue;
             }
-            let Some(place) = self.needless(&search, &best, request.settings) else {
+            let Some(place) = self.needless(&search, &best, request.settings)? else {
                 return Ok(ConvergedChoice { search, base, best });
             };
             best = self.without(&search, &best, place)?;
@@ -284,11 +284,15 @@ impl EffectChoice {
     /// The evidence for the effect that came last, which is not more than what the whole hypothesis
     /// has over the one without it: seen from where both stand, an effect of which the columns
     /// change with its size would be worth more.
-    fn last_evidence(&self, search: &HypothesisSearch<'_>, found: &JudgedHypothesis) -> f64 {
+    fn last_evidence(
+        &self,
+        search: &HypothesisSearch<'_>,
+        found: &JudgedHypothesis,
+    ) -> Result<f64, RefineError> {
         let best = self.best().log_evidence;
         let is_outside = found.candidates.last().is_some_and(is_from_outside);
         let than = if is_outside { best.max(self.alone_at_any) } else { best };
-        last_evidence(search, found).min(found.log_evidence - than)
+        Ok(last_evidence(search, found)?.min(found.log_evidence - than))
     }
 
     /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has
@@ -298,11 +302,11 @@ impl EffectChoice {
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
         settings: &Settings,
-    ) -> bool {
-        let held_out =
-            |judged: &JudgedHypothesis| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
-        let evidence = self.last_evidence(search, found);
-        self.stands(search, found, settings, evidence) && held_out(found) > held_out(self.best())
+        of_last: f64,
+    ) -> Result<bool, RefineError> {
+        let held_out = |judged: &JudgedHypothesis| judged.held_out(&search.fixed);
+        Ok(self.stands(search, found, settings, of_last)?
+            && held_out(found)? > held_out(self.best())?)
     }
 
     /// Whether all are such as authors have them, and the evidence for the one that came last is
@@ -313,11 +317,11 @@ impl EffectChoice {
         found: &JudgedHypothesis,
         settings: &Settings,
         of_last: f64,
-    ) -> bool {
+    ) -> Result<bool, RefineError> {
         let last = found.candidates.len() - 1;
-        let evidence = all_evidence(search, found);
-        found.candidates.iter().all(is_as_published)
-            && of_last > settings.least_evidence.max(self.shadow(found, &evidence, last))
+        let evidence = all_evidence(search, found)?;
+        Ok(found.candidates.iter().all(is_as_published)
+            && of_last > settings.least_evidence.max(self.shadow(found, &evidence, last)))
     }
 
     /// One of effects that are judged together which has become another's, or the weakest, where
@@ -327,13 +331,13 @@ impl EffectChoice {
         search: &HypothesisSearch<'_>,
         best: &JudgedHypothesis,
         settings: &Settings,
-    ) -> Option<usize> {
-        let evidence = all_evidence(search, best);
+    ) -> Result<Option<usize>, RefineError> {
+        let evidence = all_evidence(search, best)?;
         let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
         let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
-        other.or(weakest.filter(|&place| {
+        Ok(other.or(weakest.filter(|&place| {
             evidence[place] <= settings.least_evidence.max(self.shadow(best, &evidence, place))
-        }))
+        })))
     }
 
     /// What the others of a set leave unexplained where their forms are another author's than
@@ -377,7 +381,9 @@ fn fitting_first(
     }
 }
 
-fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec<f64> {
-    let evidence = |place: usize| search.evidence(judged, place).unwrap_or(f64::NEG_INFINITY);
-    (0..judged.candidates.len()).map(evidence).collect()
+fn all_evidence(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+) -> Result<Vec<f64>, RefineError> {
+    (0..judged.candidates.len()).map(|place| search.evidence(judged, place)).collect()
 }

@@ -10,6 +10,7 @@ use super::outcome::Confounded;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Columns, EffectCandidate, Gram};
+use sistership_identification::refine::RefineError;
 
 /// Responses of the effects found and of all others, with the coefficients integrated out.
 pub(super) struct Responses<'a> {
@@ -23,12 +24,15 @@ pub(super) struct Responses<'a> {
 impl<'a> Responses<'a> {
     /// From products of columns: those of coefficients, of what was found, and of the others that
     /// are asked for.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
     pub fn new(
         search: &'a HypothesisSearch<'_>,
         columns: &Columns,
         judged: &'a JudgedHypothesis,
         (others, total): (Vec<&'a EffectCandidate>, &Gram),
-    ) -> Option<Self> {
+    ) -> Result<Self, RefineError> {
         let found: Vec<&EffectCandidate> = judged.candidates.iter().collect();
         let all: Vec<&EffectCandidate> = found.iter().chain(&others).copied().collect();
         let columns: Vec<Vec<usize>> =
@@ -43,7 +47,7 @@ impl<'a> Responses<'a> {
         let places = columns.iter().map(place).collect();
         let information =
             MarginalInformation::new(&total.select(&select), &search.fixed)?.information;
-        Some(Self { found, others, places, information })
+        Ok(Self { found, others, places, information })
     }
 
     /// The effects that are nearly the same as one found, the nearest first.

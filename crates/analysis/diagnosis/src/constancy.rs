@@ -29,10 +29,12 @@ pub(super) fn inconstant(
 ) -> Result<Vec<usize>, RefineError> {
     let pieces = base
         .linearised(&search.calibrated_model, &judged.linearised_at)?
-        .pieces(judged.level, THRESHOLDS.constancy.pieces);
+        .pieces(judged.level, THRESHOLDS.constancy.pieces)?;
     let known = known_after(&search.fixed, judged);
-    let reduced: Vec<MarginalInformation> =
-        pieces.iter().filter_map(|piece| MarginalInformation::new(piece, &known)).collect();
+    let reduced: Vec<MarginalInformation> = pieces
+        .iter()
+        .map(|piece| MarginalInformation::new(piece, &known))
+        .collect::<Result<_, _>>()?;
     let one =
         |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
     let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();

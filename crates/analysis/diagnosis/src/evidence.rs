@@ -67,16 +67,18 @@ impl DiscrepancyFactor {
 }
 
 impl MarginalInformation {
-    /// Integrates the first `coefficients` columns out; `None` where the information is not
-    /// positive.
-    pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Option<Self> {
+    /// Integrates the first `coefficients` columns out.
+    ///
+    /// # Errors
+    /// Says that the information on the coefficients is not positive.
+    pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Result<Self, RefineError> {
         let c = fixed.weighted_mean.len();
         let e = gram.products.nrows() - 1 - c;
         let products = &gram.products;
         let own = products.view((1, 1), (c, c)) + &fixed.information;
         let cross = products.view((1, 1 + c), (c, e)).into_owned();
         let right = products.view((1, 0), (c, 1)).column(0) + &fixed.weighted_mean;
-        let coefficients = Cholesky::new(own)?;
+        let coefficients = Cholesky::new(own).ok_or_else(not_positive)?;
         let answers = coefficients.solve(&cross);
         let shift = coefficients.solve(&right);
         let information = products.view((1 + c, 1 + c), (e, e)) - cross.transpose() * &answers;
@@ -84,7 +86,7 @@ impl MarginalInformation {
         let log_determinant: f64 =
             2.0 * coefficients.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         let deviance = products[(0, 0)] + gram.log_variance - right.dot(&shift) + log_determinant;
-        Some(Self { deviance, information, right: remaining, answers, shift })
+        Ok(Self { deviance, information, right: remaining, answers, shift })
     }
 
     /// Some of the effects' columns, with others integrated out under their priors.
@@ -204,4 +206,30 @@ impl MarginalInformation {
 /// The refusal where information has no root.
 pub(super) fn not_positive() -> RefineError {
     RefineError::Data("the trials' information is not positive".into())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// One coefficient and one effect: what is left of the effect is its Schur complement, and
+    /// information that is not positive is an error, not an absence of evidence.
+    #[test]
+    fn coefficients_are_integrated_out_or_the_reason_is_told() {
+        let mut gram = Gram::empty(3);
+        gram.products =
+            DMatrix::from_row_slice(3, 3, &[9.0, 2.0, 1.0, 2.0, 4.0, 3.0, 1.0, 3.0, 5.0]);
+        let fixed = CoefficientPrior {
+            information: DMatrix::from_element(1, 1, 1.0),
+            weighted_mean: DVector::from_element(1, 0.5),
+        };
+        let reduced = MarginalInformation::new(&gram, &fixed).unwrap();
+        assert!((reduced.information[(0, 0)] - (5.0 - 9.0 / 5.0)).abs() < 1e-12);
+        assert!((reduced.right[0] - (1.0 - 3.0 * 2.5 / 5.0)).abs() < 1e-12);
+        assert!((reduced.deviance - (9.0 - 2.5 * 2.5 / 5.0 + 5.0_f64.ln())).abs() < 1e-12);
+        gram.products[(1, 1)] = -2.0;
+        let refusal = MarginalInformation::new(&gram, &fixed).unwrap_err().to_string();
+        assert!(refusal.contains("information is not positive"), "{refusal}");
+    }
 }

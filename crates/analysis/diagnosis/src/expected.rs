@@ -111,8 +111,10 @@ impl<'a> ExpectedInformation<'a> {
         let discrepancies = self.discrepancies(ready);
         let of_trial = |trial: usize| {
             let parts = ready.parts(trial)?;
-            let grams: Vec<Gram> =
-                parts.iter().map(|part| filter(part, &ready.noise, &discrepancies)).collect();
+            let grams: Vec<Gram> = parts
+                .iter()
+                .map(|part| filter(part, &ready.noise, &discrepancies))
+                .collect::<Result<_, _>>()?;
             let gram = Gram::sum(&grams, 1 + self.columns.len());
             self.of_asked(&gram).ok_or_else(not_positive)
         };

@@ -51,24 +51,28 @@ impl FilteredLevel {
 }
 
 impl<'a> FilteredBase<'a> {
+    /// Filters at each of some levels.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
     pub fn new(
         taken: &[EffectCandidate],
         workspace: LinearisedTrials<'a>,
         levels: Vec<(DiscrepancyFactor, Discrepancies)>,
-    ) -> Self {
+    ) -> Result<Self, RefineError> {
         let coefficients = workspace.columns().nuisance.len();
         let at = |(level, discrepancies): (DiscrepancyFactor, Discrepancies)| {
             let one = |parts: &Vec<Linearised>| gram(&workspace, parts, &discrepancies);
-            let grams = workspace.linear().par_iter().map(one).collect();
-            FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() }
+            let grams = workspace.linear().par_iter().map(one).collect::<Result<_, _>>()?;
+            Ok(FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() })
         };
-        Self {
+        Ok(Self {
             taken: taken.to_vec(),
-            levels: levels.into_iter().map(at).collect(),
+            levels: levels.into_iter().map(at).collect::<Result<_, RefineError>>()?,
             coefficients,
             workspace,
             judged: Mutex::default(),
-        }
+        })
     }
 
     /// A hypothesis beside it that is judged once, however often it is asked for.
@@ -102,7 +106,7 @@ impl<'a> FilteredBase<'a> {
 
     /// The whitened columns of the coefficients at a level. Those of levels that are not its
     /// neighbours are let go: hypotheses are judged at a level and the one below.
-    fn coefficients(&self, level: usize) -> WhitenedCoefficients {
+    fn coefficients(&self, level: usize) -> Result<WhitenedCoefficients, RefineError> {
         for (_, far) in
             self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)
         {
@@ -111,17 +115,19 @@ impl<'a> FilteredBase<'a> {
         let at = &self.levels[level];
         let mut kept = at.coefficients.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(coefficients) = &*kept {
-            return Arc::clone(coefficients);
+            return Ok(Arc::clone(coefficients));
         }
         let of_part = |part: &Linearised| {
-            let rows = rows(&self.workspace, part, &at.discrepancies).0;
-            rows.rows(1, self.coefficients).into_owned()
+            let rows = rows(&self.workspace, part, &at.discrepancies)?.0;
+            Ok(rows.rows(1, self.coefficients).into_owned())
         };
-        let one = |parts: &Vec<Linearised>| parts.iter().map(of_part).collect();
-        let fresh: WhitenedCoefficients =
-            Arc::new(self.workspace.linear().par_iter().map(one).collect());
+        let one = |parts: &Vec<Linearised>| {
+            parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
+        };
+        let each = self.workspace.linear().par_iter().map(one).collect::<Result<_, _>>()?;
+        let fresh: WhitenedCoefficients = Arc::new(each);
         *kept = Some(Arc::clone(&fresh));
-        fresh
+        Ok(fresh)
     }
 
     /// Readings and columns of a hypothesis where it stands, to be filtered at any level.
@@ -157,13 +163,13 @@ fn gram(
     workspace: &LinearisedTrials<'_>,
     parts: &[Linearised],
     discrepancies: &Discrepancies,
-) -> Gram {
+) -> Result<Gram, RefineError> {
     let mut gram = Gram::empty(1 + workspace.columns().len());
     for part in parts {
-        let (rows, log_variance) = rows(workspace, part, discrepancies);
+        let (rows, log_variance) = rows(workspace, part, discrepancies)?;
         gram.add(&Gram::of_columns(&rows, log_variance));
     }
-    gram
+    Ok(gram)
 }
 
 /// A part through the filter: residual and columns by readings.
@@ -171,10 +177,10 @@ fn rows(
     workspace: &LinearisedTrials<'_>,
     part: &Linearised,
     discrepancies: &Discrepancies,
-) -> (DMatrix<f64>, f64) {
-    let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies);
+) -> Result<(DMatrix<f64>, f64), RefineError> {
+    let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies)?;
     let width = 1 + part.sizes.columns;
-    (DMatrix::from_vec(width, rows.len() / width, rows), log_variance)
+    Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
 }
 
 /// A hypothesis where it stands.
@@ -185,8 +191,11 @@ pub(super) struct LinearisedHypothesis<'b, 'a> {
 
 impl LinearisedHypothesis<'_, '_> {
     /// The products of each trial: residual, coefficients, parameters of the hypothesis.
-    pub fn grams(&self, level: usize) -> Vec<Gram> {
-        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
+    pub fn grams(&self, level: usize) -> Result<Vec<Gram>, RefineError> {
+        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
         trials
             .into_par_iter()
@@ -195,13 +204,17 @@ impl LinearisedHypothesis<'_, '_> {
     }
 
     /// The products of each trial in pieces of equal duration.
-    pub fn pieces(&self, level: usize, count: usize) -> Vec<Gram> {
-        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
+    pub fn pieces(&self, level: usize, count: usize) -> Result<Vec<Gram>, RefineError> {
+        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
         let of = |(parts, known): (&Vec<Linearised>, &Vec<DMatrix<f64>>)| {
             self.in_pieces(parts, known, &at.discrepancies, count)
         };
-        trials.into_par_iter().flat_map_iter(of).collect()
+        let each: Vec<Vec<Gram>> = trials.into_par_iter().map(of).collect::<Result<_, _>>()?;
+        Ok(each.into_iter().flatten().collect())
     }
 
     fn in_pieces(
@@ -210,11 +223,11 @@ impl LinearisedHypothesis<'_, '_> {
         known: &[DMatrix<f64>],
         discrepancies: &Discrepancies,
         count: usize,
-    ) -> Vec<Gram> {
+    ) -> Result<Vec<Gram>, RefineError> {
         let width = self.base.coefficients + self.width();
         let mut pieces = vec![Gram::empty(width); count];
         for (part, coefficients) in parts.iter().zip(known) {
-            let own = self.rows(part, discrepancies).0;
+            let own = self.rows(part, discrepancies)?.0;
             let readings = own.nrows();
             for (piece, gram) in pieces.iter_mut().enumerate() {
                 let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
@@ -225,7 +238,7 @@ impl LinearisedHypothesis<'_, '_> {
                 add(gram, &(known * own), &own.tr_mul(&own));
             }
         }
-        pieces
+        Ok(pieces)
     }
 
     fn gram(
@@ -233,17 +246,17 @@ impl LinearisedHypothesis<'_, '_> {
         parts: &[Linearised],
         (known, all): (&Vec<DMatrix<f64>>, &Gram),
         discrepancies: &Discrepancies,
-    ) -> Gram {
+    ) -> Result<Gram, RefineError> {
         let c = self.base.coefficients;
         let mut gram = Gram::empty(c + self.width());
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
         for (part, coefficients) in parts.iter().zip(known) {
-            let (rows, log_variance) = self.rows(part, discrepancies);
+            let (rows, log_variance) = self.rows(part, discrepancies)?;
             add(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
             gram.log_variance += log_variance;
             gram.count += rows.nrows();
         }
-        gram
+        Ok(gram)
     }
 
     /// The residual and the parameters of the hypothesis.
@@ -252,10 +265,14 @@ impl LinearisedHypothesis<'_, '_> {
     }
 
     /// Whitened, readings by columns.
-    fn rows(&self, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
-        let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies);
+    fn rows(
+        &self,
+        part: &Linearised,
+        discrepancies: &Discrepancies,
+    ) -> Result<(DMatrix<f64>, f64), RefineError> {
+        let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies)?;
         let width = self.width();
-        (DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance)
+        Ok((DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance))
     }
 }
 

@@ -4,8 +4,9 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::effect::EffectParameter;
 
 use super::coefficient_prior::CoefficientPrior;
-use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior};
+use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive};
 use sistership_filtering::{EffectCandidate, Gram};
+use sistership_identification::refine::RefineError;
 
 /// A hypothesis where it is most probable.
 #[derive(Debug, Clone)]
@@ -33,28 +34,31 @@ impl JudgedHypothesis {
 
     /// Logarithm of the probability of some of the trials under this hypothesis, and its estimate
     /// there.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
     pub fn of_trials(
         &self,
         fixed: &CoefficientPrior,
         keep: &dyn Fn(usize) -> bool,
-    ) -> Option<(f64, Vec<EffectCandidate>)> {
-        let width = self.grams.first()?.products.nrows();
+    ) -> Result<(f64, Vec<EffectCandidate>), RefineError> {
+        let width = self.grams.first().ok_or_else(not_positive)?.products.nrows();
         let kept =
             self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, gram)| gram);
         let reduced = MarginalInformation::new(&Gram::sum(kept, width), fixed)?;
         let columns: Vec<usize> = (0..width - 1 - fixed.weighted_mean.len()).collect();
         let priors: Vec<NormalPrior> = self.linearised_at.iter().flat_map(priors).collect();
-        let estimate = reduced.estimate(&columns, &priors)?;
-        Some((
-            estimate.gain - 0.5 * reduced.deviance,
-            placed(self.linearised_at.clone(), &estimate),
-        ))
+        let estimate = reduced.estimate(&columns, &priors).ok_or_else(not_positive)?;
+        Ok((estimate.gain - 0.5 * reduced.deviance, placed(self.linearised_at.clone(), &estimate)))
     }
 
     /// How probable each trial is by a fit on the others: the sum of the logarithms.
-    pub fn held_out(&self, fixed: &CoefficientPrior) -> Option<f64> {
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn held_out(&self, fixed: &CoefficientPrior) -> Result<f64, RefineError> {
         let (all, ..) = self.of_trials(fixed, &|_| true)?;
-        let without = |trial: usize| Some(all - self.of_trials(fixed, &|other| other != trial)?.0);
+        let without = |trial: usize| Ok(all - self.of_trials(fixed, &|other| other != trial)?.0);
         (0..self.grams.len()).map(without).sum()
     }
 }

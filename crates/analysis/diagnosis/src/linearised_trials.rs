@@ -14,6 +14,7 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{
     Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
     TrialReadings, filter_first, floor, linearise, reading_interval, scatter, sparseness,
+    unknown_noise,
 };
 use sistership_identification::refine::RefineError;
 use sistership_priors::transfer::approach_of;
@@ -66,10 +67,48 @@ impl<'a> LinearisedTrials<'a> {
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
-        let mut all = Self::one_at_a_time(learned, columns, trials, least_step_s)?;
-        let whole = |record| linearise(&all.system, record, Detail::Whole);
-        all.linear = all.records.par_iter().map(whole).collect::<Result<_, _>>()?;
-        Ok(all)
+        Self::one_at_a_time(learned, columns, trials, least_step_s)?.kept()
+    }
+
+    /// The same by instruments that are stated.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn new_under(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+        instruments: &Noise,
+    ) -> Result<Self, RefineError> {
+        let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
+        read_apart(&mut all.records, learned.reading_interval_s);
+        all.read_by(instruments.clone())?.kept()
+    }
+
+    /// With each trial linearised.
+    fn kept(mut self) -> Result<Self, RefineError> {
+        let whole = |record| linearise(&self.system, record, Detail::Whole);
+        self.linear = self.records.par_iter().map(whole).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// By instruments, of which each channel that is read must have one.
+    ///
+    /// # Errors
+    /// Names the trial and the channel that has none.
+    fn read_by(mut self, noise: Noise) -> Result<Self, RefineError> {
+        for record in self.records.iter().filter(|record| !record.is_empty()) {
+            let lacks = |(channel, _): &&(Channel, usize)| {
+                record.trial.channel(*channel).is_some() && !noise.contains_key(channel)
+            };
+            if let Some((channel, _)) = self.system.channels.iter().find(lacks) {
+                let message = unknown_noise(*channel).to_string();
+                return Err(RefineError::Data(format!("trial `{}`: {message}", record.trial.name)));
+            }
+        }
+        self.noise = noise;
+        Ok(self)
     }
 
     /// Each trial linearised whenever it is asked for: what is kept is as many times as large as
@@ -86,8 +125,8 @@ impl<'a> LinearisedTrials<'a> {
         let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
         read_apart(&mut all.records, learned.reading_interval_s);
         let known = learned.model.uncertainty.as_ref();
-        all.noise = noise(&all.records, all.lpp_m, all.speed_m_s, known);
-        Ok(all)
+        let noise = noise(&all.records, all.lpp_m, all.speed_m_s, known);
+        all.read_by(noise)
     }
 
     /// How far apart readings are whose noise is new, s; 0 where every sample is one.
@@ -113,9 +152,7 @@ impl<'a> LinearisedTrials<'a> {
         trials: &'a [&'a Trial],
         instruments: &Noise,
     ) -> Result<Self, RefineError> {
-        let mut all = Self::every_sample(learned, columns, trials, None)?;
-        all.noise.clone_from(instruments);
-        Ok(all)
+        Self::every_sample(learned, columns, trials, None)?.read_by(instruments.clone())
     }
 
     fn every_sample(
@@ -144,9 +181,9 @@ impl<'a> LinearisedTrials<'a> {
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }
 
-    /// The same by other instruments.
+    /// The same by other instruments; a channel of which these know nothing keeps its own scatter.
     pub fn under(mut self, noise: &Noise) -> Self {
-        self.noise.clone_from(noise);
+        self.noise.extend(noise);
         self
     }
 
@@ -219,7 +256,7 @@ impl<'a> LinearisedTrials<'a> {
         let of_trial = |trial: usize| {
             let parts = self.parts(trial)?;
             let of = |part: &Linearised| filter_first(part, columns, noise, discrepancies);
-            let grams: Vec<Gram> = parts.iter().map(of).collect();
+            let grams: Vec<Gram> = parts.iter().map(of).collect::<Result<_, _>>()?;
             Ok(Gram::sum(&grams, 1 + columns))
         };
         (0..self.trials.len()).into_par_iter().map(of_trial).collect()
@@ -253,6 +290,8 @@ fn noise(
         Channel::Psi,
         Channel::X,
         Channel::Y,
+        Channel::UWater,
+        Channel::VWater,
     ];
     let one = |channel: Channel| {
         let scatter = Instrument::of_scatter(
@@ -268,3 +307,7 @@ fn noise(
     };
     read.into_iter().filter_map(one).collect()
 }
+
+#[cfg(test)]
+#[path = "linearised_trials_tests.rs"]
+mod tests;

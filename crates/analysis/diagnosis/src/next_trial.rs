@@ -17,6 +17,7 @@ use super::search::HypothesisSearch;
 use super::thresholds::{PlannedHelm, THRESHOLDS};
 use super::values::model_with;
 use sistership_filtering::{Columns, EffectCandidate, Gram, filter};
+use sistership_identification::refine::RefineError;
 
 /// One that could be sailed.
 #[derive(Clone, Copy)]
@@ -27,30 +28,39 @@ struct PlannedManoeuvre {
 }
 
 /// The trial that separates an effect found from those beside it best; none where nothing is to be
-/// separated.
+/// separated, or the ship sails none of the manoeuvres that are planned.
+///
+/// # Errors
+/// Names what the model lacks, or says that the information is not positive.
 pub(super) fn next_trial(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     judged: &JudgedHypothesis,
     found: &[Found],
-) -> Option<NextTrial> {
+) -> Result<Option<NextTrial>, RefineError> {
     let doubtful = found.iter().filter(|found| !found.confounded_with.is_empty());
     let doubtful = doubtful
-        .min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg))?;
-    let place = judged.candidates.iter().position(|candidate| candidate.effect == doubtful.name)?;
+        .min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg));
+    let Some(doubtful) = doubtful else { return Ok(None) };
+    let is_doubtful = |candidate: &EffectCandidate| candidate.effect == doubtful.name;
+    let Some(place) = judged.candidates.iter().position(is_doubtful) else { return Ok(None) };
     let doubt = Doubt::new(search, base, judged, (place, doubtful));
-    let ship = ship(search, judged)?;
-    let gain = |planned: &PlannedManoeuvre| Some((doubt.separated(&ship, planned)?, *planned));
-    let gains: Vec<(f64, PlannedManoeuvre)> = plans(base).par_iter().filter_map(gain).collect();
-    let (expected, best) = gains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let others = doubtful.confounded_with.iter().map(|other| other.name.clone());
-    Some(NextTrial {
+    let ship = Ship::new(&model_with(search.model, &judged.candidates, None), search.law)?;
+    let gain = |planned: &PlannedManoeuvre| {
+        Ok(doubt.separated(&ship, planned)?.map(|gain| (gain, *planned)))
+    };
+    let gains: Vec<Option<(f64, PlannedManoeuvre)>> =
+        plans(base).par_iter().map(gain).collect::<Result<_, RefineError>>()?;
+    let best = gains.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
+    let separates = std::iter::once(doubtful.name.clone())
+        .chain(doubtful.confounded_with.iter().map(|other| other.name.clone()));
+    Ok(best.map(|(expected, best)| NextTrial {
         manoeuvre: best.helm.name.to_owned(),
         speed_m_s: (10.0 * best.speed_m_s).round() / 10.0,
         heading_deg: best.heading_deg,
-        separates: std::iter::once(doubtful.name.clone()).chain(others).collect(),
+        separates: separates.collect(),
         expected,
-    })
+    }))
 }
 
 fn plans(base: &FilteredBase<'_>) -> Vec<PlannedManoeuvre> {
@@ -68,10 +78,6 @@ fn plans(base: &FilteredBase<'_>) -> Vec<PlannedManoeuvre> {
         .into_iter()
         .flat_map(|helm| given.speeds.into_iter().flat_map(move |share| of(helm, share)))
         .collect()
-}
-
-fn ship(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Option<Ship> {
-    Ship::new(&model_with(search.model, &judged.candidates, None), search.law).ok()
 }
 
 /// An effect that was found and those beside it, with what the trials say of these and of the
@@ -110,38 +116,45 @@ impl<'d, 'a> Doubt<'d, 'a> {
         Self { search, base, judged, place, names, columns, total }
     }
 
-    /// The evidence by which the nearest of the others would be behind after a planned trial.
-    fn separated(&self, ship: &Ship, planned: &PlannedManoeuvre) -> Option<f64> {
-        let trial = sailed(self.base, ship, planned)?;
+    /// The evidence by which the nearest of the others would be behind after a planned trial; none
+    /// where the ship does not sail it, or no other is beside it then.
+    fn separated(
+        &self,
+        ship: &Ship,
+        planned: &PlannedManoeuvre,
+    ) -> Result<Option<f64>, RefineError> {
+        let Some(trial) = sailed(self.base, ship, planned) else { return Ok(None) };
         let mut total = self.total.clone();
         total.add(&self.filtered(&trial)?);
         let mut others = self.search.others(&self.judged.candidates);
         others.retain(|other| self.names.contains(&other.effect.as_str()));
         let responses = Responses::new(self.search, &self.columns, self.judged, (others, &total))?;
-        responses.behind(self.place, &self.names)
+        Ok(responses.behind(self.place, &self.names))
     }
 
     /// The products of the columns over a planned trial.
-    fn filtered(&self, trial: &Trial) -> Option<Gram> {
+    fn filtered(&self, trial: &Trial) -> Result<Gram, RefineError> {
         let Self { search, base, judged, columns, .. } = self;
         let trials = [trial];
-        let workspace = LinearisedTrials::new(
+        let workspace = LinearisedTrials::new_under(
             &search.calibrated_model,
             columns.clone(),
             &trials,
             search.least_step_s,
-        )
-        .ok()?;
+            &base.workspace.noise,
+        )?;
         let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
         let width = 1 + workspace.columns().len();
         let parts = workspace.linear().iter().flatten();
-        let grams: Vec<Gram> =
-            parts.map(|part| filter(part, &base.workspace.noise, discrepancies)).collect();
-        Some(Gram::sum(&grams, width))
+        let grams: Vec<Gram> = parts
+            .map(|part| filter(part, &base.workspace.noise, discrepancies))
+            .collect::<Result<_, _>>()?;
+        Ok(Gram::sum(&grams, width))
     }
 }
 
-/// A trial as it would be recorded, without noise.
+/// A trial as it would be recorded, without noise; none where the ship leaves the range in which it
+/// can be simulated.
 fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> Option<Trial> {
     let workspace = &base.workspace;
     let settings = ManoeuvreSettings {

@@ -17,6 +17,7 @@ use super::outcome::{OriginKind, RemainderOrigin, Unexplained};
 use super::select::{expected, parameters};
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Discrepancies, Linearised, Noise, deviances};
+use sistership_identification::refine::RefineError;
 
 /// What each trial that leaves something is by some randomness.
 type Deviances = Vec<f64>;
@@ -40,22 +41,23 @@ struct Alternative {
 
 /// Origins by their evidence, the most evident first: those above `least`. Of many trials that
 /// leave something, those are asked that leave most.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
 pub(super) fn origins(
     settled: &ConvergedChoice<'_>,
     remaining: &[Unexplained],
     least: f64,
-) -> Vec<RemainderOrigin> {
+) -> Result<Vec<RemainderOrigin>, RefineError> {
     let trials = OpenTrials::new(settled, remaining);
     if trials.count == 0 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let workspace = &settled.base.workspace;
     let (noise, discrepancies) = (&workspace.noise, expected(&settled.search, workspace));
-    let known = trials.deviances(noise, &discrepancies);
-    let gained = |of: OriginKind, channel: &str, each: Vec<Deviances>| Alternative {
-        of,
-        channel: channel.to_owned(),
-        gains: gains(&known, &each),
+    let known = trials.deviances(noise, &discrepancies)?;
+    let gained = |of: OriginKind, channel: &str, each: Result<Vec<Deviances>, RefineError>| {
+        Ok(Alternative { of, channel: channel.to_owned(), gains: gains(&known, &each?) })
     };
     let acceleration = |axis: usize| {
         let factors = THRESHOLDS.origin.factors.par_iter();
@@ -69,9 +71,11 @@ pub(super) fn origins(
             |factor: &f64| trials.deviances(&noisier(noise, *channel, *factor), &discrepancies);
         gained(OriginKind::Readings, channel.name(), factors.map(of).collect())
     };
-    let alternatives: Vec<Alternative> =
-        (0..discrepancies.len()).map(acceleration).chain(noise.keys().map(readings)).collect();
-    ranked(&alternatives, least)
+    let alternatives: Vec<Alternative> = (0..discrepancies.len())
+        .map(acceleration)
+        .chain(noise.keys().map(readings))
+        .collect::<Result<_, RefineError>>()?;
+    Ok(ranked(&alternatives, least))
 }
 
 impl OpenTrials {
@@ -91,12 +95,16 @@ impl OpenTrials {
         Self { parts, trials, count: asked.len() }
     }
 
-    fn deviances(&self, noise: &Noise, discrepancies: &Discrepancies) -> Deviances {
+    fn deviances(
+        &self,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Deviances, RefineError> {
         let parts: Vec<&Linearised> = self.parts.iter().collect();
         let mut all = vec![0.0; self.count];
-        let each = deviances(&parts, noise, discrepancies);
+        let each = deviances(&parts, noise, discrepancies)?;
         self.trials.iter().zip(each).for_each(|(&trial, deviance)| all[trial] += deviance);
-        all
+        Ok(all)
     }
 }
 

@@ -12,7 +12,9 @@ use super::hypothesis::JudgedHypothesis;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::model_with;
-use sistership_identification::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
+use sistership_identification::refine::{
+    Alternative, Blocks, RefineError, alternatives, fit, trial_moments,
+};
 use sistership_numerics::{Moments, RidgeChoice};
 use sistership_priors::transfer::approach_of;
 
@@ -26,20 +28,21 @@ pub(super) struct Refit {
 
 /// What is weighed: the coefficients as they are; fitted with the effects as they were found; and,
 /// where the effects on the ship are linear, fitted together with them. Regressions read the trials
-/// as instruments would have shown them that do not err.
+/// as instruments would have shown them that do not err. Beside a learned correction the
+/// coefficients stay as they are: it was trained on what these leave, and would not suit others.
 pub(super) fn refits(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
     restart_s: f64,
-) -> Vec<Refit> {
+) -> Result<Vec<Refit>, RefineError> {
     let all = model_with(search.model, &judged.candidates, Some(&judged.covariance));
-    let without =
-        (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
+    let without = (0..request.trials.len())
+        .map(|trial| without(request, search, judged, trial))
+        .collect::<Result<_, _>>()?;
     let found = Refit { how: None, all, without };
-    let corrected = (!judged.candidates.is_empty())
-        .then(|| CorrectedRecords::new(request, &found.all))
-        .flatten();
+    let may_move = !judged.candidates.is_empty() && request.model.branch.is_none();
+    let corrected = may_move.then(|| CorrectedRecords::new(request, &found.all)).flatten();
     let mut fitted = Vec::new();
     if let Some(corrected) = corrected {
         let request = &Request { trials: &corrected.trials(), ..*request };
@@ -48,7 +51,7 @@ pub(super) fn refits(
         );
         fitted.extend(jointly(request, &found, restart_s));
     }
-    std::iter::once(found).chain(fitted).collect()
+    Ok(std::iter::once(found).chain(fitted).collect())
 }
 
 /// The trials but one; of a single one, itself.
@@ -66,14 +69,13 @@ fn without(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
     trial: usize,
-) -> Model {
+) -> Result<Model, RefineError> {
     let keep = |other: usize| other != trial || request.trials.len() == 1;
-    let fitted =
-        judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
-    fitted.map_or_else(
-        || request.model.clone(),
-        |(_, candidates)| model_with(search.model, &candidates, None),
-    )
+    let (_, candidates) = judged.of_trials(&search.fixed, &keep)?;
+    Ok(match candidates.is_empty() {
+        true => request.model.clone(),
+        false => model_with(search.model, &candidates, None),
+    })
 }
 
 fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {

@@ -9,54 +9,66 @@ use super::linearised_trials::LinearisedTrials;
 use super::outcome::Unexplained;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Discrepancies, Linearised, errors, responses};
+use sistership_identification::refine::RefineError;
 
 /// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is
 /// expected; the largest first. `effects` are the parts of the parameters that the laws of the
 /// effects leave open.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
 pub(super) fn unexplained(
     workspace: &LinearisedTrials<'_>,
     discrepancies: &Discrepancies,
     parameters: &[f64],
     effects: &[f64],
     clean: Option<&BTreeMap<String, f64>>,
-) -> Vec<Unexplained> {
+) -> Result<Vec<Unexplained>, RefineError> {
     let of_trial = |(place, trial): (usize, &&Trial)| {
         let parts = &workspace.linear()[place];
         in_trial((workspace, &trial.name), parts, discrepancies, (parameters, effects), clean)
     };
-    let mut found: Vec<Unexplained> =
-        workspace.trials.iter().enumerate().flat_map(of_trial).collect();
+    let each: Vec<Vec<Unexplained>> =
+        workspace.trials.iter().enumerate().map(of_trial).collect::<Result<_, _>>()?;
+    let mut found: Vec<Unexplained> = each.into_iter().flatten().collect();
     found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
-    found
+    Ok(found)
 }
 
 /// The same of the parts of one trial.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
 pub(super) fn in_trial(
     (workspace, trial): (&LinearisedTrials<'_>, &str),
     parts: &[Linearised],
     discrepancies: &Discrepancies,
     (parameters, effects): (&[f64], &[f64]),
     clean: Option<&BTreeMap<String, f64>>,
-) -> Vec<Unexplained> {
+) -> Result<Vec<Unexplained>, RefineError> {
     let limit = |channel: Channel| {
         let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
         THRESHOLDS.remainder.limit.max(THRESHOLDS.remainder.margin * seen)
     };
-    let sums = sums(workspace, parts, discrepancies, (parameters, Some(effects)));
+    let sums = sums(workspace, parts, discrepancies, (parameters, Some(effects)))?;
     let of =
         |(channel, sums): (Channel, BlockSums<'_>)| sums.stretches(trial, channel, limit(channel));
-    sums.into_iter().flat_map(of).collect()
+    Ok(sums.into_iter().flat_map(of).collect())
 }
 
 /// The largest that any stretch of a trial leaves, by channel.
+///
+/// # Errors
+/// Names a channel of which no noise is known.
 pub(super) fn largest(
     workspace: &LinearisedTrials<'_>,
     parts: &[Linearised],
     discrepancies: &Discrepancies,
     parameters: &[f64],
-) -> Vec<(Channel, f64)> {
+) -> Result<Vec<(Channel, f64)>, RefineError> {
     let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
-    sums(workspace, parts, discrepancies, (parameters, None)).into_iter().map(of).collect()
+    let sums = sums(workspace, parts, discrepancies, (parameters, None))?;
+    Ok(sums.into_iter().map(of).collect())
 }
 
 /// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
@@ -75,16 +87,17 @@ fn sums<'a>(
     parts: &'a [Linearised],
     discrepancies: &Discrepancies,
     (parameters, effects): (&[f64], Option<&[f64]>),
-) -> Vec<(Channel, BlockSums<'a>)> {
+) -> Result<Vec<(Channel, BlockSums<'a>)>, RefineError> {
     let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
     let mut all = Vec::new();
     for part in parts {
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
-        let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);
-        let moved = effects.map_or_else(Vec::new, |effects| {
-            responses(&part.along(effects), &workspace.noise, discrepancies)
-        });
+        let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies)?;
+        let moved = match effects {
+            Some(effects) => responses(&part.along(effects), &workspace.noise, discrepancies)?,
+            None => Vec::new(),
+        };
         for (place, &(channel, _)) in part
             .channels
             .iter()
@@ -97,7 +110,7 @@ fn sums<'a>(
             all.push((channel, BlockSums { part, size, sums: of(&left), moved: of(&moved) }));
         }
     }
-    all
+    Ok(all)
 }
 
 fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {

@@ -53,7 +53,7 @@ fn answer(
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
-    let fitted = fitted(request, &selected.settled);
+    let fitted = fitted(request, &selected.settled)?;
     step(progress, 0.95, "what these trials cannot tell apart")?;
     let named = named(request, &selected, &fitted)?;
     written(request, first, selected, (fitted, named))
@@ -65,14 +65,17 @@ struct FittedModel {
     taken: Refit,
 }
 
-fn fitted(request: &Request<'_>, settled: &ConvergedChoice<'_>) -> FittedModel {
+fn fitted(
+    request: &Request<'_>,
+    settled: &ConvergedChoice<'_>,
+) -> Result<FittedModel, RefineError> {
     let ConvergedChoice { search, base, best } = settled;
     let length_s = base.workspace.lpp_m / base.workspace.speed_m_s;
     let restart_s = request.settings.restart_s.unwrap_or(THRESHOLDS.trials.restart * length_s);
-    let mut refits = refits(request, search, best, restart_s);
+    let mut refits = refits(request, search, best, restart_s)?;
     let errors = errors(request, &refits, restart_s);
     let taken = refits.swap_remove(errors.taken);
-    FittedModel { errors, taken }
+    Ok(FittedModel { errors, taken })
 }
 
 /// What has a name.
@@ -122,7 +125,7 @@ fn written(
     let limits = but(choice.limits.clone(), &names);
     let FittedModel { errors, taken } = fitted;
     let residuals = residuals(first, search, best)?;
-    let origins = origins(&settled, &remaining, request.settings.least_evidence);
+    let origins = origins(&settled, &remaining, request.settings.least_evidence)?;
     Ok(Diagnosis {
         verdict: verdict(&remaining, &named.found),
         changes,
@@ -139,7 +142,7 @@ fn written(
         noise: deviations(&base.workspace),
         how: how(request, taken.how.as_deref()),
         diagnosed: request.model.name.clone(),
-        hypotheses: hypotheses(request, search, &choice),
+        hypotheses: hypotheses(request, search, &choice)?,
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
         residuals,

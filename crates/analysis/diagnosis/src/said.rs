@@ -15,6 +15,7 @@ use super::next_trial::next_trial;
 use super::outcome::{Found, Hypothesis, NextTrial, Value};
 use super::search::HypothesisSearch;
 use super::values::{acts_on, own_covariance, values};
+use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
 /// The effects found with those they are confounded with, the strongest first, and the trial that
@@ -27,18 +28,17 @@ pub(super) fn apart(
 ) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
     let mut all: Vec<Found> = (0..best.candidates.len())
         .map(|place| found(request, search, best, place, of_all))
-        .collect();
+        .collect::<Result<_, _>>()?;
     let mut next = None;
     if !all.is_empty() {
         let level = best.level.min(search.levels.len() - 1);
         let base = search.base(&best.candidates, &search.levels[level..=level])?;
         let (columns, others) = (base.workspace.columns(), search.others(&best.candidates));
-        let responses = Responses::new(search, columns, best, (others, &base.total(0)));
+        let responses = Responses::new(search, columns, best, (others, &base.total(0)))?;
         for (place, found) in all.iter_mut().enumerate() {
-            found.confounded_with =
-                responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();
+            found.confounded_with = responses.beside(place);
         }
-        next = next_trial(search, &base, best, &all);
+        next = next_trial(search, &base, best, &all)?;
     }
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     Ok((all, next))
@@ -52,20 +52,20 @@ fn found(
     best: &JudgedHypothesis,
     place: usize,
     of_all: f64,
-) -> Found {
+) -> Result<Found, RefineError> {
     let candidate = &best.candidates[place];
     let discount = search.discount(candidate);
     let covariance = covariance(best, place, (&search.nuisance, &search.fixed), discount);
-    Found {
+    Ok(Found {
         name: candidate.effect.clone(),
         form: candidate.form.file.name.clone(),
         meaning: candidate.form.file.meaning.clone(),
         acts_on: acts_on(candidate),
         parameters: values(candidate, &covariance, request.model),
-        evidence: search.evidence(best, place).unwrap_or_default().min(of_all),
+        evidence: search.evidence(best, place)?.min(of_all),
         in_model: BTreeMap::new(),
         confounded_with: Vec::new(),
-    }
+    })
 }
 
 /// The parameters of an effect as a model carries them, where they are others than those found.
@@ -83,22 +83,28 @@ pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> 
 }
 
 /// Everything that was judged where it stands, the most probable first.
+///
+/// # Errors
+/// Says that the information is not positive.
 pub(super) fn hypotheses(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
     choice: &EffectChoice,
-) -> Vec<Hypothesis> {
-    let alone = choice.alone.held_out(&search.fixed);
-    let one = |(place, judged): (usize, &JudgedHypothesis)| Hypothesis {
-        effects: judged.candidates.iter().map(sistership_filtering::EffectCandidate::key).collect(),
-        evidence: judged.log_evidence - choice.alone.log_evidence,
-        held_out: judged.held_out(&search.fixed).zip(alone).map(|(with, without)| with - without),
-        parameters: parameters(request, judged),
-        taken: choice.taken == Some(place),
+) -> Result<Vec<Hypothesis>, RefineError> {
+    let alone = choice.alone.held_out(&search.fixed)?;
+    let one = |(place, judged): (usize, &JudgedHypothesis)| {
+        Ok(Hypothesis {
+            effects: judged.candidates.iter().map(EffectCandidate::key).collect(),
+            evidence: judged.log_evidence - choice.alone.log_evidence,
+            held_out: Some(judged.held_out(&search.fixed)? - alone),
+            parameters: parameters(request, judged),
+            taken: choice.taken == Some(place),
+        })
     };
-    let mut all: Vec<Hypothesis> = choice.tried.iter().enumerate().map(one).collect();
+    let mut all: Vec<Hypothesis> =
+        choice.tried.iter().enumerate().map(one).collect::<Result<_, RefineError>>()?;
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    all
+    Ok(all)
 }
 
 fn parameters(request: &Request<'_>, judged: &JudgedHypothesis) -> BTreeMap<String, Value> {

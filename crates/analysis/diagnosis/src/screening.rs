@@ -7,6 +7,7 @@ use super::filtered_base::FilteredBase;
 use super::hypothesis::priors;
 use super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
 
 /// An effect that may be missing, by one linearisation.
 #[derive(Clone)]
@@ -20,22 +21,26 @@ pub(super) struct ScreenedEffect {
 }
 
 /// The evidence of each other effect together with those taken, from one linearisation at the
-/// absence of all others, most probable first.
+/// absence of all others, most probable first. One on which the trials' information is not positive
+/// is not among them.
+///
+/// # Errors
+/// Says that the information on the coefficients is not positive.
 pub(super) fn screen(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
-) -> Vec<ScreenedEffect> {
+) -> Result<Vec<ScreenedEffect>, RefineError> {
     let others = search.others(&base.taken);
     let showing = |candidate: &&EffectCandidate| base.workspace.columns().showing(candidate);
     let columns =
         base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
     let places: Vec<usize> = (0..search.nuisance.len()).chain(columns).collect();
     let at_level = |level: usize| {
-        Some((level, MarginalInformation::new(&base.total(level).select(&places), &search.fixed)?))
+        Ok((level, MarginalInformation::new(&base.total(level).select(&places), &search.fixed)?))
     };
     let reduced: Vec<(usize, MarginalInformation)> =
-        (0..base.levels.len()).into_par_iter().filter_map(at_level).collect();
-    screened(search, base, &others, &reduced)
+        (0..base.levels.len()).into_par_iter().map(at_level).collect::<Result<_, RefineError>>()?;
+    Ok(screened(search, base, &others, &reduced))
 }
 
 fn screened(

@@ -88,7 +88,7 @@ impl<'a> HypothesisSearch<'a> {
         let others = self.others(taken).into_iter().filter(has_column).cloned();
         let workspace = self.workspace(taken.iter().cloned().chain(others).collect())?;
         let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
-        Ok(FilteredBase::new(taken, workspace, levels))
+        FilteredBase::new(taken, workspace, levels)
     }
 
     /// Effects that are taken, with nothing beside them.
@@ -101,7 +101,7 @@ impl<'a> HypothesisSearch<'a> {
         levels: &[DiscrepancyFactor],
     ) -> Result<FilteredBase<'a>, RefineError> {
         let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
-        Ok(FilteredBase::new(taken, self.workspace(taken.to_vec())?, levels))
+        FilteredBase::new(taken, self.workspace(taken.to_vec())?, levels)
     }
 
     /// How far coefficients have given way to the trials that are diagnosed.
@@ -129,7 +129,10 @@ impl<'a> HypothesisSearch<'a> {
 
     /// The evidence for one of the effects judged together, given the others: discounted by its
     /// false-alarm level on clean trials, after what the number of hypotheses costs.
-    pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Option<f64> {
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Result<f64, RefineError> {
         let candidate = &judged.candidates[place];
         let sizes: Vec<usize> =
             judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
@@ -140,18 +143,21 @@ impl<'a> HypothesisSearch<'a> {
         let fixing: Vec<NormalPrior> = judged.linearised_at.iter().flat_map(priors).collect();
         let of =
             |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
-        let width = judged.grams.first()?.products.nrows();
+        let width = judged.grams.first().ok_or_else(not_positive)?.products.nrows();
         let reduced = MarginalInformation::new(&Gram::sum(&judged.grams, width), &self.fixed)?
-            .given(&others, &of(&others), &own)?;
+            .given(&others, &of(&others), &own)
+            .ok_or_else(not_positive)?;
         let reduced = reduced.discounted(self.discount(candidate));
-        let estimate = reduced.estimate(&(0..own.len()).collect::<Vec<_>>(), &of(&own))?;
+        let estimate = reduced
+            .estimate(&(0..own.len()).collect::<Vec<_>>(), &of(&own))
+            .ok_or_else(not_positive)?;
         let linearised_at =
             judged.linearised_at[place].at.iter().zip(candidate.form.parameters.values());
         let absent = reduced.at(&linearised_at
             .map(|(at, parameter)| parameter.absent - at)
             .collect::<Vec<_>>()
             .into());
-        Some(estimate.gain - absent + self.log_prior(candidate))
+        Ok(estimate.gain - absent + self.log_prior(candidate))
     }
 
     /// The factor by which the information on an effect is discounted.
@@ -176,7 +182,7 @@ impl<'a> HypothesisSearch<'a> {
     /// The effects of a base alone, at the level at which they are most probable.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Names what a trial lacks, or says that the information is not positive.
     pub fn alone(&self, base: &FilteredBase<'_>) -> Result<(usize, JudgedHypothesis), RefineError> {
         let outside = base.taken.iter().find(|candidate| is_from_outside(candidate));
         self.alone_at(base, &|level| level.is_weighed(outside))
@@ -185,25 +191,23 @@ impl<'a> HypothesisSearch<'a> {
     /// The same at some of the levels.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Names what a trial lacks, or says that the information is not positive.
     pub fn alone_at(
         &self,
         base: &FilteredBase<'_>,
         is_weighed: &dyn Fn(DiscrepancyFactor) -> bool,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
-        let places: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
-        let grams = |level: usize| match base.taken.len() {
-            0 => Ok::<_, RefineError>(base.alone(level)),
-            _ => Ok(base.linearised(&self.calibrated_model, &base.taken)?.grams(level)),
+        // The same at each level, where what stands there is linearised once.
+        let stand = match base.taken.is_empty() {
+            true => None,
+            false => Some(base.linearised(&self.calibrated_model, &base.taken)?),
         };
         let at = |level: usize| {
-            Some((level, self.judged(base, &base.taken, level, grams(level).ok()?, &places)?))
+            let grams = stand.as_ref().map_or_else(|| Ok(base.alone(level)), |s| s.grams(level))?;
+            Ok((level, self.judged((base, level), &base.taken, grams)?))
         };
-        let best = (0..base.levels.len())
-            .filter(|level| is_weighed(base.levels[*level].level))
-            .filter_map(at)
-            .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
-        best.ok_or_else(not_positive)
+        let levels = 0..base.levels.len();
+        most_probable(levels.filter(|level| is_weighed(base.levels[*level].level)).map(at))
     }
 
     /// A hypothesis beside the effects of a base, linearised anew where it stands until it stays
@@ -281,32 +285,27 @@ impl<'a> HypothesisSearch<'a> {
         level: usize,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
         let stand = base.linearised(&self.calibrated_model, candidates)?;
-        let places: Vec<usize> =
-            (0..candidates.iter().map(|candidate| candidate.at.len()).sum()).collect();
         let at = |level: usize| {
-            Some((level, self.judged(base, candidates, level, stand.grams(level), &places)?))
+            Ok((level, self.judged((base, level), candidates, stand.grams(level)?)?))
         };
         let is_weighed = |level: &usize| base.levels[*level].level.is_weighed(candidates.last());
-        let levels = (level.saturating_sub(1)..=level).filter(is_weighed);
-        let best =
-            levels.filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
-        best.ok_or_else(not_positive)
+        most_probable((level.saturating_sub(1)..=level).filter(is_weighed).map(at))
     }
 
+    /// Candidates at a level of a base by the products of each trial.
     fn judged(
         &self,
-        base: &FilteredBase<'_>,
+        (base, level): (&FilteredBase<'_>, usize),
         candidates: &[EffectCandidate],
-        level: usize,
         grams: Vec<Gram>,
-        places: &[usize],
-    ) -> Option<JudgedHypothesis> {
+    ) -> Result<JudgedHypothesis, RefineError> {
         let priors: Vec<NormalPrior> = candidates.iter().flat_map(priors).collect();
-        let total = Gram::sum(&grams, grams.first()?.products.nrows());
-        let reduced = MarginalInformation::new(&total, &self.fixed)?;
-        let estimate = reduced.estimate(places, &priors)?;
+        let places: Vec<usize> = (0..priors.len()).collect();
+        let width = grams.first().ok_or_else(not_positive)?.products.nrows();
+        let reduced = MarginalInformation::new(&Gram::sum(&grams, width), &self.fixed)?;
+        let estimate = reduced.estimate(&places, &priors).ok_or_else(not_positive)?;
         let prior: f64 = candidates.iter().map(|candidate| self.log_prior(candidate)).sum();
-        Some(JudgedHypothesis {
+        Ok(JudgedHypothesis {
             log_evidence: base.levels[level].level.log_prior - 0.5 * reduced.deviance
                 + estimate.gain
                 + prior,
@@ -318,4 +317,16 @@ impl<'a> HypothesisSearch<'a> {
             grams,
         })
     }
+}
+
+/// The most probable of a hypothesis at some levels.
+///
+/// # Errors
+/// The first of theirs, or that no level is weighed.
+fn most_probable(
+    all: impl Iterator<Item = Result<(usize, JudgedHypothesis), RefineError>>,
+) -> Result<(usize, JudgedHypothesis), RefineError> {
+    let all: Vec<(usize, JudgedHypothesis)> = all.collect::<Result<_, _>>()?;
+    let best = all.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+    best.ok_or_else(not_positive)
 }

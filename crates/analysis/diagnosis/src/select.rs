@@ -173,7 +173,7 @@ fn remaining(
     };
     let changes: Vec<f64> = best.candidates.iter().flat_map(open).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
-    let found = unexplained(workspace, expected, &parameters, &effects, clean);
+    let found = unexplained(workspace, expected, &parameters, &effects, clean)?;
     if clean.is_none() || found.is_empty() {
         return Ok(found);
     }
@@ -182,7 +182,7 @@ fn remaining(
     let given_way = search.given_way().into_iter().map(|change| -change);
     let as_calibrated: Vec<f64> =
         given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
-    let dated = unexplained(workspace, expected, &as_calibrated, &effects, clean);
+    let dated = unexplained(workspace, expected, &as_calibrated, &effects, clean)?;
     let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
     let dated: Vec<Unexplained> =
         dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();

@@ -35,7 +35,9 @@ pub(super) fn residuals(
         search.least_step_s,
     )?;
     let level = search.levels[search.levels.len() - 1];
-    let of = |workspace: &LinearisedTrials<'_>, trial: usize| -> Vec<Smoothed> {
+    let of = |workspace: &LinearisedTrials<'_>,
+              trial: usize|
+     -> Result<Vec<Smoothed>, RefineError> {
         let parts = workspace.linear()[trial].iter();
         parts.map(|part| smoothed(part, &workspace.noise, &search.discrepancies(level))).collect()
     };
@@ -43,7 +45,7 @@ pub(super) fn residuals(
     for (place, trial) in search.trials.iter().enumerate() {
         let samples: Vec<usize> =
             before.linear()[place].iter().flat_map(|part| part.samples.clone()).collect();
-        let (before_it, after_it) = (of(&before, place), of(&after, place));
+        let (before_it, after_it) = (of(&before, place)?, of(&after, place)?);
         for axis in 0..before.axes().len() {
             all.push(series(
                 trial,

@@ -224,3 +224,48 @@ fn a_noisy_gyro_is_not_late() {
     assert!(expected < 4.0, "a chi-square of one degree by its mean: {expected}");
     assert!(on_path > 3.0 * expected.max(1.0), "{on_path}");
 }
+
+/// A log through the water beside velocities over the ground: what the hull sees ahead.
+fn with_log(trials: &mut [Trial], (north, east): (f64, f64), scale: f64) {
+    let mut random = ChaCha12Rng::seed_from_u64(11);
+    let noise = Normal::new(0.0, 0.01).unwrap();
+    for trial in trials {
+        let samples = trial.channels[&Channel::U].iter().zip(&trial.channels[&Channel::Psi]);
+        let log = samples.map(|(u, psi)| {
+            let along = north * psi.cos() + east * psi.sin();
+            (u - along) * scale + noise.sample(&mut random)
+        });
+        let log = log.collect();
+        trial.channels.insert(Channel::UWater, log);
+    }
+}
+
+#[test]
+fn a_log_through_the_water_measures_what_a_current_leaves_of_the_speed() {
+    let zoo = Zoo::embedded().unwrap();
+    let (model, library) = (zoo.model("mariner").unwrap(), ["current", "speed-log"]);
+    let effect = hidden(&zoo, "current", &[("north_m_s", 0.3), ("east_m_s", -0.4)]);
+    let mut trials = trials(&zoo, Some(effect));
+    let settings = Settings::default();
+    let alone = among(&library, &zoo, &model, &trials, &settings);
+    with_log(&mut trials, (0.3, -0.4), 1.0);
+    let both = among(&library, &zoo, &model, &trials, &settings);
+    assert_eq!((names(&alone), names(&both)), (vec!["current"], vec!["current"]));
+    assert_eq!(both.verdict, Verdict::Effects);
+    let [without, with] = [&alone, &both].map(|found| found.effects[0].parameters["speed_m_s"]);
+    assert!((with.value - 0.5).abs() < 0.01, "{with:?}");
+    let [without, with] = [without, with].map(|speed| speed.se);
+    assert!(with < without, "{with} with the log, {without} without");
+}
+
+#[test]
+fn a_log_that_reads_too_much_is_no_current() {
+    let zoo = Zoo::embedded().unwrap();
+    let (model, library) = (zoo.model("mariner").unwrap(), ["current", "speed-log"]);
+    let mut trials = trials(&zoo, None);
+    with_log(&mut trials, (0.0, 0.0), 1.04);
+    let found = among(&library, &zoo, &model, &trials, &Settings::default());
+    assert_eq!(names(&found), ["speed-log"]);
+    let scale = found.effects[0].parameters["scale_percent"];
+    assert!((scale.value - 4.0).abs() < 1.0, "{scale:?}");
+}

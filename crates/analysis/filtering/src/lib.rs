@@ -13,11 +13,16 @@
 //! their products ([`Gram`]) are all that fitting, evidence and comparison need.
 
 mod columns;
+mod correction;
+mod discrepancies;
 mod filter;
+mod filter_noise;
+mod filter_value;
 mod followed;
 mod gram;
 mod instruments;
 mod jumps;
+mod kalman_filter;
 mod lanes;
 mod likelihood;
 mod linearise;
@@ -34,9 +39,12 @@ mod symmetric_products;
 mod tangents;
 mod tapes;
 mod thresholds;
+mod transition;
 
 pub use columns::{Columns, EffectCandidate, Nuisance, NuisanceKind, lacked_name};
-pub use filter::{Discrepancies, errors, filter, filter_first, responses, whitened};
+pub use discrepancies::Discrepancies;
+pub use filter::{Whitened, errors, filter, filter_first, responses, whitened};
+pub use filter_noise::unknown_noise;
 pub use gram::Gram;
 pub use likelihood::deviances;
 pub use linearise::linearise;

@@ -2,6 +2,7 @@
 
 use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
+use sistership_simulation::instruments::THROUGH_WATER;
 
 use super::instruments::InstrumentBlock;
 use super::lanes::LANES;
@@ -108,7 +109,8 @@ impl<'a> PathLineariser<'a> {
         let columns = &self.system.columns;
         let acting = (0..columns.candidates.len())
             .filter(|&c| !columns.candidates[c].form.measures.is_empty());
-        let water = self.system.frame == VelocityFrame::Water;
+        let has_log = THROUGH_WATER.iter().any(|&(log, _)| self.path.record.has(log));
+        let water = has_log || self.system.frame == VelocityFrame::Water;
         let seeing = (0..columns.candidates.len())
             .filter(|&c| water && !columns.candidates[c].form.sees.is_empty());
         acting.chain(seeing).flat_map(|c| columns.places(c)).collect()
@@ -146,6 +148,29 @@ impl<'a> PathLineariser<'a> {
                 }
             }
         });
+        self.correct(out);
+    }
+
+    /// Derivatives of the ship's accelerations in place of those of the law, where something was
+    /// learned beside it.
+    fn correct(&self, out: &mut [SampleLinearisation]) {
+        let Some(correction) = &self.block.correction else { return };
+        let Sizes { states, columns, .. } = self.sizes;
+        for (lane, out) in out.iter_mut().enumerate() {
+            correction.carry_over(lane, &mut out.jacobian, states);
+            correction.add_states(lane, &mut out.jacobian, states);
+            correction.carry_over(lane, &mut out.accelerations, columns);
+        }
+        let first = self.system.columns.nuisance.len();
+        for parameter in 0..self.system.followed.len() {
+            let Some((input, moved)) = self.block.moved_input(parameter) else { continue };
+            for (lane, out) in out.iter_mut().enumerate() {
+                let slopes = correction.by_input(lane, input).unwrap_or_default();
+                for (axis, slope) in slopes.iter().enumerate() {
+                    out.accelerations[axis * columns + first + parameter] += slope * moved[lane];
+                }
+            }
+        }
     }
 
     fn differentiate(&mut self, out: &mut [SampleLinearisation]) {
@@ -200,7 +225,7 @@ impl<'a> PathLineariser<'a> {
     fn heavier(&self, (row, column): (Axis, Axis), lane: usize) -> Vec<(usize, f64)> {
         let place = |axis: Axis| self.system.axes.iter().position(|&known| known == axis);
         let (Some(i), Some(j)) = (place(row), place(column)) else { return Vec::new() };
-        let rate = |axis: usize| self.block.rate[axis][lane];
+        let rate = |axis: usize| self.block.by_law[axis][lane];
         let unit = (self.block.mass(i)[lane] * self.block.mass(j)[lane]).sqrt();
         if i == j {
             vec![(i, -unit * rate(i))]

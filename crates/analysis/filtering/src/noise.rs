@@ -117,7 +117,7 @@ pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
     let rate = speed_m_s / lpp_m;
     match channel {
         Channel::X | Channel::Y => RESIDUAL.floor * lpp_m,
-        Channel::U | Channel::V => RESIDUAL.floor * speed_m_s,
+        Channel::U | Channel::V | Channel::UWater | Channel::VWater => RESIDUAL.floor * speed_m_s,
         Channel::R | Channel::P => RESIDUAL.floor * rate,
         _ => RESIDUAL.floor,
     }

@@ -1,6 +1,7 @@
 //! The recorded motion that a model is linearised along.
 
 use sistership_model::trial::Channel;
+use sistership_simulation::instruments::THROUGH_WATER;
 use sistership_simulation::state::at;
 use sistership_simulation::tape::{Lanes, Slots};
 
@@ -38,8 +39,8 @@ impl<'a> RecordedPath<'a> {
         let said: Vec<Option<&[f64]>> =
             system.channels.iter().map(|&(channel, _)| record.trial.channel(channel)).collect();
         let mut states = vec![vec![0.0; record.trial.len()]; system.order()];
-        for (&(_, place), said) in system.channels.iter().zip(&said) {
-            if let Some(said) = said {
+        for (&(channel, place), said) in system.channels.iter().zip(&said) {
+            if let Some(said) = said.filter(|_| is_state(channel)) {
                 states[place] = smoothed(said);
             }
         }
@@ -67,9 +68,12 @@ impl<'a> RecordedPath<'a> {
             let slopes = |state: usize| lanes(|k| slope(t_s, &smooth[state], samples[k]));
             let inputs = self.instrument_inputs(system, &samples, &slopes);
             system.instruments.run(&inputs, &mut work);
-            for (output, &channel) in
-                system.says.iter().enumerate().filter(|(_, channel)| self.said[**channel].is_some())
-            {
+            let moves = |channel: usize| {
+                self.said[channel].is_some() && is_state(system.channels[channel].0)
+            };
+            let moving: Vec<(usize, usize)> =
+                system.says.iter().copied().enumerate().filter(|&(_, c)| moves(c)).collect();
+            for (output, channel) in moving {
                 let state = system.channels[channel].1;
                 let says = system.instruments.read(output, &work);
                 let here = inputs[of_instruments(system.states[state])];
@@ -109,6 +113,11 @@ pub(super) fn of_instruments(place: usize) -> usize {
 
 pub(super) fn rate_of_instruments(place: usize) -> usize {
     INSTRUMENTS.len() + of_instruments(place)
+}
+
+/// Whether the path goes by a channel: a log through the water stands beside the state that does.
+fn is_state(channel: Channel) -> bool {
+    THROUGH_WATER.iter().all(|&(log, _)| log != channel)
 }
 
 /// Central differences; at the ends one-sided.

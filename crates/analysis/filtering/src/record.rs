@@ -50,6 +50,11 @@ impl<'a> TrialReadings<'a> {
         self.len() == 0
     }
 
+    /// Whether a channel was recorded.
+    pub fn has(&self, channel: Channel) -> bool {
+        self.trial.channel(channel).is_some()
+    }
+
     /// A channel that must be there.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use sistership_model::law::STATES;
 use sistership_simulation::tape::{Lanes, Slopes, Slots};
 
 use super::ResidualSystem;
+use super::correction::CorrectionBlock;
 use super::lanes::{LANES, lanes};
 use super::path::RecordedPath;
 use super::tangents::place_of;
@@ -25,6 +26,10 @@ pub(super) struct SampleBlock<'a> {
     pub inverse: Vec<Lanes<LANES>>,
     /// Rates of the filter's states.
     pub rate: Vec<Lanes<LANES>>,
+    /// Accelerations by the law alone.
+    pub by_law: Vec<Lanes<LANES>>,
+    /// What was learned beside the law.
+    pub correction: Option<CorrectionBlock<'a>>,
 }
 
 impl<'a> SampleBlock<'a> {
@@ -43,6 +48,8 @@ impl<'a> SampleBlock<'a> {
             slopes: Slopes::default(),
             inverse: Vec::new(),
             rate: Vec::new(),
+            by_law: Vec::new(),
+            correction: system.correction.as_ref().map(CorrectionBlock::new),
         }
     }
 
@@ -59,6 +66,12 @@ impl<'a> SampleBlock<'a> {
         motion.tape.slopes(&self.primal, &mut self.slopes);
         self.invert_masses();
         self.rate = self.accelerations(&self.primal);
+        self.by_law.clone_from(&self.rate);
+        if let Some(correction) = &mut self.correction {
+            let velocities = [self.inputs[0], self.inputs[1], self.inputs[2]];
+            let inputs = &self.inputs[STATES.len()..];
+            correction.add(velocities, inputs, &mut self.rate);
+        }
         let kinematics = motion.kinematics.iter();
         self.rate.extend(kinematics.map(|&output| motion.tape.read(output, &self.primal)));
     }
@@ -95,6 +108,15 @@ impl<'a> SampleBlock<'a> {
             lanes(|k| sum[k] + added[k])
         };
         (0..axes).map(row).collect()
+    }
+
+    /// By how much a parameter that acts on how an input is followed moves that input, by its own
+    /// change, and which.
+    pub fn moved_input(&self, parameter: usize) -> Option<(usize, Lanes<LANES>)> {
+        let input = self.system.followed[parameter]?.input;
+        let (larger, by) = self.path.followed[parameter].as_ref()?;
+        let here = self.inputs[STATES.len() + input];
+        Some((input, lanes(|k| (larger[self.samples[k]] - here[k]) / by)))
     }
 
     /// What a parameter changes of an input, with a larger figure.

@@ -76,7 +76,7 @@ impl Secants {
             let tape = &block.system.motion.tape;
             tape.run_among(secant.direction.reached(), &self.inputs, &mut self.there);
             let mut slopes = block.accelerations(&self.there);
-            for (there, here) in slopes.iter_mut().zip(&block.rate) {
+            for (there, here) in slopes.iter_mut().zip(&block.by_law) {
                 *there = lanes(|k| (there[k] - here[k]) / secant.by);
             }
             take(block.system.columns.nuisance.len() + secant.parameter, &slopes);

@@ -2,8 +2,10 @@
 //! fixed-interval smoother (Rauch, Tung and Striebel 1965, AIAA J 3, 1445-1450).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use sistership_identification::refine::RefineError;
 
-use super::filter::{Discrepancies, FilterState};
+use super::discrepancies::Discrepancies;
+use super::kalman_filter::KalmanFilter;
 use super::linearised::Linearised;
 use super::noise::Noise;
 
@@ -16,77 +18,112 @@ pub struct Smoothed {
     pub deviations: Vec<Vec<f64>>,
 }
 
-/// State and covariance at a sample.
+/// Mean and covariance of states and discrepancies at a sample.
+#[derive(Debug, Clone)]
 struct GaussianState {
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
 }
 
-/// What the filter knew at a sample, and what it expected there before its readings.
+/// What the filter knows after the readings of a sample, and what it expects before them.
 struct FilterStep {
     known: GaussianState,
     expected: GaussianState,
     transition: DMatrix<f64>,
 }
 
-/// Smooths a part with no columns.
-pub fn smoothed(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Smoothed {
-    let steps = forward(linear, noise, discrepancies);
+/// Smooths the residual of a part, whatever columns it has.
+///
+/// # Errors
+/// Names a channel of which no noise is known, or the time at which a predicted covariance is not
+/// positive definite.
+pub fn smoothed(
+    linear: &Linearised,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Result<Smoothed, RefineError> {
     let (states, axes) = (linear.sizes.states, linear.sizes.axes);
-    let mut smoothed = Smoothed {
-        values: vec![vec![0.0; steps.len()]; axes],
-        deviations: vec![vec![0.0; steps.len()]; axes],
+    let all = smoothed_states(linear, noise, discrepancies)?;
+    let of_axis = |of: &dyn Fn(&GaussianState, usize) -> f64| {
+        let one = |axis: usize| all.iter().map(|state| of(state, states + axis)).collect();
+        (0..axes).map(one).collect()
     };
-    let mut later: Option<GaussianState> = None;
-    for k in (0..steps.len()).rev() {
-        let belief = match &later {
-            Some(later) => backward(&steps[k].known, &steps[k + 1], later),
-            None => GaussianState {
-                mean: steps[k].known.mean.clone(),
-                covariance: steps[k].known.covariance.clone(),
-            },
-        };
-        for axis in 0..axes {
-            smoothed.values[axis][k] = belief.mean[states + axis];
-            smoothed.deviations[axis][k] =
-                belief.covariance[(states + axis, states + axis)].max(0.0).sqrt();
-        }
-        later = Some(belief);
-    }
-    smoothed
+    Ok(Smoothed {
+        values: of_axis(&|state, at| state.mean[at]),
+        deviations: of_axis(&|state, at| state.covariance[(at, at)].max(0.0).sqrt()),
+    })
 }
 
-fn forward(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Vec<FilterStep> {
-    let mut state = FilterState::start(linear, noise, discrepancies, 1);
-    let order = state.order;
-    let belief = |state: &FilterState| GaussianState {
-        mean: DVector::from_column_slice(&state.deviations),
-        covariance: DMatrix::from_row_slice(order, order, &state.covariance),
+/// States and discrepancies at each sample by all readings.
+fn smoothed_states(
+    linear: &Linearised,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Result<Vec<GaussianState>, RefineError> {
+    let steps = forward(linear, noise, discrepancies)?;
+    let mut all: Vec<GaussianState> = Vec::with_capacity(steps.len());
+    for k in (0..steps.len()).rev() {
+        let state = match all.last() {
+            Some(later) => backward(&steps[k].known, &steps[k + 1], later).ok_or_else(|| {
+                RefineError::Data(format!(
+                    "the covariance that the filter predicts for {} s is not positive definite: \
+                     check noise and discrepancies of the model's calibration",
+                    linear.t_s[k + 1]
+                ))
+            })?,
+            None => steps[k].known.clone(),
+        };
+        all.push(state);
+    }
+    all.reverse();
+    Ok(all)
+}
+
+fn forward(
+    linear: &Linearised,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Result<Vec<FilterStep>, RefineError> {
+    let mut filter = KalmanFilter::<f64>::new(vec![linear], noise, discrepancies, 1)?;
+    let belief = |filter: &KalmanFilter<'_, f64>| GaussianState {
+        mean: filter.mean(),
+        covariance: filter.covariance(),
     };
     let mut steps = Vec::with_capacity(linear.samples.len());
     for k in 0..linear.samples.len() {
         if k > 0 {
-            state.predict(linear, k - 1, discrepancies);
+            filter.predict(k - 1);
         }
-        let expected = belief(&state);
+        let expected = belief(&filter);
         if k.is_multiple_of(linear.every) {
-            state.update(linear, k, noise, |_, _| {});
+            filter.update(k, |_, _| {});
         }
-        let transition = DMatrix::from_row_slice(order, order, &state.transition);
-        steps.push(FilterStep { known: belief(&state), expected, transition });
+        let transition = filter.transition();
+        steps.push(FilterStep { known: belief(&filter), expected, transition });
     }
-    steps
+    Ok(steps)
 }
 
-/// What was known at a sample after what came later.
-fn backward(known: &GaussianState, next: &FilterStep, later: &GaussianState) -> GaussianState {
-    let Some(expected) = Cholesky::new(next.expected.covariance.clone()) else {
-        return GaussianState { mean: known.mean.clone(), covariance: known.covariance.clone() };
-    };
+/// What is known of a sample after all later readings; none where the covariance that is expected
+/// at the next sample is not positive definite.
+fn backward(
+    known: &GaussianState,
+    next: &FilterStep,
+    later: &GaussianState,
+) -> Option<GaussianState> {
+    let expected = Cholesky::new(next.expected.covariance.clone())?;
     // The gain is P F' Q^-1; all are symmetric but F.
     let gain = expected.solve(&(&next.transition * &known.covariance)).transpose();
     let mean = &known.mean + &gain * (&later.mean - &next.expected.mean);
     let covariance = &known.covariance
         + &gain * (&later.covariance - &next.expected.covariance) * gain.transpose();
-    GaussianState { mean, covariance }
+    Some(GaussianState { mean, covariance })
 }
+
+#[cfg(test)]
+#[path = "dense_posterior_tests.rs"]
+mod dense_posterior;
+
+#[cfg(test)]
+#[path = "closed_form_tests.rs"]
+mod closed_form;

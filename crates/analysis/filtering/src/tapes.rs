@@ -10,11 +10,13 @@ use sistership_model::effect::Form;
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
+use sistership_simulation::branch::attached;
 use sistership_simulation::equations::{Attitude, Coefficients, EquationsOfMotion, Lowering};
-use sistership_simulation::instruments::{input_names, readings};
+use sistership_simulation::instruments::{THROUGH_WATER, input_names, readings};
 use sistership_simulation::state::RECORDED;
 use sistership_simulation::tape::Tape;
 
+use super::correction::Correction;
 use super::followed::{Followed, Following};
 use super::{Columns, NuisanceKind, lacked_name};
 use sistership_identification::refine::RefineError;
@@ -43,6 +45,8 @@ pub struct ResidualSystem {
     pub(super) says: Vec<usize>,
     /// For each parameter of a candidate that acts on how an input is followed: which, and how.
     pub(super) followed: Vec<Option<Followed>>,
+    /// What the model has learned beside its law.
+    pub(super) correction: Option<Correction>,
 }
 
 /// Forces, masses and kinematics; after states and inputs the tape takes the parameters of the
@@ -64,7 +68,7 @@ impl ResidualSystem {
     /// ([`lacked_name`]), in N (N m) per unit.
     ///
     /// # Errors
-    /// Names what the model does not give.
+    /// Names what the model does not give; the weights of a learned correction among it.
     pub fn new(
         model: &Model,
         law: &Law,
@@ -76,7 +80,7 @@ impl ResidualSystem {
         let equations = EquationsOfMotion::of_law(model, Cow::Owned(law.dressed(model, &forms)));
         let build = SystemBuilder { equations: &equations, columns: &columns };
         let (axes, states) = (equations.axes(), equations.states());
-        let channels = RECORDED.iter().filter_map(|&(channel, place)| {
+        let channels = RECORDED.iter().chain(&THROUGH_WATER).filter_map(|&(channel, place)| {
             Some((channel, states.iter().position(|&s| s == place)?))
         });
         let channels: Vec<(Channel, usize)> = channels.collect();
@@ -85,6 +89,7 @@ impl ResidualSystem {
             motion: build.motion()?,
             regressors: build.regressors()?,
             followed: build.followed(),
+            correction: build.correction()?,
             inputs: equations.inputs(),
             columns,
             states,
@@ -177,6 +182,12 @@ impl SystemBuilder<'_> {
             }
         }
         Ok((lowering.finish(), says))
+    }
+
+    fn correction(&self) -> Result<Option<Correction>, RefineError> {
+        let place = |name: &str| self.equations.law().inputs.get_index_of(name);
+        let learned = attached(self.equations.model())?;
+        Ok(learned.map(|learned| Correction { learned, delta: place("delta"), n: place("n") }))
     }
 
     /// A parameter acts on how the ship follows an input where its form has a time constant or a

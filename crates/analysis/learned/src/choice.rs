@@ -1,11 +1,11 @@
 //! Which kind of branch, if any: each is tried, and trials left out of its training decide.
 
 use serde::{Deserialize, Serialize};
-use sistership_model::trial::Trial;
-use sistership_model::{Law, Model};
+use sistership_model::Model;
 use sistership_simulation::recorded::ReplaySettings;
 
-use crate::judge::{Judgement, judge_in_steps};
+use crate::held_out::HeldOutTrials;
+use crate::judge::{Judgement, judge_folds};
 use crate::settings::{BranchKind, BranchSettings};
 use crate::train::TrainError;
 
@@ -17,8 +17,24 @@ pub struct BranchChoice {
     /// The kind of least error, where that is better than the foundation's by more than one
     /// standard error of the difference; none where no branch should be taken.
     pub taken: Option<BranchKind>,
+    /// What else was asked of that kind, until one thing was not met.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checks: Vec<BranchCheck>,
     /// Why, in words.
     pub reason: String,
+}
+
+/// A comparison that a branch must pass before it is taken.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BranchCheck {
+    /// What is compared.
+    pub what: String,
+    /// The foundation's figure.
+    pub foundation: f64,
+    /// That of the foundation with the branch, which may not be larger.
+    pub branch: f64,
+    /// Whether it is passed.
+    pub passed: bool,
 }
 
 /// A kind that was tried.
@@ -37,7 +53,7 @@ pub struct TriedKind {
 impl BranchChoice {
     /// Nothing was tried, for a reason.
     pub fn untried(reason: String) -> Self {
-        Self { tried: Vec::new(), taken: None, reason }
+        Self { tried: Vec::new(), taken: None, checks: Vec::new(), reason }
     }
 }
 
@@ -74,11 +90,10 @@ impl Kinds {
 /// Tries kinds; `told` is asked before each whether to go on.
 ///
 /// # Errors
-/// As [`judge`]; none where it was stopped.
+/// As [`judge`](crate::judge()); none where it was stopped.
 pub fn choose(
     model: &Model,
-    law: &Law,
-    trials: &[&Trial],
+    on: &HeldOutTrials<'_>,
     (settings, kinds): (&BranchSettings, Kinds),
     told: &dyn Fn(BranchKind) -> bool,
 ) -> Result<Option<BranchChoice>, TrainError> {
@@ -87,8 +102,8 @@ pub fn choose(
         if !told(kind) {
             return Ok(None);
         }
-        let training = settings.of(kind).training(model, law, trials)?;
-        let Some(judged) = judge_in_steps(model, law, trials, &training, kinds.step_s())? else {
+        let training = settings.of(kind).training(model, on.law, on.trials)?;
+        let Some(judged) = judge_folds(on, &training, kinds.step_s())? else {
             let reason = "there is one trial only, and none is left to judge on".to_owned();
             return Ok(Some(BranchChoice::untried(reason)));
         };
@@ -111,7 +126,7 @@ fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
         branch: judged.branch,
         standard_error: judged.standard_error,
     };
-    BranchChoice { tried: judged.iter().map(tried).collect(), taken, reason }
+    BranchChoice { tried: judged.iter().map(tried).collect(), taken, checks: Vec::new(), reason }
 }
 
 /// `kernels` leaves 0.21 of 0.24 on trials left out, with a standard error of 0.05: no win

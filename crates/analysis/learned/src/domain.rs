@@ -6,9 +6,12 @@
 //! range ([`FadedDomain::is_within`]). What is added within D is bounded by what the training held.
 //! Decision 20 has the argument in full.
 
+use sistership_formula::{Comparison, Expr, Function};
 use sistership_model::validity::{Face, Region};
 use sistership_simulation::Envelope;
 use sistership_simulation::branch::Instant;
+
+use crate::expressions::{added, divided, subtracted};
 
 /// The channels of a region, as an instant has them.
 const CHANNELS: [&str; 5] = ["u", "v", "r", "delta", "n"];
@@ -52,6 +55,37 @@ impl FadedDomain {
         if out < 1.0 { 1.0 - out * out * (3.0 - 2.0 * out) } else { 0.0 }
     }
 
+    /// Derivatives of the share with u, v, r, delta and n.
+    pub fn gradient(&self, instant: &Instant) -> [f64; 5] {
+        let mut slopes = [0.0; 5];
+        let [u, v, r] = instant.velocities;
+        let channels = [u, v, r, instant.delta_rad, instant.n_rps];
+        let furthest = self
+            .faces
+            .iter()
+            .map(|face| (face, face.excess(&channels)))
+            .max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let Some((face, excess)) = furthest else { return slopes };
+        let out = excess / self.fade;
+        if out > 0.0 && out < 1.0 {
+            let by_excess = -6.0 * out * (1.0 - out) / self.fade;
+            let side = by_excess * face.side(&channels);
+            face.terms.iter().for_each(|(k, factor, _)| slopes[*k] += side * factor);
+        }
+        slopes
+    }
+
+    /// The share as a formula over the channels; `value` takes what is used more than once.
+    pub fn formula(&self, value: &mut dyn FnMut(Expr) -> Expr) -> Expr {
+        let largest = |a: Expr, b: Expr| Expr::Call(Function::Max, vec![a, b]);
+        let excess = self.faces.iter().map(Bounded::formula).fold(Expr::Number(0.0), largest);
+        let out = value(divided(excess, self.fade));
+        let step = subtracted(Expr::Number(3.0), Expr::Number(2.0).times(out.clone()));
+        let faded = subtracted(Expr::Number(1.0), out.clone().times(out.clone()).times(step));
+        let parts = [out, Expr::Number(1.0), faded, Expr::Number(0.0)];
+        Expr::If(Comparison::Less, Box::new(parts))
+    }
+
     /// Whether the share is nothing before the motion leaves the physical range.
     pub fn is_within(&self, envelope: &Envelope) -> bool {
         let [u, v, r] = self.reach;
@@ -73,6 +107,24 @@ impl Bounded {
     fn excess(&self, channels: &[f64; 5]) -> f64 {
         let at: f64 = self.terms.iter().map(|(k, factor, c)| factor * (channels[*k] - c)).sum();
         (self.bounds[0] - at).max(at - self.bounds[1])
+    }
+
+    /// The sign of the change of the excess with the direction.
+    fn side(&self, channels: &[f64; 5]) -> f64 {
+        let at: f64 = self.terms.iter().map(|(k, factor, c)| factor * (channels[*k] - c)).sum();
+        if at - self.bounds[1] > self.bounds[0] - at { 1.0 } else { -1.0 }
+    }
+
+    fn formula(&self) -> Expr {
+        let term = |&(k, factor, centre): &(usize, f64, f64)| {
+            subtracted(Expr::Name(CHANNELS[k].to_owned()), Expr::Number(centre))
+                .times(Expr::Number(factor))
+        };
+        let terms = self.terms.iter().filter(|(_, factor, _)| *factor != 0.0).map(term);
+        let at = terms.reduce(added).unwrap_or(Expr::Number(0.0));
+        let [low, high] = self.bounds.map(Expr::Number);
+        let sides = vec![subtracted(low, at.clone()), subtracted(at, high)];
+        Expr::Call(Function::Max, sides)
     }
 }
 

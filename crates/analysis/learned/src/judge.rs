@@ -8,20 +8,18 @@ use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
-use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::error::{SquaredError, standard_deviations};
+use sistership_simulation::horizons::{HorizonErrors, combined};
 use sistership_simulation::recorded::{ReplaySettings, replay};
 
-use crate::joined::JoinError;
-use crate::train::{TrainError, Training, train};
-use crate::{joined, version};
+use crate::held_out::{HeldOutFold, HeldOutTrials};
+use crate::train::{TrainError, Training};
 
-/// Most parts in which trials are left out, each once.
-const FOLDS: usize = 4;
-/// Ship lengths sailed between restarts of a simulation, as refinements are judged.
+/// Ship lengths sailed between restarts of a simulation; each trial is simulated as a whole, too,
+/// and the error is the geometric mean of both.
 const RESTART_LENGTHS: f64 = 10.0;
 
-/// What a branch is worth on trials left out of its training. The foundation may have been fitted
-/// on all of them, so that it is the foundation which this favours.
+/// What a branch is worth on trials left out of its training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// Each trial, by a branch that was trained without it.
@@ -54,9 +52,11 @@ pub struct JudgedTrial {
 pub struct TrialError {
     /// Root mean squares by channel, SI.
     pub rmse: BTreeMap<String, f64>,
-    /// Standardised mean squared error (Wakita 2022, Eq. 26).
+    /// Standardised mean squared error (Wakita 2022, Eq. 26), the geometric mean of simulations
+    /// that restart every ten ship lengths and of the whole trial; what is not simulated since one
+    /// stopped counts as an unrelated motion would.
     pub standardised_mse: f64,
-    /// Why the simulation stopped early, if it did; the errors are until then.
+    /// Why the simulation stopped early, if it did; the root mean squares are until then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
 }
@@ -73,39 +73,41 @@ impl Judgement {
     }
 }
 
-/// Judges a training on trials left out, a part of them at a time; none where there is one trial
-/// only, and nothing is left to train on.
+/// Judges a training on trials left out, a part of them at a time, beside a foundation that may
+/// have been fitted on all of them, which this favours; none where there is one trial only, and
+/// nothing is left to train on.
 ///
 /// # Errors
-/// As [`train`].
+/// As [`train`](crate::train()).
 pub fn judge(
     model: &Model,
     law: &Law,
     trials: &[&Trial],
     training: &Training,
 ) -> Result<Option<Judgement>, TrainError> {
-    judge_in_steps(model, law, trials, training, ReplaySettings::default().step_s)
+    let folds = HeldOutFold::of_one(model, trials.len());
+    let held_out = HeldOutTrials { law, trials, folds: &folds };
+    judge_folds(&held_out, training, ReplaySettings::default().step_s)
 }
 
-/// The same by simulations whose steps are at most so long, s.
-pub(crate) fn judge_in_steps(
-    model: &Model,
-    law: &Law,
-    trials: &[&Trial],
+/// Judges a training on trials held out by simulations whose steps are at most so long, s; none
+/// where nothing is held out.
+///
+/// # Errors
+/// As [`judge`].
+pub fn judge_folds(
+    on: &HeldOutTrials<'_>,
     training: &Training,
     step_s: f64,
 ) -> Result<Option<Judgement>, TrainError> {
-    let folds = FOLDS.min(trials.len());
-    if folds < 2 {
-        return Ok(None);
-    }
-    let scales = Scales { deviations: standard_deviations(trials), step_s };
-    let part = |fold: usize| left_out(model, law, trials, training, (fold, folds), &scales);
+    let scales = Scales { deviations: standard_deviations(on.trials), step_s };
+    let part = |fold: &HeldOutFold| judged(on, fold, training, &scales);
     let parts: Vec<Vec<(usize, JudgedTrial)>> =
-        (0..folds).into_par_iter().map(part).collect::<Result<_, TrainError>>()?;
+        on.folds.par_iter().map(part).collect::<Result<_, TrainError>>()?;
     let mut judged: Vec<(usize, JudgedTrial)> = parts.into_iter().flatten().collect();
     judged.sort_by_key(|(place, _)| *place);
-    Ok(Some(summed(judged.into_iter().map(|(_, trial)| trial).collect())))
+    let trials: Vec<JudgedTrial> = judged.into_iter().map(|(_, trial)| trial).collect();
+    Ok((!trials.is_empty()).then(|| summed(trials)))
 }
 
 /// By what errors are divided, and in what steps simulations go.
@@ -114,33 +116,26 @@ struct Scales {
     step_s: f64,
 }
 
-/// The trials of a part, by a branch trained on the others.
-fn left_out(
-    model: &Model,
-    law: &Law,
-    trials: &[&Trial],
+/// The trials of a fold, by its foundation and by the branch trained on the others.
+fn judged(
+    on: &HeldOutTrials<'_>,
+    fold: &HeldOutFold,
     training: &Training,
-    (fold, folds): (usize, usize),
     scales: &Scales,
 ) -> Result<Vec<(usize, JudgedTrial)>, TrainError> {
-    let (outside, inside): (Vec<_>, Vec<_>) =
-        trials.iter().copied().enumerate().partition(|(place, _)| place % folds == fold);
-    let inside: Vec<&Trial> = inside.into_iter().map(|(_, trial)| trial).collect();
-    let foundation = model.foundation();
-    let (branch, weights) = train(&foundation, law, &inside, training)?;
-    let mut both = version::with_branch(&foundation, branch);
-    joined::attach(&mut both, &weights.bytes()?).map_err(Box::<JoinError>::from)?;
-    let of = |(place, trial): (usize, &Trial)| -> Result<(usize, JudgedTrial), TrainError> {
-        let (foundation, _) = simulated(&foundation, law, trial, scales)?;
-        let (branch, share) = simulated(&both, law, trial, scales)?;
+    let both = on.corrected(fold, training)?;
+    let of = |&place: &usize| -> Result<(usize, JudgedTrial), TrainError> {
+        let trial = on.trials[place];
+        let (foundation, _) = simulated(&fold.foundation, on.law, trial, scales)?;
+        let (branch, share) = simulated(&both, on.law, trial, scales)?;
         let share = share.unwrap_or(0.0);
         Ok((place, JudgedTrial { name: trial.name.clone(), foundation, branch, share }))
     };
-    outside.into_iter().map(of).collect()
+    fold.held_out.iter().map(of).collect()
 }
 
-/// A trial simulated, started anew every ten ship lengths: how far off it is, and what the branch
-/// counted for.
+/// A trial simulated, started anew every ten ship lengths and as a whole: how far off it is, and
+/// what the branch counted for.
 fn simulated(
     model: &Model,
     law: &Law,
@@ -150,16 +145,18 @@ fn simulated(
     let mut ship = Ship::new(model, law)?;
     let speeds = trial.channel(Channel::U).into_iter().flatten();
     ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
-    let restart_s = Some(RESTART_LENGTHS * ship.lpp_m() / ship.approach_speed_m_s());
-    let settings = ReplaySettings { restart_s, step_s: scales.step_s, ..ReplaySettings::default() };
-    let run = replay(&ship, trial, &settings).map_err(crate::rows::RowsError::from)?;
-    let error = SquaredError::of(trial, &run);
-    let error = TrialError {
-        rmse: error.rmse(),
-        standardised_mse: standardised_mse(&error, &scales.deviations),
-        stopped: run.stopped.as_ref().map(ToString::to_string),
+    let run = |restart_s: Option<f64>| {
+        let settings =
+            ReplaySettings { restart_s, step_s: scales.step_s, ..ReplaySettings::default() };
+        replay(&ship, trial, &settings).map_err(crate::rows::RowsError::from)
     };
-    Ok((error, ship.branch_share(&run.track)))
+    let restarted = run(Some(RESTART_LENGTHS * ship.lpp_m() / ship.approach_speed_m_s()))?;
+    let (share, whole) = (ship.branch_share(&restarted.track), run(None)?);
+    let (rmse, stopped) = (SquaredError::of(trial, &restarted).rmse(), restarted.stopped.clone());
+    let horizon = |run| HorizonErrors::with_stops(&[trial], &[run], &scales.deviations);
+    let (standardised_mse, _) = combined(&[horizon(restarted), horizon(whole)]);
+    let stopped = stopped.as_ref().map(ToString::to_string);
+    Ok((TrialError { rmse, standardised_mse, stopped }, share))
 }
 
 fn summed(trials: Vec<JudgedTrial>) -> Judgement {

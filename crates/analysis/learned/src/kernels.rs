@@ -88,6 +88,17 @@ impl Kernels {
         self.mean + terms.sum::<f64>()
     }
 
+    /// Adds the derivatives of the answer to `slopes`: of a kernel `k` about `c`,
+    /// `dk/dx = k^2 (c - x) / length^2`.
+    pub fn add_gradient(&self, inputs: &[f64], slopes: &mut [f64]) {
+        let scale = 1.0 / (self.length * self.length);
+        for (centre, factor) in self.centres.chunks_exact(inputs.len()).zip(&self.factors) {
+            let weight = factor * scale * self.kernel(centre, inputs).powi(2);
+            let offsets = centre.iter().zip(inputs).map(|(c, x)| c - x);
+            slopes.iter_mut().zip(offsets).for_each(|(slope, offset)| *slope += weight * offset);
+        }
+    }
+
     /// Whether the lists go together and are of numbers.
     pub fn is_sound(&self, inputs: usize) -> bool {
         let mut numbers = self.centres.iter().chain(&self.factors).chain([&self.mean]);

@@ -2,11 +2,13 @@
 
 use sistership_model::branch::{Branch, BranchMode, BranchOutput};
 use sistership_model::coefficient::Axis;
-use sistership_simulation::branch::{Instant, LearnedBranch};
+use sistership_simulation::branch::{AdditionFormulas, AdditionGradient, Instant, LearnedBranch};
 
+use crate::answer::{MOST_INPUTS, answer};
 use crate::domain::FadedDomain;
+use crate::formula::formulas;
+use crate::gradient::OutputGradient;
 use crate::regressor::Regressor;
-use crate::sample::scaled;
 use crate::weights::Weights;
 
 /// A branch with its weights.
@@ -16,9 +18,6 @@ pub struct Learned {
     outputs: Vec<(usize, BranchOutput, Regressor)>,
     domain: FadedDomain,
 }
-
-/// Most inputs of an output: each signal once, with room.
-const MOST_INPUTS: usize = 16;
 
 impl Learned {
     /// Of a branch and weights that suit it; none where its domain bounds what no branch sees, or
@@ -40,16 +39,6 @@ impl Learned {
     }
 }
 
-/// What an output answers, m/s2 (rad/s2), within what its training held.
-fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f64 {
-    let mut inputs = [0.0; MOST_INPUTS];
-    let count = output.inputs.len();
-    let pairs = inputs.iter_mut().zip(&output.inputs);
-    pairs.for_each(|(value, input)| *value = scaled(input, instant));
-    let [low, high] = output.range;
-    (output.scale * regressor.answer(&inputs[..count])).clamp(low, high)
-}
-
 impl LearnedBranch for Learned {
     fn share(&self, instant: &Instant) -> f64 {
         self.domain.share(instant)
@@ -69,5 +58,25 @@ impl LearnedBranch for Learned {
             added[*place] = share * (answer - replaced);
         }
         added
+    }
+
+    fn gradient(&self, instant: &Instant) -> AdditionGradient {
+        let mut gradient = AdditionGradient::default();
+        let share = self.domain.share(instant);
+        if share == 0.0 {
+            return gradient;
+        }
+        let by_share = self.domain.gradient(instant);
+        for (place, output, regressor) in &self.outputs {
+            let replaces = self.mode != BranchMode::Parallel;
+            let own =
+                OutputGradient::new(output, regressor, instant).joined(replaces, instant, *place);
+            own.add_to(&mut gradient, *place, (share, &by_share));
+        }
+        gradient
+    }
+
+    fn formulas(&self) -> AdditionFormulas {
+        formulas(self.mode, &self.outputs, &self.domain)
     }
 }

@@ -3,12 +3,17 @@
 //! [`train`] makes a branch and its weights, [`ship`] joins them to the model's own law. The same
 //! foundation, trials, recipe and seed give the same bytes (decision 20).
 
+mod answer;
 mod boosted;
 mod choice;
 mod dependence;
 mod domain;
 mod draws;
+mod expressions;
 mod forest;
+mod formula;
+mod gradient;
+mod held_out;
 pub mod horizon;
 mod importance;
 mod joined;
@@ -27,12 +32,13 @@ mod tree;
 mod version;
 mod weights;
 
-pub use choice::{BranchChoice, Kinds, TriedKind, choose};
+pub use choice::{BranchCheck, BranchChoice, Kinds, TriedKind, choose};
 pub use dependence::{InputDependence, LearnedDependence, dependence};
 pub use domain::FadedDomain;
+pub use held_out::{HeldOutFold, HeldOutTrials, corrected};
 pub use importance::{Importance, importance};
 pub use joined::{JoinError, attach, ship};
-pub use judge::{JudgedTrial, Judgement, TrialError, judge};
+pub use judge::{JudgedTrial, Judgement, TrialError, judge, judge_folds};
 pub use learned::Learned;
 pub use regressor::Regressor;
 pub use rows::{Row, RowsError, rows};

@@ -54,6 +54,16 @@ impl Layer {
         }
     }
 
+    /// Derivatives with the inputs of a layer from those with its sums.
+    fn backward(&self, by_sum: &[f64]) -> Vec<f64> {
+        let width = self.weights.len() / self.biases.len();
+        let mut by_input = vec![0.0; width];
+        for (row, value) in self.weights.chunks_exact(width).zip(by_sum) {
+            by_input.iter_mut().zip(row).for_each(|(sum, weight)| *sum += value * weight);
+        }
+        by_input
+    }
+
     fn numbers(&mut self) -> impl Iterator<Item = &mut f64> {
         self.weights.iter_mut().chain(&mut self.biases)
     }
@@ -80,6 +90,31 @@ impl Perceptron {
             std::mem::swap(&mut here, &mut next);
         }
         here[0]
+    }
+
+    /// The layers in order: weights neuron after neuron, and biases.
+    pub fn layers(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        self.0.iter().map(|layer| (&layer.weights[..], &layer.biases[..]))
+    }
+
+    /// Adds the derivatives of the answer to `slopes`, backwards through the layers.
+    pub fn add_gradient(&self, inputs: &[f64], slopes: &mut [f64]) {
+        let mut here = inputs.to_vec();
+        let mut hidden = Vec::with_capacity(self.0.len());
+        for layer in &self.0 {
+            let mut sums = vec![0.0; layer.biases.len()];
+            layer.sums(&here, &mut sums);
+            hidden.push(sums.iter().map(|sum| neuron(*sum).1).collect::<Vec<f64>>());
+            here = sums.into_iter().map(|sum| neuron(sum).0).collect();
+        }
+        let mut after = vec![1.0];
+        for (place, layer) in self.0.iter().enumerate().rev() {
+            if place + 1 < self.0.len() {
+                after.iter_mut().zip(&hidden[place]).for_each(|(value, slope)| *value *= slope);
+            }
+            after = layer.backward(&after);
+        }
+        slopes.iter_mut().zip(after).for_each(|(slope, value)| *slope += value);
     }
 
     /// Whether layers go together, end in one neuron and are of numbers.

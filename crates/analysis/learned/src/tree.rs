@@ -28,6 +28,13 @@ impl Tree {
         }
     }
 
+    /// A node: the input of a split (none of a leaf), the place of the right child, and the bound
+    /// of the split or the leaf's answer.
+    pub fn node(&self, at: usize) -> (Option<usize>, usize, f64) {
+        let (input, right, value) = self.0[at];
+        ((input != LEAF).then_some(usize::from(input)), right as usize, value)
+    }
+
     /// Whether every path ends in a leaf, and asks for inputs that there are.
     pub fn is_sound(&self, inputs: usize) -> bool {
         let within = |at: usize, &(input, right, value): &(u8, u32, f64)| {

@@ -4,8 +4,9 @@ use sistership_model::Model;
 use sistership_model::branch::Branch;
 use sistership_model::vessel::Status;
 
-/// The foundation with a branch. How sure its coefficients and the standard manoeuvres were says
-/// nothing of what sails now, and is left out.
+/// The foundation with a learned correction. How far its coefficients may be from the truth stays:
+/// they act on the law around the correction as before. What its trials left open of the noise is
+/// another matter with the correction, and is left out until it has been learned anew.
 pub fn with_branch(foundation: &Model, branch: Branch) -> Model {
     let trials = branch.recipe.trials.len();
     let said = format!("{} of {trials} trials learned beside the law", branch.words());
@@ -14,7 +15,6 @@ pub fn with_branch(foundation: &Model, branch: Branch) -> Model {
         status: Status::Refined,
         note: Some(note),
         uncertainty: None,
-        posterior: None,
         branch: Some(branch),
         ..foundation.clone()
     }

@@ -11,7 +11,7 @@ use sistership_model::{Law, Model};
 use sistership_simulation::error::SquaredError;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_simulation::recorded::{ReplaySettings, replay};
-use sistership_simulation::{PlantError, Ship};
+use sistership_simulation::{Plant, PlantError, Ship};
 
 fn errors(ship: &Ship, trial: &Trial) -> [f64; 3] {
     let run = replay(ship, trial, &ReplaySettings::default()).unwrap();
@@ -130,9 +130,10 @@ fn what_does_not_belong_together_is_refused_by_name() {
     let (Foundation { law, model: bare }, model, weights) = forest();
     assert!(matches!(ship(&bare, &law, &weights), Err(JoinError::None(_))));
     assert!(matches!(Ship::new(&model, &law), Err(PlantError::Weights { .. })));
+    assert!(matches!(Ship::sisters(&model, &law), Err(PlantError::Weights { .. })));
     assert_eq!(
-        Ship::sisters(&model, &law).unwrap_err(),
-        PlantError::Branch(model.name.clone()),
+        Plant::new(&model, &law).err(),
+        Some(PlantError::Branch(model.name.clone())),
         "a view by formulas cannot have a branch"
     );
     let mut other = weights.clone();

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bounded;
+mod derivatives;
 mod horizon;
 mod learning;
 mod papers;

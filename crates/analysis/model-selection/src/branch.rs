@@ -1,42 +1,90 @@
-//! Whether a learned branch is taken beside what was chosen.
+//! Whether a learned correction is taken beside what was chosen.
 //!
-//! The chosen model was fitted on all trials, of which the branch is judged on those left out of
-//! its training: it is the model without a branch which this favours.
+//! It is judged on trials that neither it nor its foundation has seen: the foundations are the
+//! models of the chosen candidate's folds, and the corrections are trained beside them on the same
+//! trials. What wins there must win at a level of 95 %, sail what every model must, leave the
+//! standard manoeuvres no less certain, and be no worse where the trials of the largest and least
+//! rudder angles and speeds are held out ([`crate::correction`]).
 
-use sistership_identification::refine::{Progress, RefineError, ReplayedTrials, Thinning};
-use sistership_learned::{BranchChoice, BranchKind, BranchSettings, Kinds, TrainError, choose};
+use sistership_identification::refine::{
+    FoldModel, Progress, RefineError, Refinement, ReplayedTrials, Request, Thinning,
+};
+use sistership_learned::{
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Kinds, TrainError, choose,
+};
 use sistership_model::trial::Trial;
-use sistership_model::{Law, Model};
 
+use crate::correction::Correction;
 use crate::thresholds::SEARCH;
 
-/// Tries kinds of branches beside a model, with as many samples as simulations need; few trials
+/// What a correction may be learned beside.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Foundation<'a> {
+    /// The refinement that was chosen, as an explicit request.
+    pub request: Request<'a>,
+    /// What it gave.
+    pub refinement: &'a Refinement,
+    /// The models of its folds; none of the source as carried over, which has seen no trial.
+    pub folds: &'a [FoldModel],
+    /// The trials that have a say.
+    pub trials: &'a [&'a Trial],
+}
+
+impl Foundation<'_> {
+    /// The folds with models that have not seen what they hold out; none where they held out parts
+    /// of trials.
+    fn held_out(&self) -> Vec<HeldOutFold> {
+        if self.folds.is_empty() && self.refinement.is_source_kept() {
+            return HeldOutFold::of_one(&self.refinement.model, self.trials.len());
+        }
+        let one = |fold: &FoldModel| HeldOutFold {
+            foundation: fold.model.foundation(),
+            held_out: fold.held_out.clone(),
+        };
+        self.folds.iter().map(one).collect()
+    }
+}
+
+/// Tries kinds of corrections beside a model, with as many samples as simulations need; few trials
 /// leave too little out.
 ///
 /// # Errors
 /// It was cancelled.
 pub(super) fn branch(
-    (model, law): (&Model, &Law),
-    lpp_m: Option<f64>,
-    trials: &[&Trial],
+    foundation: &Foundation<'_>,
     progress: Progress<'_>,
 ) -> Result<BranchChoice, RefineError> {
+    let (request, trials) = (&foundation.request, foundation.trials);
     if trials.len() < SEARCH.branch_trials {
         return Ok(BranchChoice::untried(few(trials.len())));
     }
-    let by = Thinning { economical: true, smoothing_s: None };
-    let replayed = ReplayedTrials::new(law, lpp_m, trials, by);
-    let kinds = Kinds::WhilePromising { step_s: replayed.step_s };
-    let replayed: Vec<&Trial> = replayed.trials.iter().collect();
-    let settings = BranchSettings::default();
-    let told = |kind: BranchKind| {
-        progress(0.99, &format!("fitting a learned correction: {}", kind.name()))
-    };
-    match choose(model, law, &replayed, (&settings, kinds), &told) {
-        Ok(choice) => choice.ok_or(RefineError::Cancelled),
-        Err(error) => Ok(BranchChoice::untried(untrained(&error))),
+    let folds = foundation.held_out();
+    if folds.is_empty() {
+        return Ok(BranchChoice::untried(IN_PARTS.to_owned()));
     }
+    let by = Thinning { economical: true, smoothing_s: None };
+    let lpp_m = request.target.particular("lpp_m");
+    let replayed = ReplayedTrials::new(request.law, lpp_m, trials, by);
+    let kinds = Kinds::WhilePromising { step_s: replayed.step_s };
+    let thinned: Vec<&Trial> = replayed.trials.iter().collect();
+    let on = HeldOutTrials { law: request.law, trials: &thinned, folds: &folds };
+    let model = &foundation.refinement.model;
+    let settings = BranchSettings::default();
+    let told = |kind: BranchKind| progress(0.99, &format!("trying a branch of {}", kind.name()));
+    let choice = match choose(model, &on, (&settings, kinds), &told) {
+        Ok(choice) => choice.ok_or(RefineError::Cancelled)?,
+        Err(error) => return Ok(BranchChoice::untried(untrained(&error))),
+    };
+    let Some(kind) = choice.taken else { return Ok(choice) };
+    if !progress(0.99, &format!("checking the branch of {}", kind.name())) {
+        return Err(RefineError::Cancelled);
+    }
+    let correction = Correction { foundation, on, kind, step_s: replayed.step_s };
+    Ok(correction.checked(choice).unwrap_or_else(|error| BranchChoice::untried(untrained(&error))))
 }
+
+const IN_PARTS: &str = "none was tried: the trials were held out in parts, not whole, so that every \
+                        model has seen all";
 
 fn few(trials: usize) -> String {
     format!(

@@ -95,10 +95,12 @@ mod tests {
         Weighed {
             step: String::new(),
             error,
+            shortest: error,
             each,
             variance,
             coefficients,
             ridge: None,
+            folds: Vec::new(),
             reason: None,
         }
     }

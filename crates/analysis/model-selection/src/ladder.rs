@@ -38,7 +38,8 @@ pub struct Line {
     pub rung: Rung,
     /// Coefficients fitted.
     pub coefficients: usize,
-    /// Standardised mean squared error on manoeuvres left out; none where a simulation diverged.
+    /// Standardised mean squared error on manoeuvres left out, the geometric mean over restart
+    /// intervals; none where a simulation diverged at the shortest.
     pub error: Option<f64>,
     /// Its standard error over the trials; none below two.
     pub standard_error: Option<f64>,
@@ -49,6 +50,9 @@ pub struct Line {
     pub cost_s: f64,
     /// Whether it was taken.
     pub chosen: bool,
+    /// Whether it is the reference: the most similar ship by correlation that is eligible, refined
+    /// with the l2 prior.
+    pub reference: bool,
     /// Why it is out, or why it was taken.
     pub reason: String,
 }
@@ -61,4 +65,27 @@ pub struct Ladder {
     /// Whether a learned branch is taken beside what was chosen; none where that was not asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch: Option<BranchChoice>,
+}
+
+impl Ladder {
+    /// What the reference leaves on manoeuvres left out, beside what was taken.
+    pub fn reference(&self) -> String {
+        let Some(line) = self.lines.iter().find(|line| line.reference) else {
+            return "Reference: no ship is eligible as a source.".to_owned();
+        };
+        let source = line.source.as_deref().unwrap_or("none");
+        let head = format!(
+            "Reference: the most similar ship by correlation, refined with the l2 prior ({source}, \
+             {})",
+            line.law
+        );
+        let taken = self.lines.iter().find(|line| line.chosen).and_then(|line| line.error);
+        match (line.error, taken) {
+            _ if line.chosen => format!("{head}, is what was taken."),
+            (Some(own), Some(taken)) => {
+                format!("{head}: error {own:.3e}, {:.2} times that of what was taken.", own / taken)
+            }
+            _ => format!("{head}: no error is known, {}.", line.reason),
+        }
+    }
 }

@@ -7,10 +7,13 @@
 
 mod branch;
 mod choice;
+mod correction;
 mod entrant;
+mod extremes;
 mod ladder;
 mod population;
 mod sailed;
+mod scatter;
 mod search;
 mod start;
 mod taken;
@@ -21,7 +24,7 @@ pub use choice::{chosen, standard_error};
 pub use entrant::{Beside, Entrant, HeldBy, entrants};
 pub use ladder::{Ladder, Line, Rung};
 pub use population::population;
-pub use search::search;
+pub use search::{calibration_samples, search};
 pub use start::{Asked, Start, best_start};
 pub use taken::Winner;
 pub use tried::Search;

@@ -1,4 +1,6 @@
-//! What a model must sail before it is taken: rudders, zigzags and motions that no trial had.
+//! What a model must sail before it is taken: rudders, zigzags, motions and revolutions that no trial
+//! had. That it comes to rest, stops and goes astern is asked of every refinement, whichever way it
+//! is chosen (`sistership_propulsion::check`).
 
 use sistership_identification::refine::{Beginning, Helm, helms, record};
 use sistership_model::Model;
@@ -6,6 +8,7 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Steering;
 use sistership_priors::transfer::ready;
+use sistership_propulsion::{PropulsionFault, check, check_turning};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, zigzags};
 use sistership_simulation::recorded::{Recorded, ReplaySettings, replay_all};
@@ -33,6 +36,13 @@ pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<St
     stopped
         .map(|(helm, stopped)| format!("does not sail {}: {stopped}", helm.name))
         .or_else(|| unsailed_zigzag(&ship, &model.steering))
+        .or_else(|| propulsion_fault(&ship))
+}
+
+/// What a ship does wrong with her propeller stopped or reversed, straight ahead or out of a turn.
+fn propulsion_fault(ship: &Ship) -> Option<String> {
+    let fault = check(ship).and_then(|()| check_turning(ship)).err()?;
+    (fault != PropulsionFault::NoRevolutions).then(|| fault.to_string())
 }
 
 /// Zigzags to both sides, from small angles to the gear's limit.
@@ -48,28 +58,37 @@ fn unsailed_zigzag(ship: &Ship, steering: &Steering) -> Option<String> {
     Some(format!("does not sail a zigzag of {angle:.1} deg: {stopped}"))
 }
 
+/// Revolutions by those that were recorded: the propeller stopped, and reversed.
+const ENGINE: [(f64, &str); 2] = [(0.0, ", propeller stopped,"), (-1.0, ", propeller reversed,")];
+
 /// Records that begin in motions of the trials, spread over all of them: a ship comes into motions
 /// in which the model by itself never is. From each the rudder goes hard over to both sides, and
-/// about at random.
+/// about at random; where revolutions were recorded, the propeller is stopped and reversed with the
+/// rudder amidships.
 fn from_recorded_motion(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
     let places: Vec<(&Trial, usize)> =
         trials.iter().flat_map(|trial| (0..trial.len()).map(move |at| (*trial, at))).collect();
-    let one = |k: usize, helm: Helm| {
+    let one = |k: usize, helm: Helm, (turns, engine): (f64, &str)| {
         let (trial, at) = *places.get((2 * k + 1) * places.len() / (2 * SAILED.motions))?;
         let of = |channel: Channel| Some((channel, trial.channel(channel)?[at]));
         // Without all of these nothing begins there; what else was recorded begins as it was.
         let angle_rad = of(Channel::Delta)?.1;
         let moving = [Channel::U, Channel::V, Channel::R].map(of).into_iter();
         let moving = moving.collect::<Option<Vec<_>>>()?;
-        let others = [Channel::P, Channel::Phi, Channel::N].into_iter().filter_map(of);
+        let revolutions = of(Channel::N).map(|(channel, n_rps)| (channel, turns * n_rps));
+        let others = [Channel::P, Channel::Phi].into_iter().filter_map(of).chain(revolutions);
         let begun = Beginning { channels: moving.into_iter().chain(others).collect(), angle_rad };
         let record = record(model, trials, (helm, SAILED.motion_lengths), &begun)?;
         let begun = format!("from the motion of {} at {:.0} s", trial.name, trial.t_s[at]);
-        Some(Trial { name: format!("{} {begun}", record.name), ..record })
+        Some(Trial { name: format!("{}{engine} {begun}", record.name), ..record })
     };
     let helms = |k: usize| [Helm::Held(1.0), Helm::Held(-1.0), Helm::Random(SAILED.records + k)];
-    let all = (0..SAILED.motions).flat_map(|k| helms(k).map(|helm| one(k, helm)));
-    all.collect()
+    let steered = |k: usize| helms(k).map(|helm| one(k, helm, (1.0, "")));
+    let driven = |k: usize| ENGINE.map(|engine| one(k, Helm::Held(0.0), engine));
+    let has_revolutions = trials.iter().all(|trial| trial.channel(Channel::N).is_some());
+    let engines = if has_revolutions { SAILED.motions } else { 0 };
+    let all = (0..SAILED.motions).flat_map(steered);
+    all.chain((0..engines).flat_map(driven)).collect()
 }
 
 #[cfg(test)]

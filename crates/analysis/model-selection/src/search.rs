@@ -28,6 +28,11 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
     climbed(&Search { settings: &settings, ..*search }, progress)
 }
 
+/// Samples on which a search has the noise model learned, where nothing else is asked.
+pub fn calibration_samples() -> usize {
+    SEARCH.calibration
+}
+
 /// What the search sets beside what is asked of it.
 fn searched_by(search: &Search<'_>) -> Settings {
     let (settings, fitted) = (search.settings, search.fitted());
@@ -36,6 +41,7 @@ fn searched_by(search: &Search<'_>) -> Settings {
     let lengths_s = |lengths: f64| length_s.map(|(l, approach)| lengths * l / approach.speed_m_s);
     Settings {
         restart_s: settings.restart_s.or(lengths_s(SEARCH.restart)),
+        longer_restarts_s: longer_restarts_s(search, &lengths_s),
         smoothing_s: settings.smoothing_s.or(lengths_s(SEARCH.smoothing)),
         part_s: settings.part_s.or_else(|| lengths_s(SEARCH.part).filter(|_| !few)),
         in_parts: settings.in_parts || few,
@@ -56,6 +62,23 @@ fn searched_by(search: &Search<'_>) -> Settings {
     }
 }
 
+/// The restart interval at which a bias shows: longer than every trial, so that each is simulated
+/// as a whole; as long as parts where some laws have trials left out in those, so that all
+/// candidates have the same.
+fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
+    let (settings, fitted) = (search.settings, search.fitted());
+    if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
+        return settings.longer_restarts_s.clone();
+    }
+    let longest_s = fitted.iter().map(|trial| trial.duration_s()).fold(0.0, f64::max);
+    let has_roll = search.entrants.iter().any(|entrant| entrant.law.has_roll());
+    let longer_s = match has_roll && fitted.len() < settings.folds {
+        true => lengths_s(SEARCH.part),
+        false => lengths_s(1.0).map(|length_s| longest_s + length_s),
+    };
+    longer_s.into_iter().collect()
+}
+
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
@@ -74,8 +97,10 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     next.extend(alone);
     // What ships have in common says little of one as it is, and much of how far it may be.
     next.extend(population);
+    // The reference is reported whatever comes of it.
+    next.extend(search.reference().filter(|reference| !next.contains(reference)));
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
-    let next = leading(&tried);
+    let next = leading(search, &tried);
     descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
     taken(search, tried, progress)
 }
@@ -156,7 +181,8 @@ fn descend(
     let (begun, place) = (Instant::now(), tried.len());
     let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
         let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
-        tried.push(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength: None });
+        let (refinement, roll_strength, refusal) = (None, None, None);
+        tried.push(Tried { entrant, rung, weighed, refinement, cost_s, roll_strength, refusal });
         descend((search, known), others, rest, tried, progress)
     };
     let is_taken = |all: &[Weighed]| {
@@ -178,10 +204,12 @@ fn descend(
     Ok(())
 }
 
-/// Entrants with their errors, the least first; those that did not sail are left out.
+/// Entrants with their errors at the shortest restart interval, the least first; those that did not
+/// sail are left out. What goes wrong in whole trials the next stage may put right.
 fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
+    let sailed = tried.filter(|one| one.weighed.error.is_some());
     let mut order: Vec<(usize, f64)> =
-        tried.filter_map(|one| Some((one.entrant, one.weighed.error?))).collect();
+        sailed.filter_map(|one| Some((one.entrant, one.weighed.shortest?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
     order
 }
@@ -207,10 +235,43 @@ fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
 }
 
 /// The entrants that lead in weak form: trajectories seldom gain more than
-/// [`SEARCH`]`.trajectory_gain`.
-fn leading(tried: &[Tried]) -> Vec<usize> {
+/// [`SEARCH`]`.trajectory_gain`. A population, which is near wherever other ships hold the law,
+/// takes the place of none of the others.
+fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
-    near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
+    let is_population = |entrant: &usize| search.entrants[*entrant].held_by == HeldBy::Population;
+    let (population, others): (Vec<usize>, Vec<usize>) =
+        near.map(|(entrant, _)| entrant).partition(is_population);
+    others.into_iter().take(SEARCH.trajectories).chain(population).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_identification::testing::{mariner, trials};
+    use sistership_model::Zoo;
+    use sistership_model::trial::Trial;
+
+    #[test]
+    fn whole_trials_are_simulated_where_they_are_held_out_whole() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let sailed = trials(&model, &law, 0.0);
+        let target = zoo.vessel("mariner").unwrap();
+        let intervals = |count: usize| {
+            let trials: Vec<&Trial> = sailed.iter().take(count).collect();
+            let settings = &Settings::default();
+            let search =
+                Search { target, entrants: &[], trials: &trials, population: &[], settings };
+            let searched = searched_by(&search);
+            (searched.restart_s.unwrap(), searched.longer_restarts_s)
+        };
+        let (shortest_s, longer_s) = intervals(4);
+        let longest_s = sailed.iter().map(Trial::duration_s).fold(0.0, f64::max);
+        assert!(longer_s.len() == 1 && longer_s[0] > longest_s, "{longer_s:?}");
+        assert!(longest_s > shortest_s);
+        assert_eq!(intervals(2).1, Vec::<f64>::new(), "parts of two trials");
+    }
 }

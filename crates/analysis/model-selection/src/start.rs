@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
-use crate::branch::branch;
+use crate::branch::{Foundation, branch};
 use crate::entrant::{Beside, Entrant, HeldBy, entrants};
 use crate::ladder::Ladder;
 use crate::population::{asked_at, population};
 use crate::search::search;
 use crate::thresholds::SEARCH;
-use crate::tried::Search;
+use crate::tried::{Search, request};
 use sistership_identification::refine::{Member, Progress, RefineError, Refinement, Settings};
 use sistership_priors::source::{Similarity, similar_with};
 
@@ -57,10 +57,7 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     let similarity = similar_with(zoo, target, None, &fitted, champions);
-    let population = match fitted.len() <= SEARCH.population_trials {
-        true => population(zoo, target),
-        false => Vec::new(),
-    };
+    let population = population(zoo, target);
     let beside = Beside {
         estimate: fitted.len() < SEARCH.few,
         population: asked_at(&population, &similarity),
@@ -68,9 +65,14 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let entrants = entrants(zoo, target, (&sources(asked, &similarity), beside), &fitted);
     let all = Search { target, entrants: &entrants, trials, population: &population, settings };
     let winner = search(&all, progress)?;
+    let foundation = Foundation {
+        request: request(&all, winner.entrant, &winner.settings),
+        refinement: &winner.refinement,
+        folds: &winner.folds,
+        trials: &fitted,
+    };
+    let branch = Some(branch(&foundation, progress)?);
     let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
-    let made = (&refinement.model, &*entrant.law);
-    let branch = Some(branch(made, target.particular("lpp_m"), &fitted, progress)?);
     let ladder = Ladder { branch, ..winner.ladder };
     let is_held = entrant.held_by == HeldBy::Population;
     let population = if is_held { population } else { Vec::new() };

@@ -3,7 +3,7 @@
 use sistership_model::Law;
 
 use sistership_identification::refine::{
-    Progress, RefineError, Refinement, Settings, SourceEnvelopes, refine,
+    FoldModel, Progress, RefineError, Refinement, Settings, SourceEnvelopes, refine,
 };
 
 use crate::choice::standard_error;
@@ -26,6 +26,8 @@ pub struct Winner {
     pub ladder: Ladder,
     /// The refinement that naming all of it gives.
     pub refinement: Refinement,
+    /// The models of its folds.
+    pub folds: Vec<FoldModel>,
 }
 
 /// Refines the choice by its own settings. Where nothing that was fitted can be taken then, for no
@@ -58,14 +60,14 @@ pub(super) fn taken(
                 let law = &search.entrants[entrant].law;
                 let unsailed = unsailed_rudder(&refinement.model, law, &search.fitted());
                 let ladder = ladder(search, &tried, best);
-                let winner = Winner { entrant, settings, ladder, refinement };
+                let folds = tried[best].weighed.folds.clone();
+                let winner = Winner { entrant, settings, ladder, refinement, folds };
                 let Some(reason) = unsailed else { return Ok(winner) };
                 spare.get_or_insert(winner);
                 reason
             }
         };
-        let weighed = &mut tried[best].weighed;
-        (weighed.error, weighed.reason) = (None, Some(reason));
+        tried[best].refusal = Some(reason);
         tried.extend(held_more(search, &tried[best], progress)?);
     }
 }
@@ -103,7 +105,9 @@ fn stronger_roll(law: &Law, before: Option<f64>) -> Option<f64> {
 }
 
 fn nothing_left(tried: &[Tried]) -> RefineError {
-    RefineError::diverged(tried.iter().filter_map(|one| one.weighed.reason.as_deref()))
+    let reason = |one: &'_ Tried| one.refusal.clone().or_else(|| one.weighed.reason.clone());
+    let reasons: Vec<String> = tried.iter().filter_map(reason).collect();
+    RefineError::diverged(reasons.iter().map(String::as_str))
 }
 
 /// Settings that name a rung's method, and of a weak form or of what trajectories begin with the
@@ -145,10 +149,19 @@ fn fitted(
 }
 
 fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
-    let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
+    let left = tried.iter().filter(|one| one.refusal.is_none());
+    let least = left.filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
+    let reference = reference(search, tried);
     let lines = tried.iter().enumerate();
-    let lines = lines.map(|(k, one)| line(search, one, least, k == best)).collect();
-    Ladder { lines, branch: None }
+    let line =
+        |(k, one)| Line { reference: reference == Some(k), ..line(search, one, least, k == best) };
+    Ladder { lines: lines.map(line).collect(), branch: None }
+}
+
+/// The place of the reference as it was first fitted.
+fn reference(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
+    let entrant = search.reference()?;
+    tried.iter().position(|one| one.entrant == entrant && one.rung == Rung::Weak)
 }
 
 fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
@@ -161,6 +174,7 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
         true => "of what is alike, the least with five times its variance elsewhere".to_owned(),
         false => format!("{ratio:.2} times the least error"),
     };
+    let reason = tried.refusal.clone().or_else(|| tried.weighed.reason.clone());
     Line {
         source: entrant.source_name().map(str::to_owned),
         law: entrant.law.name.clone(),
@@ -171,7 +185,8 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
         variance: tried.weighed.variance.filter(|variance| variance.is_finite()),
         cost_s: tried.cost_s,
         chosen,
-        reason: tried.weighed.reason.clone().unwrap_or(outcome),
+        reference: false,
+        reason: reason.unwrap_or(outcome),
     }
 }
 
@@ -207,6 +222,47 @@ mod tests {
     }
 
     #[test]
+    fn the_reference_keeps_its_error_where_it_is_refused() {
+        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let source_law = Some(law.clone());
+        let alone = Entrant {
+            source: model.clone(),
+            source_law: None,
+            law: law.clone(),
+            held_by: HeldBy::Source,
+        };
+        let similar = Entrant { source: model, source_law, law, held_by: HeldBy::Source };
+        let search = Search {
+            target: zoo.vessel("mariner").unwrap(),
+            entrants: &[alone, similar],
+            trials: &[],
+            population: &[],
+            settings: &Settings::default(),
+        };
+        let tried = |entrant, error, refusal: Option<&str>| Tried {
+            entrant,
+            rung: Rung::Weak,
+            weighed: Weighed {
+                error: Some(error),
+                reason: None,
+                ..Weighed::refused(String::new())
+            },
+            refinement: None,
+            cost_s: 0.0,
+            roll_strength: None,
+            refusal: refusal.map(str::to_owned),
+        };
+        let all = [tried(0, 0.2, None), tried(1, 0.1, Some("does not sail"))];
+        let ladder = ladder(&search, &all, 0);
+        let line = &ladder.lines[1];
+        assert!(line.reference && !line.chosen && !ladder.lines[0].reference);
+        assert_eq!((line.error, line.reason.as_str()), (Some(0.1), "does not sail"));
+        assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("of"), "chosen");
+        let words = ladder.reference();
+        assert!(words.contains("mariner/") && words.contains("0.50 times"), "{words}");
+    }
+
+    #[test]
     fn roll_is_held_more_with_every_refusal() {
         let zoo = Zoo::embedded().unwrap();
         let law = |name: &str| zoo.law(name).unwrap();
@@ -232,8 +288,10 @@ mod tests {
         };
         let refused = |rung, lambda| {
             let ridge = Some((Family::Own, lambda));
-            let weighed = Weighed { ridge, ..Weighed::refused("does not sail".to_owned()) };
-            Tried { entrant: 0, rung, weighed, refinement: None, cost_s: 0.0, roll_strength: None }
+            let weighed = Weighed { ridge, ..Weighed::refused(String::new()) };
+            let (refinement, roll_strength) = (None, None);
+            let refusal = Some("does not sail".to_owned());
+            Tried { entrant: 0, rung, weighed, refinement, cost_s: 0.0, roll_strength, refusal }
         };
         let again = |rung, lambda| {
             let refused = refused(rung, lambda);

@@ -9,7 +9,8 @@ pub(super) struct SearchThresholds {
     /// `g_t`: error in weak form by the least of it up to which trajectories are fitted,
     /// dimensionless. Source: `docs/evidence/plain.md`.
     pub trajectory_gain: f64,
-    /// Most entrants of which trajectories are fitted, a count. Source: `docs/evidence/plain.md`.
+    /// Most entrants of which trajectories are fitted, beside a population, a count. Source:
+    /// `docs/evidence/plain.md`.
     pub trajectories: usize,
     /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
     /// other alone, and a scatter has one degree of freedom.
@@ -36,11 +37,6 @@ pub(super) struct SearchThresholds {
     /// Most ships of a population, by rank of similarity, a count. Source: chosen, more than the
     /// zoo has; each is asked at every state.
     pub population: usize,
-    /// Most trials beside which a population enters, a count. Source: derived: one less than
-    /// branches are tried of. What ships have in common and a branch beside a law are two ways to
-    /// say what a law alone does not, and of so many trials the second says more
-    /// (docs/evidence/population.md).
-    pub population_trials: usize,
     /// `k_v`: weight of the variance where no trial reaches beside the error on trials left out,
     /// dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub elsewhere: f64,
@@ -75,7 +71,6 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     kept: 1e9,
     sources: 5,
     population: 48,
-    population_trials: 11,
     elsewhere: 5.0,
     restart: 5.0,
     part: 10.0,

@@ -35,6 +35,13 @@ impl<'a> Search<'a> {
         let held_out = &self.settings.held_out;
         self.trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect()
     }
+
+    /// The place of the reference: the most similar ship by correlation that is eligible, under its
+    /// own law where that can be fitted, with the source as l2 prior. None without such a ship.
+    pub(super) fn reference(&self) -> Option<usize> {
+        let is_source = |one: &Entrant| one.source_law.is_some() && one.held_by == HeldBy::Source;
+        self.entrants.iter().position(is_source)
+    }
 }
 
 /// A candidate with where it came from.
@@ -47,6 +54,8 @@ pub(super) struct Tried {
     pub cost_s: f64,
     /// By how much more than the likeliest roll was held; none where not more.
     pub roll_strength: Option<f64>,
+    /// Why it cannot be taken, though it was weighed.
+    pub refusal: Option<String>,
 }
 
 /// An entrant's refinement by some settings.
@@ -98,13 +107,16 @@ pub(super) fn weighed_on(
     let weighed = on_rung(rung, weighed)?;
     let cost_s = begun.elapsed().as_secs_f64();
     let roll_strength = settings.roll_strength;
-    Ok(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength })
+    Ok(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength, refusal: None })
 }
 
-/// The place of what is taken of all that was tried.
+/// The place of what is taken of all that was tried and not refused.
 pub(super) fn chosen_of(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
     let is_held = |one: &Tried| search.entrants[one.entrant].held_by == HeldBy::Population;
-    chosen(&tried.iter().map(|one| (&one.weighed, is_held(one))).collect::<Vec<_>>())
+    let left: Vec<(usize, &Tried)> =
+        tried.iter().enumerate().filter(|(_, one)| one.refusal.is_none()).collect();
+    let all: Vec<_> = left.iter().map(|(_, one)| (&one.weighed, is_held(one))).collect();
+    chosen(&all).map(|place| left[place].0)
 }
 
 /// The weak form that an entrant had.

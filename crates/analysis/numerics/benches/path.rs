@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
-use sistership_numerics::{Moments, RidgeChoice, RidgePath, Validation};
+use sistership_numerics::{AlphaError, Moments, RidgeChoice, RidgePath, Validation};
 
 const REGRESSORS: usize = 22;
 const SAMPLES: usize = 5000;
@@ -49,18 +49,11 @@ fn best(folds: &[(RidgePath, Validation)], target: usize, source: &[f64]) -> Rid
     for k in 0..LAMBDAS {
         let lambda = 10_f64.powf(-6.0 + 16.0 * k as f64 / (LAMBDAS - 1) as f64);
         let of_fold = |(path, validation): &(RidgePath, Validation)| {
-            path.best_alpha(target, lambda, source, validation, (0.0, 0.1))
+            path.error_by_alpha(target, lambda, source, validation)
         };
-        let each: Vec<(f64, f64)> = folds.iter().map(of_fold).collect();
-        let error: f64 = each.iter().map(|(_, error)| error).sum();
+        let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least(0.1);
         if error < best.0 {
-            best = (
-                error,
-                RidgeChoice {
-                    lambda,
-                    alpha: each.iter().map(|(alpha, _)| alpha / FOLDS as f64).sum(),
-                },
-            );
+            best = (error, RidgeChoice { lambda, alpha });
         }
     }
     best.1

@@ -1,6 +1,7 @@
 //! Linear regression with a prior: sufficient statistics, and the whole path of ridge solutions
 //! from one decomposition.
 
+mod alpha_error;
 pub mod cma_es;
 mod metric;
 mod moments;
@@ -8,6 +9,7 @@ mod path;
 mod scatter;
 mod whitened;
 
+pub use alpha_error::AlphaError;
 pub use metric::Metric;
 pub use moments::{Moments, merged};
 pub use path::{RidgeChoice, RidgePath, Validation};

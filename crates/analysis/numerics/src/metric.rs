@@ -110,6 +110,17 @@ mod tests {
     }
 
     #[test]
+    fn what_varies_by_less_than_rounding_by_its_mean_is_still() {
+        let column = |mean: f64, size: f64| -> Vec<f64> {
+            (0..400).map(|k| mean + size * (0.11 * f64::from(k)).sin()).collect()
+        };
+        let columns = [column(1e6, 3e-6), column(1e6, 1e-2), column(0.0, 1e-12), vec![0.0; 400]];
+        let metric = Metric::of_regressors(&Moments::of_columns(&columns, 3), &[1.0; 3]);
+        assert!(metric.is_still(0) && !metric.is_still(1) && !metric.is_still(2));
+        assert_eq!((metric.root()[(0, 0)], metric.back()[(0, 0)]), (0.0, 0.0));
+    }
+
+    #[test]
     fn a_precision_has_its_root_and_its_inverse() {
         let precision = DMatrix::from_row_slice(2, 2, &[4e8, 3e3, 3e3, 0.09]);
         let metric = Metric::of_precision(&precision).unwrap();

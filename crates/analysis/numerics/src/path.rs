@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::{Metric, Moments};
+use super::{AlphaError, Metric, Moments};
 
 /// Everything that one set of samples and one source need for all (lambda, alpha).
 #[derive(Debug, Clone)]
@@ -95,25 +95,20 @@ impl RidgePath {
         source.iter().enumerate().map(one).collect()
     }
 
-    /// The alpha within a range that is best at `lambda` on other samples, and the mean squared
-    /// error there; the error is that of the model without intercept, and quadratic in alpha, so
-    /// that its minimum is at hand.
-    pub fn best_alpha(
+    /// The mean squared error at `lambda` on held-out samples as a function of alpha: that of the
+    /// model without intercept.
+    pub fn error_by_alpha(
         &self,
         target: usize,
         lambda: f64,
         source: &[f64],
         validation: &Validation,
-        alphas: (f64, f64),
-    ) -> (f64, f64) {
+    ) -> AlphaError {
         let (data, prior) = self.parts(target, lambda);
         let fixed = self.unscaled(&data, source);
         let zero = vec![0.0; source.len()];
         let along = self.unscaled(&prior, &zero);
-        let (constant, linear, square) = validation.error_along(target, &fixed, &along);
-        let stationary = if square > 0.0 { -linear / (2.0 * square) } else { 1.0 };
-        let weight = stationary.clamp(1.0 - alphas.1, 1.0 - alphas.0);
-        (1.0 - weight, constant + linear * weight + square * weight * weight)
+        validation.error_along(target, &fixed, &along)
     }
 
     /// Residual variance of a target at a solution, from the statistics alone; degrees of freedom
@@ -233,8 +228,8 @@ impl Validation {
         Self { raw: moments.raw_products(), regressors: moments.regressors() }
     }
 
-    /// Mean squared error of `fixed + w along` as `(constant, linear, square)` in `w`.
-    fn error_along(&self, target: usize, fixed: &[f64], along: &[f64]) -> (f64, f64, f64) {
+    /// Mean squared error of `fixed + w along`, with `w` the weight of the source.
+    fn error_along(&self, target: usize, fixed: &[f64], along: &[f64]) -> AlphaError {
         let (p, t) = (self.regressors, self.regressors + target);
         let (mut cross, mut square, mut own, mut data, mut shift) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for j in 0..p {
@@ -250,119 +245,14 @@ impl Validation {
             data += column[t] * fixed[j];
             shift += column[t] * along[j];
         }
-        (self.raw[(t, t)] - 2.0 * data + own, 2.0 * (cross - shift), square)
+        AlphaError {
+            constant: self.raw[(t, t)] - 2.0 * data + own,
+            linear: 2.0 * (cross - shift),
+            square,
+        }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    fn samples() -> Vec<Vec<f64>> {
-        let x: Vec<f64> = (0..400).map(|k| (0.11 * f64::from(k)).sin()).collect();
-        let z: Vec<f64> = (0..400).map(|k| 3.0 + (0.07 * f64::from(k)).cos()).collect();
-        let y = x.iter().zip(&z).map(|(x, z)| 2.0 * x - 0.5 * z).collect();
-        vec![x, z, y]
-    }
-
-    #[test]
-    fn known_coefficients_are_recovered_and_the_source_holds_when_told_to() {
-        let path = RidgePath::new(&Moments::of_columns(&samples(), 2), &[vec![1.0, 1.0]]);
-        let at =
-            |lambda: f64, alpha: f64| path.solve(0, RidgeChoice { lambda, alpha }, &[1.0, 1.0]);
-        let free = at(1e-12, 0.0);
-        assert!((free[0] - 2.0).abs() < 1e-9 && (free[1] + 0.5).abs() < 1e-9);
-        let held = at(1e9, 0.0);
-        assert!((held[0] - 1.0).abs() < 1e-6 && (held[1] - 1.0).abs() < 1e-6);
-        assert!(at(1e9, 1.0)[0].abs() < 1e-6);
-    }
-
-    #[test]
-    fn the_closed_form_solves_the_normal_equations() {
-        let moments = Moments::of_columns(&samples(), 2);
-        let (lambda, alpha, source) = (0.3, 0.2, [1.5, -1.0]);
-        let beta = RidgePath::new(&moments, &[source.to_vec()]).solve(
-            0,
-            RidgeChoice { lambda, alpha },
-            &source,
-        );
-        for i in 0..2 {
-            let sigma = moments.variance(i).sqrt();
-            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() / sigma
-                + lambda * beta[i] * sigma;
-            let right = moments.covariance_with_target(i, 0) / sigma
-                + lambda * (1.0 - alpha) * source[i] * sigma;
-            assert!((left - right).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn shrinkage_makes_a_prior_more_precise() {
-        let moments = Moments::of_columns(&samples(), 2);
-        let (lambda, source, shrinkage) = (0.3, [1.5, -1.0], [1.0, 9.0]);
-        let path = RidgePath::shrunken(&moments, &[source.to_vec()], &shrinkage);
-        let beta = path.solve(0, RidgeChoice { lambda, alpha: 0.0 }, &source);
-        for i in 0..2 {
-            let precision = lambda * shrinkage[i] * moments.variance(i);
-            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>()
-                + precision * beta[i];
-            assert!(
-                (left - moments.covariance_with_target(i, 0) - precision * source[i]).abs() < 1e-12
-            );
-        }
-        let ratio = |deviations: Vec<(f64, f64)>| deviations[1].1;
-        let plain = RidgePath::new(&moments, &[source.to_vec()]);
-        assert!(
-            (ratio(plain.deviations(lambda)) / ratio(path.deviations(lambda)) - 3.0).abs() < 1e-12
-        );
-    }
-
-    /// Against the density of the samples themselves, a normal distribution of as many dimensions
-    /// as there are samples.
-    #[test]
-    fn the_misfit_is_that_of_the_marginal_likelihood() {
-        let mut columns: Vec<Vec<f64>> =
-            samples().iter().map(|column| column[..40].to_vec()).collect();
-        columns[2].iter_mut().enumerate().for_each(|(k, y)| *y += 0.3 * (5.1 * k as f64).sin());
-        let source = [1.5, -1.0];
-        let path = RidgePath::new(&Moments::of_columns(&columns, 2), &[source.to_vec()]);
-        let centred = columns.iter().map(|column| {
-            let column = DVector::from_vec(column.clone());
-            let mean = column.mean();
-            column.add_scalar(-mean)
-        });
-        let centred: Vec<DVector<f64>> = centred.collect();
-        let unexplained = &centred[2] - &centred[0] * source[0] - &centred[1] * source[1];
-        let direct = |lambda: f64| {
-            let spread = |x: &DVector<f64>| x * x.transpose() / (x.norm_squared() * lambda);
-            let covariance = DMatrix::identity(40, 40) + spread(&centred[0]) + spread(&centred[1]);
-            let variance =
-                unexplained.dot(&covariance.clone().lu().solve(&unexplained).unwrap()) / 40.0;
-            variance.ln() + covariance.determinant().ln() / 40.0
-        };
-        for lambda in [1e-4, 1e-2, 1.0] {
-            assert!((path.misfit(0, lambda) - direct(lambda)).abs() < 1e-9, "{lambda}");
-        }
-    }
-
-    #[test]
-    fn the_best_alpha_beats_its_neighbours() {
-        let moments = Moments::of_columns(&samples(), 2);
-        let source = [2.5, -0.7];
-        let path = RidgePath::new(&moments, &[source.to_vec()]);
-        let validation = Validation::new(&moments);
-        let (alpha, error) = path.best_alpha(0, 1.0, &source, &validation, (0.0, 1.0));
-        for other in [alpha - 0.05, alpha + 0.05] {
-            let beta = path.solve(0, RidgeChoice { lambda: 1.0, alpha: other }, &source);
-            let columns = samples();
-            let mse = (0..400)
-                .map(|k| {
-                    (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)
-                })
-                .sum::<f64>()
-                / 400.0;
-            assert!(mse > error);
-        }
-    }
-}
+#[path = "path_tests.rs"]
+mod tests;

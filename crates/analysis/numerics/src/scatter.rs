@@ -99,4 +99,52 @@ mod tests {
         assert!((never * OUTSIDE - 1.0).abs() < 1e-9, "{never}");
         assert!(shown < 0.4 && shown > 0.3, "a third of what all alike would be: {shown}");
     }
+
+    /// Members that are all as far from their mean count alike: the scatter is their covariance, by
+    /// its trace, and a coefficient that nothing moves has no part in it.
+    #[test]
+    fn the_precision_is_that_of_the_members_and_of_what_none_shows() {
+        let member = |a: f64, b: f64| DVector::from_vec(vec![5.0 + a, b - 2.0, 0.0]);
+        let first =
+            vec![member(0.6, 0.8), member(-0.6, -0.8), member(0.8, -0.6), member(-0.8, 0.6)];
+        let second = vec![member(2.0, 0.0), member(-2.0, 0.0)];
+        let scatter = Scatter::new(&[first, second], ROUNDS);
+        for mean in &scatter.means {
+            assert!((mean - DVector::from_vec(vec![5.0, -2.0, 0.0])).norm() < 1e-12);
+        }
+        // Each target by its own size: (1/2, 1/2) and (1, 0), in the mean.
+        let direct = DMatrix::from_diagonal(&DVector::from_vec(vec![0.75, 0.25, 0.0]));
+        assert!((&scatter.matrix - &direct).amax() < 1e-12, "{}", scatter.matrix);
+        let own = DMatrix::from_diagonal(&DVector::from_vec(vec![4.0, 9.0, 0.0]));
+        let metric = Metric::of_precision(&own).unwrap();
+        let precision = scatter.precision(&metric, OUTSIDE).unwrap();
+        // Two coefficients move.
+        let variance = |share: f64| (1.0 - OUTSIDE) * 2.0 * share + OUTSIDE;
+        let expected = [4.0 / variance(0.75), 9.0 / variance(0.25), 0.0];
+        for i in 0..3 {
+            for j in 0..3 {
+                let expected = if i == j { expected[i] } else { 0.0 };
+                assert!((precision[(i, j)] - expected).abs() < 1e-12, "{precision}");
+            }
+        }
+    }
+
+    /// One that is `k` times as far as the median counts one `k`-th.
+    #[test]
+    fn a_member_counts_less_by_how_far_it_is() {
+        let along = [-1.0, 0.0, 1.0].map(|t| DVector::from_vec(vec![t]));
+        let far = DVector::from_vec(vec![40.0]);
+        let (mean, weights) = weighted_mean(&[along.as_slice(), &[far]].concat(), 200);
+        let distance = |t: f64| (t - mean[0]).abs();
+        let mut all = [-1.0, 0.0, 1.0, 40.0].map(distance);
+        all.sort_by(f64::total_cmp);
+        let median = all[2];
+        for (t, weight) in [-1.0, 0.0, 1.0, 40.0].into_iter().zip(&weights) {
+            let expected = (median / distance(t)).min(1.0);
+            assert!((weight - expected).abs() < 1e-9, "{t}: {weight} {expected}");
+        }
+        let sum: f64 = weights.iter().sum();
+        let direct = (-weights[0] + weights[2] + 40.0 * weights[3]) / sum;
+        assert!((mean[0] - direct).abs() < 1e-12);
+    }
 }

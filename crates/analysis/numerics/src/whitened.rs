@@ -98,6 +98,7 @@ impl Whitened {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::super::{RidgeChoice, RidgePath, Validation};
     use super::*;
 
@@ -148,13 +149,51 @@ mod tests {
             (0..2).for_each(|j| {
                 assert!((source[j] + solved[j] / deviation(j) - direct[j]).abs() < 1e-10)
             });
-            let (_, expected) =
-                path.best_alpha(0, lambda, &source, &Validation::new(&left_out), (0.0, 0.0));
+            let by_alpha = path.error_by_alpha(0, lambda, &source, &Validation::new(&left_out));
+            let expected = by_alpha.at(0.0);
             assert!((error - expected).abs() < 1e-10, "{lambda}: {error} {expected}");
             assert!(
                 (whitened.residual_variance(0, lambda) - path.residual_variance(0, choice)).abs()
                     < 1e-10
             );
         }
+    }
+
+    /// Of two targets, against the samples themselves and the inverse of the covariance.
+    #[test]
+    fn solutions_and_variances_are_those_of_the_normal_equations() {
+        let mut columns = columns(0.0);
+        let other = (0..300).map(|k| (0.23 * f64::from(k)).cos() + 0.5 * columns[0][k as usize]);
+        columns.push(other.collect());
+        let moments = Moments::of_columns(&columns, 2);
+        let whitened = Whitened::new(&moments);
+        let lambda = 0.2;
+        let (covariance, cross) = moments.covariances();
+        let inverse = (&covariance + DMatrix::identity(2, 2) * lambda).try_inverse().unwrap();
+        assert_eq!(whitened.count(), 300.0);
+        let spread = DMatrix::from_diagonal(&whitened.variances(lambda));
+        let variances = whitened.basis() * spread * whitened.basis().transpose();
+        assert!((variances - &inverse / 300.0).amax() < 1e-14);
+        let freedom = (&covariance * &inverse).trace();
+        for target in 0..2 {
+            let solved = whitened.basis() * whitened.solution(target, lambda);
+            assert!((&solved - &inverse * cross.column(target)).amax() < 1e-12);
+            let own = &columns[2 + target];
+            let left = |k: usize| own[k] - solved[0] * columns[0][k] - solved[1] * columns[1][k];
+            let mean = (0..300).map(left).sum::<f64>() / 300.0;
+            let squares: f64 = (0..300).map(|k| (left(k) - mean).powi(2)).sum();
+            let direct = squares / (300.0 - freedom - 1.0);
+            assert!((whitened.residual_variance(target, lambda) - direct).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn the_least_lambda_is_a_billionth_of_the_largest_eigenvalue() {
+        let moments = Moments::of_columns(&columns(0.0), 2);
+        let largest = moments.covariances().0.symmetric_eigen().eigenvalues.max();
+        let own = Whitened::new(&moments).least_lambda();
+        assert!((own / (1e-9 * largest) - 1.0).abs() < 1e-12);
+        let still = Moments::of_columns(&[vec![2.0; 9], vec![3.0; 9], vec![1.0; 9]], 2);
+        assert_eq!(Whitened::new(&still).least_lambda(), f64::MIN_POSITIVE);
     }
 }

@@ -83,6 +83,15 @@ fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
     Some([-stiffness, -DAMPING * critical]).filter(|both| both.iter().all(|one| one.is_finite()))
 }
 
+/// What stands for a source's roll, of which it says nothing.
+pub fn roll_words(carried: &Model) -> Option<String> {
+    let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
+    carried.coefficients.values().find(is_hydrostatic)?;
+    let what = "the source says nothing of roll: the prior has the stiffness of the ship's \
+        metacentric height and a tenth of the critical damping";
+    Some(what.to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]

@@ -151,26 +151,22 @@ fn at_own_revolutions<'a>(law: &'a Law, source: &Model, trials: &[&Trial]) -> Co
     law
 }
 
-/// The best eligible source, or every reason why there is none.
+/// The published model of the best eligible source, or every reason why there is none.
 ///
 /// # Errors
 /// Lists each ship of the ranking with the step it failed.
 pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, SourceError> {
-    best_source_except(zoo, similarity, &[])
+    let best = best_ranked(similarity)?;
+    Ok(zoo.model(best.model.as_deref().unwrap_or(&best.ship))?)
 }
 
-/// As [`best_source`], with some ships set aside by a person's word.
+/// The best eligible ship of a ranking, or every reason why there is none.
 ///
 /// # Errors
 /// As [`best_source`].
-pub fn best_source_except(
-    zoo: &Zoo,
-    similarity: &Similarity,
-    exclude: &[String],
-) -> Result<Model, SourceError> {
-    let eligible = similarity.eligible().find(|ranked| !exclude.contains(&ranked.ship));
-    if let Some(model) = eligible.and_then(|ranked| ranked.model.as_deref()) {
-        return Ok(zoo.model(model)?);
+pub fn best_ranked(similarity: &Similarity) -> Result<&RankedSource, SourceError> {
+    if let Some(best) = similarity.eligible().next() {
+        return Ok(best);
     }
     let why = |ranked: &RankedSource| {
         format!("{}: {}", ranked.ship, ranked.reasons.last().map_or("", String::as_str))

@@ -11,7 +11,7 @@ use sistership_priors::estimates::inputs::Inputs;
 /// it comes of formulas.
 const HULLS: [&str; 4] = ["kvlcc2", "kcs", "onr-tumblehome-3m", "s175-3m5"];
 /// Files whose scatter is chosen, and says so.
-const CHOSEN: [&str; 3] = ["fujii-rudder", "ittc-1957", "zoo-medians"];
+const CHOSEN: [&str; 4] = ["fujii-rudder", "ittc-1957", "watson-1998", "zoo-medians"];
 
 fn published(model: &Model, name: &str) -> Option<f64> {
     let parameter = |name: &str| model.parameters.get(name).map(|one| one.value);

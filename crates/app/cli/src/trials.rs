@@ -41,7 +41,8 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
             }
         };
         let files = files_of(path, &loaded);
-        let ship = loaded.manifest.map(|manifest| manifest.ship);
+        let named = |ship: &String| !ship.is_empty();
+        let ship = loaded.manifest.map(|manifest| manifest.ship).filter(named);
         for (result, (file, path, is_stretch)) in loaded.trials.into_iter().zip(files) {
             match result {
                 Ok(trial) => {

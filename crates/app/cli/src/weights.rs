@@ -19,11 +19,20 @@ pub fn beside(model: &Path) -> PathBuf {
 /// # Errors
 /// Names the file that is missing, or is not what the model names.
 pub fn attach(file: &Path, model: &mut Model) -> Result<(), Failure> {
+    let Some(bytes) = read_beside(file, model)? else { return Ok(()) };
+    sistership_learned::attach(model, &bytes).map_err(|error| about_file(file, error))
+}
+
+/// The weights beside a model's file; none where the model has no learned correction.
+///
+/// # Errors
+/// Names the file that cannot be read.
+pub fn read_beside(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failure> {
     if model.branch.is_none() {
-        return Ok(());
+        return Ok(None);
     }
     let weights = beside(file);
-    let bytes = std::fs::read(&weights).map_err(|error| {
+    let unread = |error: std::io::Error| {
         let message = format!(
             "branch.weights_sha256: the weights of its learned branch should be beside it in {}, \
              which cannot be read: {}",
@@ -31,8 +40,8 @@ pub fn attach(file: &Path, model: &mut Model) -> Result<(), Failure> {
             error.kind()
         );
         about_file(file, message)
-    })?;
-    sistership_learned::attach(model, &bytes).map_err(|error| about_file(file, error))
+    };
+    std::fs::read(&weights).map(Some).map_err(unread)
 }
 
 /// What a learned branch is, as documents name it.

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use sistership_formula::Expr;
+
 /// What a learned branch sees of an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instant {
@@ -16,12 +18,43 @@ pub struct Instant {
     pub accelerations: [f64; 3],
 }
 
+/// Derivatives of what a learned correction adds to the rates of u, v, r; a row for each of them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AdditionGradient {
+    /// With u, v, r.
+    pub by_velocity: [[f64; 3]; 3],
+    /// With the rudder angle.
+    pub by_delta: [f64; 3],
+    /// With the propeller revolutions.
+    pub by_n: [f64; 3],
+    /// With the rates of u, v, r that the law gives.
+    pub by_acceleration: [[f64; 3]; 3],
+}
+
+/// Names of the law's own rates of u, v, r in formulas of a learned correction.
+pub const LAW_RATES: [&str; 3] = ["law.u_dot", "law.v_dot", "law.r_dot"];
+
+/// What a learned correction adds as formulas over `u`, `v`, `r`, `delta`, `n` and [`LAW_RATES`].
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct AdditionFormulas {
+    /// Intermediate values by name, each of names before it.
+    pub values: Vec<(String, Expr)>,
+    /// What is added to the rates of u, v, r; none where nothing is.
+    pub added: [Option<Expr>; 3],
+}
+
 /// Something learned that changes the accelerations of a ship in surge, sway and yaw.
 ///
 /// It must keep its additions bounded, and give none outside what it was trained on.
 pub trait LearnedBranch: fmt::Debug + Send + Sync {
     /// What is added to the rates of u, v, r: m/s2, m/s2, rad/s2.
     fn addition(&self, instant: &Instant) -> [f64; 3];
+
+    /// Derivatives of [`LearnedBranch::addition`].
+    fn gradient(&self, instant: &Instant) -> AdditionGradient;
+
+    /// [`LearnedBranch::addition`] as formulas.
+    fn formulas(&self) -> AdditionFormulas;
 
     /// What it counts for, from 0 (the foundation acts alone) to 1.
     fn share(&self, instant: &Instant) -> f64;

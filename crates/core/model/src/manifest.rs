@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct Manifest {
     /// Always `trials`.
     pub kind: TrialsKind,
-    /// The ship that was tried.
+    /// The ship that was tried; it may be left open, as `refine --ship` names it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub ship: String,
     /// Signs and frames of the files.
     #[serde(default)]
@@ -42,6 +43,21 @@ pub struct ColumnMapping {
     pub column: String,
     /// Its unit.
     pub unit: String,
+    /// Whether it counts the other way than the channel: heading anticlockwise, `v` to port. Of
+    /// rudders `rudder_positive` says so for all files.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub reversed: bool,
+}
+
+impl ColumnMapping {
+    /// A column that counts as the channel does.
+    pub fn new(column: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { column: column.into(), unit: unit.into(), reversed: false }
+    }
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// One file of a manifest, or a stretch of one.
@@ -62,12 +78,23 @@ pub struct ManifestTrial {
     /// Water depth, m; absent for deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_m: Option<f64>,
+    /// The file's own columns, in place of those of the manifest.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, ColumnMapping>")]
+    pub columns: IndexMap<String, ColumnMapping>,
 }
 
 impl ManifestTrial {
     /// A file by its name alone.
     pub fn of(file: impl Into<String>) -> Self {
-        Self { file: file.into(), from: None, to: None, manoeuvre: None, depth_m: None }
+        Self {
+            file: file.into(),
+            from: None,
+            to: None,
+            manoeuvre: None,
+            depth_m: None,
+            columns: IndexMap::new(),
+        }
     }
 
     /// Whether only a part of the file is read.
@@ -111,12 +138,16 @@ impl fmt::Display for FileTime {
 pub struct TrialConventions {
     /// Which way positive rudder turns the ship.
     pub rudder_positive: RudderSign,
-    /// What `u` and `v` are speeds over or through.
+    /// What columns of `u` and `v` are speeds over or through; those of `u_water` and `v_water`
+    /// are through the water always.
     pub velocity: VelocityFrame,
     /// How wind is given.
     pub wind: WindConvention,
     /// What to do with rows in which a mapped value is missing or not a number.
     pub missing: Missing,
+    /// Longest gap that `missing: bridge` fills, s; 4 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bridge_s: Option<f64>,
     /// Smooth the recorded channels at the door.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<Smoothing>,
@@ -185,6 +216,9 @@ pub enum Missing {
     Refuse,
     /// Leave the row out; the gap is kept as a warning and nothing is interpolated over it.
     Drop,
+    /// Fill a channel's gap of at most `bridge_s` along the straight line between its ends, and
+    /// leave the rows of longer gaps out; both are told.
+    Bridge,
 }
 
 /// Savitzky-Golay smoothing.

@@ -14,6 +14,7 @@ use crate::law::{Law, MAX_COEFFICIENTS, MAX_EFFECTS};
 use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
 use crate::posterior::Posterior;
+use crate::propulsion::Propulsion;
 use crate::quantity::Quantity;
 use crate::source::Source;
 use crate::uncertainty::Uncertainty;
@@ -68,6 +69,9 @@ pub struct Model {
     /// The motion that its trials covered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validity: Option<Region>,
+    /// Resistance and thrust where its trials do not reach.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub propulsion: Option<Propulsion>,
     /// What was learned beside the law; its weights are kept apart, under the hash that it names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub branch: Option<Branch>,
@@ -137,6 +141,7 @@ impl Model {
             uncertainty: None,
             posterior: None,
             validity: None,
+            propulsion: None,
             branch: None,
         };
         model.fill_parameters(law);
@@ -169,7 +174,7 @@ impl Model {
         // What acted on the source's trials, and what they left open, belongs to those trials.
         model.effects = Vec::new();
         (model.uncertainty, model.posterior, model.validity) = (None, None, None);
-        model.branch = None;
+        (model.propulsion, model.branch) = (None, None);
         for name in law.parameters.keys() {
             if let Some(value) = law.derived_parameter(name, particulars) {
                 model.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
@@ -278,7 +283,7 @@ impl Model {
 }
 
 impl Law {
-    /// This law with the effects that a model carries.
+    /// This law with the propulsion and the effects that a model carries.
     ///
     /// # Errors
     /// The field of the model at fault, and why.
@@ -293,8 +298,10 @@ impl Law {
         }
         let listed: Vec<(&str, &Form)> =
             forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
-        let mut law = self.dressed(model, &listed);
-        if !listed.is_empty() {
+        let propelled = model.propulsion.as_ref().map(|own| self.with_propulsion(own));
+        let propelled = propelled.transpose()?;
+        let mut law = propelled.as_ref().unwrap_or(self).dressed(model, &listed);
+        if !listed.is_empty() || model.propulsion.is_some() {
             law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
         }
         for (effect, _) in &forms {

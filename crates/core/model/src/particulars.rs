@@ -53,6 +53,11 @@ pub fn dimension(name: &str) -> Option<Dimension> {
     KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, dimension, ..)| dimension)
 }
 
+/// The least and the largest value that is believed of a particular.
+pub fn range(name: &str) -> Option<(f64, f64)> {
+    KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, _, low, high)| (low, high))
+}
+
 /// The names that may be used.
 pub fn names() -> impl Iterator<Item = &'static str> {
     KNOWN.iter().map(|&(name, ..)| name)
@@ -113,10 +118,15 @@ fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, Str
 
 /// A particular's value, stated, derived from others, or by default.
 pub fn value(particulars: &Particulars, name: &str) -> Option<f64> {
-    let stated = |name: &str| particulars.get(name).map(|q| q.value);
     let default =
         |name: &str| DEFAULTS.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
-    stated(name).or_else(|| derived(name, &stated)).or_else(|| default(name))
+    given(particulars, name).or_else(|| default(name))
+}
+
+/// A particular's value, stated or derived from others that are.
+pub fn given(particulars: &Particulars, name: &str) -> Option<f64> {
+    let stated = |name: &str| particulars.get(name).map(|q| q.value);
+    stated(name).or_else(|| derived(name, &stated))
 }
 
 /// What follows from other particulars.

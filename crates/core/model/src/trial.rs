@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::manifest::VelocityFrame;
 use sistership_formula::units::Dimension;
 
-/// What a trial may record besides time. Ship-fixed velocities are of midship, over the ground
-/// unless the trial says through the water; positive `Delta` turns the ship to starboard; angles in
-/// radians, revolutions per second.
+/// What a trial may record besides time. Ship-fixed velocities are of midship; `U` and `V` are over
+/// the ground unless the trial says through the water; positive `Delta` turns the ship to starboard;
+/// angles in radians, revolutions per second.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
@@ -47,10 +47,14 @@ pub enum Channel {
     ApparentWindFrom,
     /// Water depth, m.
     Depth,
+    /// Surge velocity through the water, m/s, beside `U` over the ground.
+    UWater,
+    /// Sway velocity through the water, m/s, to starboard, beside `V` over the ground.
+    VWater,
 }
 
 /// Name in manifests, canonical column, dimension.
-const CHANNELS: [(Channel, &str, &str, Dimension); 15] = [
+const CHANNELS: [(Channel, &str, &str, Dimension); 17] = [
     (Channel::X, "x", "x_m", Dimension::LENGTH),
     (Channel::Y, "y", "y_m", Dimension::LENGTH),
     (Channel::Psi, "psi", "psi_rad", Dimension::NONE),
@@ -71,6 +75,8 @@ const CHANNELS: [(Channel, &str, &str, Dimension); 15] = [
     ),
     (Channel::ApparentWindFrom, "apparent_wind_from", "apparent_wind_from_rad", Dimension::NONE),
     (Channel::Depth, "depth", "depth_m", Dimension::LENGTH),
+    (Channel::UWater, "u_water", "u_water_m_s", Dimension::SPEED),
+    (Channel::VWater, "v_water", "v_water_m_s", Dimension::SPEED),
 ];
 
 impl Channel {

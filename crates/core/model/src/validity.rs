@@ -19,6 +19,10 @@ pub struct Region {
     /// Least and greatest sum and difference of two channels, each scaled to -1 at its least and 1
     /// at its greatest value: `v+r`, `v-r`.
     pub pairs: BTreeMap<String, [f64; 2]>,
+    /// Least and greatest wind speed and depth that the trials recorded, by channel, SI; nothing of
+    /// what none recorded. No part of the convex region.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub environment: BTreeMap<String, [f64; 2]>,
 }
 
 /// How a motion left a region.
@@ -59,7 +63,7 @@ impl Region {
             [(format!("{a}+{b}"), along(1.0)), (format!("{a}-{b}"), along(-1.0))]
         };
         let pairs = pairs(&ranges).flat_map(of_pair).collect();
-        Some(Self { ranges, pairs })
+        Some(Self { ranges, pairs, environment: BTreeMap::new() })
     }
 
     /// How far a point is outside, by half ranges, and along what; none where it is inside.
@@ -254,7 +258,7 @@ impl Excursion {
 
 /// What is no excursion, by half ranges: a hard turn at 35 deg where the rudder was recorded at
 /// 34.9.
-const SLACK: f64 = 0.005;
+pub const SLACK: f64 = 0.005;
 /// The half range of a channel that did not vary, by its size: a speed that was held to a per cent.
 const STILL: f64 = 0.01;
 
@@ -342,7 +346,7 @@ mod tests {
             })
             .unwrap();
         assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
-        assert!(out.beyond > 5.0 && out.words().contains("from 4 s on, 60 % of the time"));
+        assert!(out.beyond > 5.0 && out.words().contains("from 4 s, 60 % of the time"));
     }
 
     #[test]

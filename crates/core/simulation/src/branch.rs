@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use sistership_model::Model;
-pub use sistership_model::learned::{Instant, LearnedBranch};
+pub use sistership_model::learned::{
+    AdditionFormulas, AdditionGradient, Instant, LAW_RATES, LearnedBranch,
+};
 
 use crate::equations::PlantError;
 
@@ -11,7 +13,7 @@ use crate::equations::PlantError;
 ///
 /// # Errors
 /// It has one, and its weights have not been attached.
-pub(crate) fn attached(model: &Model) -> Result<Option<Arc<dyn LearnedBranch>>, PlantError> {
+pub fn attached(model: &Model) -> Result<Option<Arc<dyn LearnedBranch>>, PlantError> {
     let Some(branch) = &model.branch else { return Ok(None) };
     let missing =
         || PlantError::Weights { model: model.name.clone(), sha256: branch.weights_sha256.clone() };

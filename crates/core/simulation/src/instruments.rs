@@ -1,5 +1,6 @@
 //! What the instruments say of a state, where effects make them say something else than the truth.
 
+use sistership_formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
@@ -85,27 +86,42 @@ pub fn input_names(law: &Law) -> Vec<String> {
     states.chain(rates).chain(law.inputs.keys().cloned()).collect()
 }
 
+/// The channels of speeds through the water beside those over the ground, with their places.
+pub const THROUGH_WATER: [(Channel, usize); 2] =
+    [(Channel::UWater, at::U), (Channel::VWater, at::V)];
+
 /// What each channel says, where it is not the truth: a log that measures through the water says
 /// what the hull sees.
-pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, sistership_formula::Expr)> {
-    use sistership_formula::Expr;
-    let mut readings: Vec<(Channel, Expr)> = Vec::new();
-    if frame == VelocityFrame::Water {
-        for channel in [Channel::U, Channel::V] {
-            let seen = law.values.keys().find(|name| name.ends_with(&format!(".seen.{channel}")));
-            readings.extend(seen.map(|name| (channel, Expr::Name(name.clone()))));
-        }
-    }
+pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
+    let ground = [Channel::U, Channel::V];
+    let logs = THROUGH_WATER.map(|(log, _)| log).into_iter().zip(ground);
+    let axes = ground.into_iter().zip(ground).filter(|_| frame == VelocityFrame::Water);
+    let through_water = axes.chain(logs.clone());
+    let mut readings: Vec<(Channel, Expr)> =
+        through_water.filter_map(|(log, own)| Some((log, seen(law, own)?))).collect();
     for (channel, expr) in &law.dressing.measures {
         match readings.iter_mut().find(|(known, _)| known == channel) {
             // The second effect acts on what the first one left.
-            Some((_, before)) => {
-                *before = expr.renamed(&|name| (name == channel.name()).then(|| before.clone()))
+            Some((_, before)) => *before = expr_of(expr, *channel, before),
+            None => {
+                let own = logs.clone().find(|(log, _)| log == channel).map(|(_, own)| own);
+                let truth = Expr::Name(own.unwrap_or(*channel).name().into());
+                readings.push((*channel, expr_of(expr, *channel, &truth)));
             }
-            None => readings.push((*channel, expr.clone())),
         }
     }
     readings
+}
+
+/// An instrument's formula, of what it would say without an error.
+fn expr_of(expr: &Expr, channel: Channel, without_error: &Expr) -> Expr {
+    expr.renamed(&|name| (name == channel.name()).then(|| without_error.clone()))
+}
+
+/// What the hull sees of a velocity over the ground; nothing where the water stands still.
+fn seen(law: &Law, channel: Channel) -> Option<Expr> {
+    let name = law.values.keys().find(|name| name.ends_with(&format!(".seen.{channel}")))?;
+    Some(Expr::Name(name.clone()))
 }
 
 /// Rounds in which a true state is sought: few, so that it stays near what is said where an error

@@ -4,10 +4,12 @@
 pub mod branch;
 mod branch_share;
 pub mod candidates;
+mod covered_environment;
 pub mod envelope;
 pub mod equations;
 pub mod error;
 pub mod gear;
+pub mod horizons;
 pub mod instruments;
 pub mod integrate;
 pub mod interpolate;

@@ -47,6 +47,8 @@ struct Layout {
     kinematics: [Option<usize>; 4],
     /// What effects add to the accelerations, in the same order.
     accelerations: [Option<usize>; 4],
+    /// How far the motion is outside of what trials covered.
+    distance: Option<usize>,
 }
 
 impl Plant {
@@ -75,6 +77,18 @@ impl Plant {
         equations: &EquationsOfMotion<'_>,
         coefficients: Coefficients,
     ) -> Result<Self, PlantError> {
+        Self::with_distance(equations, coefficients, None)
+    }
+
+    /// As [`Plant::of`], with a formula of how far the motion is outside of what trials covered.
+    ///
+    /// # Errors
+    /// As [`Plant::new`].
+    pub fn with_distance(
+        equations: &EquationsOfMotion<'_>,
+        coefficients: Coefficients,
+        distance: Option<&Expr>,
+    ) -> Result<Self, PlantError> {
         let (model, law) = (equations.model(), equations.law());
         check_inputs(law)?;
         let open: Vec<String> = match coefficients {
@@ -84,7 +98,8 @@ impl Plant {
         let names: Vec<String> =
             equations.names().into_iter().chain(open.iter().cloned()).collect();
         let mut lowering = Lowering::new(equations, &names);
-        let layout = lay_out(equations, &mut lowering, coefficients)?;
+        let mut layout = lay_out(equations, &mut lowering, coefficients)?;
+        layout.distance = distance.map(|distance| lowering.output(distance)).transpose()?;
         let tape = lowering.finish();
         let mobility = match constant_mass(&tape, &layout).map(LU::new) {
             Some(lu) if lu.determinant() > 0.0 => {

@@ -75,7 +75,9 @@ impl Ship {
     /// # Errors
     /// As [`Ship::new`].
     pub fn sisters(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Names)
+        let branch = attached(model)?;
+        let equations = EquationsOfMotion::of_foundation(model, law)?;
+        Ok(Self { branch, ..Self::of(&equations, Coefficients::Names)? })
     }
 
     fn of(

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use sistership_formula::{Comparison, Expr, Function};
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
-use sistership_model::validity::{Excursion, Region};
+use sistership_model::validity::{Excursion, Face, Region, SLACK};
 
+use crate::covered_environment::covered_environment;
 use crate::state::{StateVector, Trajectory, at};
 
 /// What bounds a region, with its place in the state; revolutions stand beside it.
@@ -18,7 +20,7 @@ const BOUNDED: [(Channel, Option<usize>); 5] = [
 ];
 
 /// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered;
-/// channels that one of them lacks are left out.
+/// channels that one of them lacks are left out. Beside it, the wind and depth that they recorded.
 pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
     let bounds =
         |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());
@@ -32,7 +34,31 @@ pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
         .filter(|(channel, _)| bounds(*channel))
         .filter_map(|(channel, _)| column(channel))
         .collect();
-    Region::of(&columns)
+    Some(Region { environment: covered_environment(trials), ..Region::of(&columns)? })
+}
+
+/// How far a motion is outside of a region, by half ranges, as a formula of its channels; 0 inside.
+/// Directions along a channel that is not known are left out.
+pub fn distance(region: &Region, is_known: &dyn Fn(&str) -> bool) -> Expr {
+    let known = |face: &Face<'_>| face.terms.iter().all(|term| is_known(term.channel));
+    let faces = region.faces();
+    let furthest = faces.iter().filter(|face| known(face)).map(beyond);
+    let furthest = furthest.fold(Expr::Number(0.0), |a, b| Expr::Call(Function::Max, vec![a, b]));
+    let parts = [furthest.clone(), Expr::Number(SLACK), furthest, Expr::Number(0.0)];
+    Expr::If(Comparison::Greater, Box::new(parts))
+}
+
+/// How far outside along one direction, below zero inside.
+fn beyond(face: &Face<'_>) -> Expr {
+    let number = |value: f64| Box::new(Expr::Number(value));
+    let along = face.terms.iter().fold(Expr::Number(0.0), |sum, term| {
+        let channel = Box::new(Expr::Name(term.channel.to_owned()));
+        let from_centre = Expr::Subtract(channel, number(term.centre));
+        Expr::Add(Box::new(sum), Box::new(from_centre.times(Expr::Number(term.factor))))
+    });
+    let below = Expr::Subtract(number(face.bounds[0]), Box::new(along.clone()));
+    let above = Expr::Subtract(Box::new(along), number(face.bounds[1]));
+    Expr::Call(Function::Max, vec![below, above])
 }
 
 /// How a motion leaves a region; none where it stays inside.

@@ -158,7 +158,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
     for (size_t k = 0; k < n; k++) {
         if (vr[k] >= i->model->variables)
             return tell(i, fmi2Error, "there is no such value reference");
-        if (vr[k] >= RATE && vr[k] < ORDER)
+        if (model_follows(i->model, vr[k]))
             refresh(i);
         value[k] = i->model->value[vr[k]];
     }
@@ -170,7 +170,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
 {
     instance *i = c;
     for (size_t k = 0; k < n; k++) {
-        if (vr[k] >= i->model->variables || (vr[k] >= RATE && vr[k] < ORDER))
+        if (vr[k] >= i->model->variables || model_follows(i->model, vr[k]))
             return tell(i, fmi2Error, "no such variable can be set");
         i->model->value[vr[k]] = value[k];
     }

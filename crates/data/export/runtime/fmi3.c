@@ -152,7 +152,7 @@ fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
     for (size_t k = 0; k < n; k++) {
         if (vr[k] >= i->model->variables)
             return tell(i, fmi3Error, "there is no such value reference");
-        if (vr[k] >= RATE && vr[k] < ORDER)
+        if (model_follows(i->model, vr[k]))
             refresh(i);
         value[k] = i->model->value[vr[k]];
     }
@@ -166,7 +166,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
     if (values != n)
         return tell(i, fmi3Error, "every variable is a scalar");
     for (size_t k = 0; k < n; k++) {
-        if (vr[k] >= i->model->variables || (vr[k] >= RATE && vr[k] < ORDER))
+        if (vr[k] >= i->model->variables || model_follows(i->model, vr[k]))
             return tell(i, fmi3Error, "no such variable can be set");
         i->model->value[vr[k]] = value[k];
     }

@@ -49,7 +49,7 @@ static int whole(FILE *file, int32_t *out, size_t count)
 static int sizes(FILE *file, model *m)
 {
     int32_t of[4];
-    if (fscanf(file, "sistership-fmu-1 %79s", m->token) != 1 || !whole(file, of, 4))
+    if (fscanf(file, "sistership-fmu-2 %79s", m->token) != 1 || !whole(file, of, 4))
         return 0;
     for (int k = 0; k < 4; k++)
         if (of[k] < 0 || of[k] > 10000000)
@@ -110,7 +110,7 @@ static int all_within(const int32_t *place, size_t count, size_t most)
 
 static int contents(FILE *file, model *m)
 {
-    double figures[6];
+    double figures[7];
     if (!whole(file, m->moving, m->states) || !numbers(file, m->start, m->variables))
         return 0;
     for (size_t k = 0; k < m->states; k++)
@@ -128,16 +128,19 @@ static int contents(FILE *file, model *m)
         if (!sound(m, m->program + k, k))
             return 0;
     if (!whole(file, m->force, 4) || !whole(file, m->mass, 16) || !whole(file, m->added, 4)
-        || !whole(file, m->kinematic, 4))
+        || !whole(file, m->kinematic, 4) || !whole(file, m->distance, 2))
         return 0;
     if (!all_within(m->force, 4, m->instructions) || !all_within(m->mass, 16, m->instructions)
         || !all_within(m->added, 4, m->instructions)
-        || !all_within(m->kinematic, 4, m->instructions))
+        || !all_within(m->kinematic, 4, m->instructions)
+        || !all_within(m->distance, 1, m->instructions)
+        || !all_within(m->distance + 1, 1, m->variables)
+        || (m->distance[0] < 0) != (m->distance[1] < 0))
         return 0;
     if (!whole(file, &m->has_gear, 1) || !whole(file, &m->has_roll, 1)
         || !whole(file, &m->has_mobility, 1))
         return 0;
-    if (!numbers(file, m->mobility, 16) || !numbers(file, figures, 6))
+    if (!numbers(file, m->mobility, 16) || !numbers(file, figures, 7))
         return 0;
     m->limit_rad = figures[0];
     m->rate_rad_s = figures[1];
@@ -145,6 +148,7 @@ static int contents(FILE *file, model *m)
     m->most_speed = figures[3];
     m->most_yaw = figures[4];
     m->most_roll = figures[5];
+    m->band_rad = figures[6];
     return 1;
 }
 
@@ -307,9 +311,11 @@ static double rudder_rate(const model *m, double step_s)
 {
     if (!m->has_gear)
         return 0.0;
-    const double order = limited(m->value[ORDER], m->limit_rad);
+    const double angle = m->value[STATE + DELTA];
+    const double ordered = limited(m->value[ORDER], m->limit_rad);
+    const double order = fmin(fmax(angle, ordered - m->band_rad), ordered + m->band_rad);
     const double time = fmax(m->time_constant_s, step_s);
-    return limited((order - m->value[STATE + DELTA])/time, m->rate_rad_s);
+    return limited((order - angle)/time, m->rate_rad_s);
 }
 
 void model_rates(model *m, double step_s)
@@ -329,6 +335,14 @@ void model_rates(model *m, double step_s)
     rate[PSI] = at(m, m->kinematic[2], s[R]);
     rate[PHI] = at(m, m->kinematic[3], m->has_roll ? s[P] : 0.0);
     rate[DELTA] = rudder_rate(m, step_s);
+    if (m->distance[0] >= 0)
+        m->value[m->distance[1]] = m->result[m->distance[0]];
+}
+
+int model_follows(const model *m, size_t variable)
+{
+    const int is_distance = m->distance[1] >= 0 && variable == (size_t)m->distance[1];
+    return (variable >= RATE && variable < ORDER) || is_distance;
 }
 
 static const char *check(const model *m)

@@ -27,9 +27,11 @@ typedef struct model {
     instruction *program;
     int32_t *term;
     int32_t force[4], mass[16], added[4], kinematic[4];
+    /* How far outside of what trials covered: where it is calculated, and its variable; or -1. */
+    int32_t distance[2];
     int32_t has_gear, has_roll, has_mobility;
     double mobility[16];
-    double limit_rad, rate_rad_s, time_constant_s;
+    double limit_rad, rate_rad_s, time_constant_s, band_rad;
     double most_speed, most_yaw, most_roll;
 } model;
 
@@ -40,6 +42,8 @@ void model_free(model *m);
 void model_reset(model *m);
 /* The rates of the states where they are; step_s is what a gear without time constant needs. */
 void model_rates(model *m, double step_s);
+/* Whether a variable follows from others. */
+int model_follows(const model *m, size_t variable);
 /* One step of a length, in steps no longer than the longest; 0, or why the model stopped. */
 const char *model_step(model *m, double length_s);
 /* The longest step, s. */

@@ -7,7 +7,7 @@ use crate::expression::{Language, function};
 use crate::format::Format;
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
-use crate::{header, rates, wrapped};
+use crate::{header, range, rates, wrapped};
 
 /// C99.
 #[derive(Debug)]
@@ -106,6 +106,7 @@ fn text(plan: &Plan) -> String {
         text.push_str(SOLVE);
     }
     text.push_str(&rates_text(plan));
+    text.push_str(&range_text(plan));
     text.push_str(STEP);
     for (mark, by) in marks(plan) {
         text = text.replace(mark, &by);
@@ -155,11 +156,16 @@ fn rates_text(plan: &Plan) -> String {
         Some(gear) => format!(
             "    const double limit = {:?}, fastest = {:?};\n    \
              const double time = fmax({:?}, step_s);\n    \
-             const double order = fmin(fmax(in->delta_order, -limit), limit);\n    \
+             const double ordered = fmin(fmax(in->delta_order, -limit), limit);\n    \
+             const double order = {};\n    \
              rate->delta = fmin(fmax((order - s->delta)/time, -fastest), fastest);",
             gear.limit_rad(),
             gear.rate_rad_s(),
-            gear.time_constant_s()
+            gear.time_constant_s(),
+            match plan.band_rad {
+                0.0 => "ordered".to_owned(),
+                band => format!("fmin(fmax(s->delta, ordered - {band:?}), ordered + {band:?})"),
+            }
         ),
     };
     let statements = rates::statements(plan, &C).join("\n");
@@ -169,6 +175,19 @@ fn rates_text(plan: &Plan) -> String {
          void @_rates(const @_state *s, const @_inputs *in, const @_coefficients *c, double \
          step_s,\n    @_state *rate)\n{{\n    (void)in;\n    (void)c;\n    \
          (void)step_s;\n{statements}\n{rudder}\n}}\n\n"
+    )
+}
+
+fn range_text(plan: &Plan) -> String {
+    let Some(range::Distance { statements, result }) = range::alone(plan, &C) else {
+        return String::new();
+    };
+    let meaning = wrapped::comment(" *", range::MEANING).join("\n");
+    format!(
+        "/* As a number:\n{meaning} */\ndouble @_{name}(const @_state *s, const @_inputs *in)\n{{\n    \
+         (void)in;\n{statements}\n    return {result};\n}}\n\n",
+        name = range::NAME,
+        statements = statements.join("\n")
     )
 }
 

@@ -5,12 +5,18 @@ use sistership_simulation::PlantError;
 /// Why a model cannot be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// Part of it was learned, and is no formula.
+    /// What it has learned follows accelerations that exports do not have.
     #[error(
-        "`{0}` has a learned branch, whose weights no exported format carries; export its \
-         foundation, the model without `branch`"
+        "`{model}` has a learned correction that is told the accelerations of the law `{law}`, \
+         whose masses change with the motion: exports solve such a law after all else; train a \
+         parallel correction, or export the model without `branch`"
     )]
-    Branch(String),
+    Correction {
+        /// The model.
+        model: String,
+        /// Its law.
+        law: String,
+    },
     /// An effect delays an input that no steering gear takes.
     #[error("`{model}` carries a lag on `{input}`; exports know lags of the rudder only")]
     Lag {
@@ -19,8 +25,8 @@ pub enum ExportError {
         /// The input behind the lag.
         input: String,
     },
-    /// An effect keeps an input from what was ordered.
-    #[error("`{model}` carries a dead band on `{input}`, which no exported format knows")]
+    /// An effect keeps an input from what was ordered that no steering gear takes.
+    #[error("`{model}` carries a dead band on `{input}`; exports know that of the rudder only")]
     Band {
         /// The model.
         model: String,

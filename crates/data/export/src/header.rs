@@ -36,9 +36,13 @@ pub fn lines(plan: &Plan) -> Vec<String> {
 
 fn gear(plan: &Plan) -> Option<String> {
     let gear = plan.gear.as_ref()?;
+    let band = match plan.band_rad {
+        0.0 => String::new(),
+        band => format!(", dead band {:.2} deg to either side", band.to_degrees()),
+    };
     Some(format!(
         "  delta_order [rad] ordered rudder, positive turns the ship to starboard; the gear stops \
-         at {:.1} deg, moves at most {:.2} deg/s, time constant {} s",
+         at {:.1} deg, moves at most {:.2} deg/s, time constant {} s{band}",
         gear.limit_rad().to_degrees(),
         gear.rate_rad_s().to_degrees(),
         gear.time_constant_s()

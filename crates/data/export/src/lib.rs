@@ -4,6 +4,7 @@
 //! with the effects that a model carries, can be exported, and says the same elsewhere.
 
 mod c;
+mod correction;
 mod error;
 mod expression;
 mod fmu;
@@ -16,6 +17,7 @@ mod modelica;
 mod outside;
 mod plan;
 mod python;
+mod range;
 mod rates;
 mod subject;
 mod wrapped;

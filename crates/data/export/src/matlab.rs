@@ -8,7 +8,7 @@ use crate::expression::{Language, function};
 use crate::format::Format;
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
-use crate::{header, rates, wrapped};
+use crate::{header, range, rates, wrapped};
 
 /// MATLAB R2016b and later, Octave 6 and later.
 #[derive(Debug)]
@@ -83,6 +83,7 @@ const TEMPLATE: &str = include_str!("../templates/model.m");
 fn text(plan: &Plan) -> String {
     let mut help = vec!["Time derivative of the state of a ship manoeuvring model.".to_owned()];
     help.extend(header::lines(plan));
+    help.push(format!("{}: {}", range::NAME, range::MEANING));
     let help: Vec<String> = help
         .iter()
         .flat_map(|line| wrapped::comment("%", line))
@@ -94,8 +95,18 @@ fn text(plan: &Plan) -> String {
         .replace("@@unpack", &unpack(plan))
         .replace("@@statements", &rates::statements(plan, &Matlab).join("\n"))
         .replace("@@rudder", rudder(plan))
+        .replace("@@range", &range_text(plan))
         .replace("@@structure", &structure(plan))
         .replace("@@model", &plan.identifier)
+}
+
+/// Not a number where nobody knows what trials covered.
+fn range_text(plan: &Plan) -> String {
+    let Some(range::Distance { mut statements, result }) = range::beside(plan, &Matlab) else {
+        return format!("{} = NaN;", range::NAME);
+    };
+    statements.push(format!("{} = {result};", range::NAME));
+    statements.join("\n")
 }
 
 fn names(plan: &Plan) -> Vec<String> {
@@ -113,6 +124,7 @@ fn rudder(plan: &Plan) -> &'static str {
         None => "xdot(9) = 0;",
         Some(_) => {
             "order = min(max(delta_order, -model.gear.limit_rad), model.gear.limit_rad);\n\
+             order = min(max(delta, order - model.gear.band_rad), order + model.gear.band_rad);\n\
              xdot(9) = (order - delta)/max(model.gear.time_constant_s, model.step_s);\n\
              xdot(9) = min(max(xdot(9), -model.gear.rate_rad_s), model.gear.rate_rad_s);"
         }
@@ -139,6 +151,7 @@ fn structure(plan: &Plan) -> String {
         lines.push(format!("model.gear.limit_rad = {:?};", gear.limit_rad()));
         lines.push(format!("model.gear.rate_rad_s = {:?};", gear.rate_rad_s()));
         lines.push(format!("model.gear.time_constant_s = {:?};", gear.time_constant_s()));
+        lines.push(format!("model.gear.band_rad = {:?};", plan.band_rad));
     }
     lines.push("model.c = struct();".to_owned());
     lines.extend(

@@ -7,7 +7,7 @@ use crate::expression::{Language, function};
 use crate::format::Format;
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
-use crate::{header, rates, wrapped};
+use crate::{header, range, rates, wrapped};
 
 /// Modelica 3.4, without any library.
 #[derive(Debug)]
@@ -97,13 +97,15 @@ fn text(plan: &Plan) -> String {
         inputs(plan),
         parameters(plan),
         states(plan),
+        output(plan),
         format!("protected\n{}", locals(plan)),
         "equation".to_owned(),
         rates::statements(plan, &Modelica).join("\n"),
         rudder(plan),
+        range_equation(plan),
         format!("end {};\n", plan.identifier),
     ];
-    parts.join("\n")
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
 fn inputs(plan: &Plan) -> String {
@@ -132,6 +134,21 @@ fn states(plan: &Plan) -> String {
     STATES.into_iter().enumerate().map(one).collect::<Vec<_>>().join("\n")
 }
 
+fn output(plan: &Plan) -> String {
+    let known = plan.listed().distance;
+    known.map_or(String::new(), |_| {
+        format!("  output Real {}(unit = \"1\") \"{}\";", range::NAME, range::MEANING)
+    })
+}
+
+fn range_equation(plan: &Plan) -> String {
+    let Some(range::Distance { mut statements, result }) = range::beside(plan, &Modelica) else {
+        return String::new();
+    };
+    statements.push(format!("  {} = {result};", range::NAME));
+    statements.join("\n")
+}
+
 /// Every name that an equation gives a value.
 fn locals(plan: &Plan) -> String {
     let listed = plan.listed();
@@ -155,8 +172,10 @@ fn rudder(plan: &Plan) -> String {
     let Some(gear) = &plan.gear else { return "  der(delta) = 0.0;".to_owned() };
     let (limit, fastest) = (gear.limit_rad(), gear.rate_rad_s());
     let time = gear.time_constant_s().max(plan.step_s());
-    format!(
-        "  der(delta) = max(-{fastest:?}, min({fastest:?}, \
-         (max(-{limit:?}, min({limit:?}, delta_order)) - delta)/{time:?}));"
-    )
+    let ordered = format!("max(-{limit:?}, min({limit:?}, delta_order))");
+    let order = match plan.band_rad {
+        0.0 => ordered,
+        band => format!("min(max(delta, {ordered} - {band:?}), {ordered} + {band:?})"),
+    };
+    format!("  der(delta) = max(-{fastest:?}, min({fastest:?}, ({order} - delta)/{time:?}));")
 }

@@ -11,8 +11,10 @@ use sistership_simulation::envelope::Envelope;
 use sistership_simulation::equations::{Coefficients, EquationsOfMotion};
 use sistership_simulation::gear::Gear;
 use sistership_simulation::plant::Listed;
+use sistership_simulation::validity::distance;
 use sistership_simulation::{Plant, PlantError, Ship};
 
+use crate::correction::corrected;
 use crate::error::ExportError;
 use crate::identifier::{identifier, identifiers};
 use crate::outside::{CURRENT, Outside};
@@ -81,6 +83,8 @@ pub struct Plan {
     pub operands: Vec<Operand>,
     /// The steering gear, where the law has one rudder.
     pub gear: Option<Gear>,
+    /// Half of the gear's dead band, rad: an order within it is not followed.
+    pub band_rad: f64,
     /// The range outside which a simulation is not believed.
     pub envelope: Envelope,
     /// Whether the law has roll.
@@ -99,12 +103,15 @@ impl Plan {
     /// Says why the model cannot be exported.
     pub fn new(subject: &Subject<'_>) -> Result<Self, ExportError> {
         let model = with_current(subject.model)?;
-        let law = dressed(&model, subject.law)?;
-        let plant = Plant::of(
-            &EquationsOfMotion::of_law(&model, Cow::Borrowed(&law)),
-            Coefficients::Names,
-        )?;
+        let law = corrected(&model, dressed(&model, subject.law)?)?;
+        let equations = EquationsOfMotion::of_law(&model, Cow::Borrowed(&law));
+        let known = equations.names();
+        let is_known = |name: &str| known.iter().any(|known| known == name);
+        let distance = model.validity.as_ref().map(|region| distance(region, &is_known));
+        let plant = Plant::with_distance(&equations, Coefficients::Names, distance.as_ref())?;
         let ship = Ship::new(subject.model, subject.law)?;
+        let delta = law.inputs.get_index_of("delta");
+        let band = plant.bands().iter().find(|(place, _)| Some(*place) == delta);
         let outside = taken(&model, &law, &plant);
         let coefficients = coefficients(&model, subject.law)?;
         let operands = operands(&law, &outside, coefficients.len());
@@ -114,6 +121,7 @@ impl Plan {
             provenance: subject.provenance(),
             sha256: subject.sha256.clone(),
             gear: law.inputs.contains_key("delta").then(|| ship.gear()),
+            band_rad: band.map_or(0.0, |(_, half)| *half),
             envelope: *ship.envelope(),
             has_roll: ship.has_roll(),
             lpp_m: ship.lpp_m(),
@@ -154,9 +162,6 @@ static CURRENT_EFFECT: LazyLock<Result<Effect, FileError>> = LazyLock::new(|| {
 
 /// The model with a current at rest, where it carries none.
 fn with_current(model: &Model) -> Result<Model, ExportError> {
-    if model.branch.is_some() {
-        return Err(ExportError::Branch(model.name.clone()));
-    }
     let mut model = model.clone();
     let (name, form, parameters) = CURRENT;
     if model.effects.iter().any(|effect| effect.name == name) {
@@ -184,7 +189,7 @@ fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
     if let Some((input, _)) = law.dressing.lags.iter().find(|(input, _)| input != "delta") {
         return Err(ExportError::Lag { model: model.name.clone(), input: input.clone() });
     }
-    if let Some((input, _)) = law.dressing.bands.first() {
+    if let Some((input, _)) = law.dressing.bands.iter().find(|(input, _)| input != "delta") {
         return Err(ExportError::Band { model: model.name.clone(), input: input.clone() });
     }
     let (effect, form, parameters) = CURRENT;

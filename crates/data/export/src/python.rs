@@ -7,7 +7,7 @@ use crate::expression::{Language, function};
 use crate::format::Format;
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
-use crate::{header, rates, wrapped};
+use crate::{header, range, rates, wrapped};
 
 /// Python 3.8 and later.
 #[derive(Debug)]
@@ -109,6 +109,7 @@ fn text(plan: &Plan) -> String {
         .replace("@@unpack", &unpack(plan))
         .replace("@@statements", &rates::statements(plan, &Python).join("\n"))
         .replace("@@rudder", &rudder(plan))
+        .replace("@@range", &range_text(plan))
         .replace(
             "@@order",
             if plan.gear.is_some() { "delta_order=math.radians(rudder_deg)" } else { "" },
@@ -120,6 +121,21 @@ fn text(plan: &Plan) -> String {
         .replace("@@duration", &format!("{:?}", (60.0 * plan.lpp_m / plan.speed_m_s).ceil()))
         .replace("@@step", &format!("{:?}", plan.step_s()));
     format!("{}\n{body}", lines.join("\n"))
+}
+
+fn range_text(plan: &Plan) -> String {
+    let Some(range::Distance { statements, result }) = range::alone(plan, &Python) else {
+        return String::new();
+    };
+    let meaning = wrapped::comment("    #", range::MEANING).join("\n");
+    format!(
+        "def {name}(state, inputs=INPUTS, coefficients=COEFFICIENTS):\n{meaning}\n    \
+         u, v, r, p, phi, psi, x, y, delta = state\n{unpack}\n{statements}\n    \
+         return {result}\n\n\n",
+        name = range::NAME,
+        unpack = unpack(plan),
+        statements = statements.join("\n")
+    )
 }
 
 fn dictionary(plan: &Plan) -> String {
@@ -153,9 +169,13 @@ fn unpack(plan: &Plan) -> String {
 
 fn rudder(plan: &Plan) -> String {
     let Some(gear) = &plan.gear else { return "    delta_dot = 0.0".to_owned() };
+    let band = match plan.band_rad {
+        0.0 => String::new(),
+        band => format!("    order = min(max(delta, order - {band:?}), order + {band:?})\n"),
+    };
     format!(
-        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n    \
-         delta_dot = min(max((order - delta)/max({:?}, step_s), -fastest), fastest)",
+        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n{band}\
+         \u{20}   delta_dot = min(max((order - delta)/max({:?}, step_s), -fastest), fastest)",
         gear.limit_rad(),
         gear.rate_rad_s(),
         gear.time_constant_s()

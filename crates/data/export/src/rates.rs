@@ -4,6 +4,7 @@ use sistership_simulation::tape::Slot;
 
 use crate::expression::{Language, operand, terms};
 use crate::plan::Plan;
+use crate::range;
 
 /// Places in the state vector of what the axes X, Y, K, N accelerate, and names of that.
 const ACCELERATED: [(usize, &str); 4] = [(0, "a_u"), (1, "a_v"), (3, "a_p"), (2, "a_r")];
@@ -12,8 +13,7 @@ const PLACED: [usize; 4] = [6, 7, 5, 4];
 
 /// Every statement from the states to their rates; that of the rudder is the steering gear's.
 pub fn statements(plan: &Plan, language: &dyn Language) -> Vec<String> {
-    let count = plan.listed().tape.len() as Slot;
-    let steps = (0..count).filter_map(|slot| {
+    let steps = range::others(plan).into_iter().filter_map(|slot| {
         Some(language.assign(&format!("t{slot}"), &terms(plan, language, slot)?))
     });
     let mut all: Vec<String> = steps.collect();

@@ -1,5 +1,6 @@
 //! What is exported, and where its figures come from.
 
+use sistership_model::estimated_particulars::estimated_words;
 use sistership_model::version::code_revision;
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model};
@@ -48,10 +49,26 @@ impl Subject<'_> {
         lines
             .push("Particulars and parameters, which stand as numbers in what follows:".to_owned());
         lines.extend(stated.chain(folded));
+        lines.extend(estimated_words(&model.particulars).map(|words| format!("Note: {words}")));
+        lines.extend(trials_environment(model).map(|words| format!("Note: {words}")));
         lines.extend(sources(model));
         lines.extend(law.sources.iter().map(|(key, source)| cited("Law's source", key, source)));
         lines
     }
+}
+
+/// The wind and the depth that the trials of a refined model had; none of a model without trials.
+fn trials_environment(model: &Model) -> Option<String> {
+    let environment = &model.validity.as_ref()?.environment;
+    let ranges = environment.iter().map(|(name, [low, high])| format!("{name} {low} to {high}"));
+    let covered = match environment.is_empty() {
+        true => "none of them".to_owned(),
+        false => ranges.collect::<Vec<_>>().join(", ") + " (SI)",
+    };
+    Some(format!(
+        "of wind, current, waves and water depth the trials recorded {covered}; what acts beyond \
+         that does not follow from trials of this ship"
+    ))
 }
 
 fn sources(model: &Model) -> impl Iterator<Item = String> + '_ {

@@ -61,7 +61,7 @@ def rates(state, inputs=INPUTS, coefficients=COEFFICIENTS, step_s=@@step):
     return [u_dot, v_dot, r_dot, p_dot, phi_dot, psi_dot, x_dot, y_dot, delta_dot]
 
 
-def check(state):
+@@rangedef check(state):
     """Raises ArithmeticError where the simulation is no longer believed."""
     if not all(math.isfinite(value) for value in state):
         raise ArithmeticError("the state is no longer a number")

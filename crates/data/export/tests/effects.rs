@@ -86,6 +86,7 @@ fn sails_alike(ship: &str, effects: &[(&str, &str)], given: &[(&str, f64)]) {
 fn effects_act_as_in_our_own_simulation() {
     sails_alike("mariner", &[("rudder-lag", "first-order"), ("rudder-offset", "constant")], &[]);
     sails_alike("kvlcc2", &[("extra-resistance", "quadratic"), ("current", "constant")], &[]);
+    sails_alike("mariner", &[("rudder-lag", "dead-band")], &[]);
     let wind = [("wind_speed", 15.0), ("wind_from", 1.0)];
     sails_alike("mariner", &[("wind", "measured"), ("current", "constant")], &wind);
 }

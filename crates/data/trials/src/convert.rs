@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sistership_model::manifest::{RudderSign, VelocityFrame, WindDirection};
+use sistership_model::manifest::{RudderSign, WindDirection};
 use sistership_model::trial::{Channel, Trial};
 
 use crate::declarations::North;
@@ -23,7 +23,6 @@ pub(crate) fn convert(
         name: name.to_owned(),
         manoeuvre: mapping.manoeuvre.clone(),
         depth_m: mapping.depth_m,
-        velocity: mapping.conventions.velocity,
         ..Trial::default()
     };
     let mut recording = Recording {
@@ -48,13 +47,13 @@ pub(crate) fn convert(
             Target::Raw(raw) => {
                 recording.raw.insert(raw, values);
             }
+            Target::Unidentified(_) => {}
         }
     }
     for (channel, mut values) in means(&mut recording, findings) {
         sign(channel, &mut values, mapping, &recording, findings);
         recording.trial.channels.insert(channel, values);
     }
-    tell_frame(&recording, findings);
     recording
 }
 
@@ -135,16 +134,6 @@ fn degree_wind(channel: Channel, values: &[f64], recording: &Recording, findings
     }
 }
 
-fn tell_frame(recording: &Recording, findings: &mut Findings) {
-    let moving =
-        [Channel::U, Channel::V].into_iter().find(|&channel| recording.channel(channel).is_some());
-    if let (VelocityFrame::Water, Some(channel)) = (recording.trial.velocity, moving) {
-        let message = "u and v are speeds through the water, as declared: a current shows in the \
-            positions only";
-        findings.warning(None, Some(recording.header(channel)), message);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use sistership_model::manifest::TrialConventions;
@@ -199,14 +188,5 @@ mod tests {
         let psi = table(&[(Channel::Psi, vec![0.5; 3])]);
         let recording = convert("a", psi, &mapping, &mut Findings::default());
         assert!((recording.trial.channels[&Channel::Psi][0] - 0.5 + PI / 90.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn speeds_through_the_water_stay_marked() {
-        assert!(
-            run(Channel::U, &[1.0], |conventions| conventions.velocity = VelocityFrame::Water)
-                .1
-                .contains("through the water")
-        );
     }
 }

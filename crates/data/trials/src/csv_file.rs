@@ -4,6 +4,7 @@ use std::io::{Chain, Cursor, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
+use crate::blanks::Blanks;
 use crate::cells::{Cells, Counter};
 use crate::clock::Clock;
 use crate::decimals::Decimals;
@@ -31,7 +32,7 @@ pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings)
 
 /// The rows of a CSV file whose header has been read.
 pub(crate) struct CsvRows<R> {
-    reader: csv::Reader<Chain<Cursor<Vec<u8>>, Metered<R>>>,
+    reader: csv::Reader<Blanks<Chain<Cursor<Vec<u8>>, Metered<R>>>>,
     meter: Meter,
     columns: Vec<Column>,
     room: usize,
@@ -46,13 +47,13 @@ impl<R: Read> CsvRows<R> {
         let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
         let start = start(&mut metered, &meter, mapping, findings)?;
         let layout = layout::find(&start, mapping);
-        let whole = Cursor::new(start[layout.offset..].to_vec()).chain(metered);
+        let whole = Cursor::new(layout::body(&start, &layout)).chain(metered);
         let mut reader = opened(whole, layout.separator);
         let headers = headers(&mut reader, mapping, findings)?;
         meter.reset();
         let columns = resolve_heading(heading(&headers, &layout), mapping, findings)?;
         let cells = Reading {
-            lines: layout.lines,
+            shift: layout.shift(),
             most: mapping.limits.rows,
             units: !layout.units.is_empty(),
             time: time_at(&columns).map(|at| columns[at].clone()),
@@ -113,14 +114,17 @@ pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize,
 fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
     let mut findings = Findings::default();
     let layout = layout::find(start, mapping);
-    let mut reader = opened(&start[layout.offset..], layout.separator);
+    let mut reader = opened(Cursor::new(layout::body(start, &layout)), layout.separator);
     let headers = headers(&mut reader, mapping, &mut findings)?;
     let columns = resolve_heading(heading(&headers, &layout), mapping, &mut findings)?;
     Some(width(&columns))
 }
 
-fn opened<R: Read>(input: R, separator: u8) -> csv::Reader<R> {
-    ReaderBuilder::new().delimiter(separator).flexible(true).from_reader(input)
+fn opened<R: Read>(input: R, separator: u8) -> csv::Reader<Blanks<R>> {
+    let by_blanks = separator == b' ';
+    let delimiter = if by_blanks { b'\t' } else { separator };
+    let input = Blanks::new(input, by_blanks);
+    ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(input)
 }
 
 fn heading<'a>(names: &'a [String], layout: &'a Layout) -> Heading<'a> {
@@ -187,8 +191,8 @@ fn headers(
 
 /// What is learned row by row.
 struct Reading {
-    /// Lines before those that are read.
-    lines: usize,
+    /// Lines of the file before those that are read; less than none where a header was made.
+    shift: isize,
     /// Rows that are read at most.
     most: usize,
     /// Whether the first row is one of units.
@@ -210,14 +214,15 @@ impl Reading {
     ) -> Result<(), (usize, String)> {
         let mut record = ByteRecord::new();
         loop {
-            let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX) + self.lines;
+            let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX);
+            let next = next.saturating_add_signed(self.shift);
             let more = reader
                 .read_byte_record(&mut record)
                 .map_err(|error| (next, format!("cannot be read on: {error}")))?;
             if !more {
                 return Ok(());
             }
-            let row = line(reader, &record) + self.lines;
+            let row = line(reader, &record).saturating_add_signed(self.shift);
             meter.reset();
             if std::mem::take(&mut self.units) {
                 continue;

@@ -172,10 +172,7 @@ fn ignored_columns_are_not_told_and_empty_ones_once() {
 #[test]
 fn percentages_are_of_what_is_declared() {
     let mut mapping = Mapping::canonical();
-    let column = |column: &str| sistership_model::manifest::ColumnMapping {
-        column: column.into(),
-        unit: "%".into(),
-    };
+    let column = |column: &str| sistership_model::manifest::ColumnMapping::new(column, "%");
     mapping.columns = vec![("n_s".into(), column("n port")), ("delta".into(), column("helm"))];
     let full = |value, unit: &str| crate::declarations::Maximum { value, unit: unit.into() };
     mapping.declared.maximum.insert("n".into(), full(120.0, "rpm"));

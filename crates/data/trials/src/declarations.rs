@@ -2,8 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_model::manifest::ColumnMapping;
+
+use crate::exclusion::Exclusion;
 
 /// Everything that the reader cannot know of a file unless it is declared.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,10 +25,12 @@ pub struct Declarations {
     pub antenna: Option<Antenna>,
     /// Channels to be derived of position and heading where they were not measured: `u`, `v`, `r`.
     pub derive: Vec<Derivable>,
+    /// What is left out of files as faulty.
+    pub exclude: Vec<Exclusion>,
 }
 
 /// Which north a heading is counted from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum North {
     /// The geographic one.
@@ -36,7 +41,7 @@ pub enum North {
 }
 
 /// A full value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Maximum {
     /// How much.
@@ -46,7 +51,7 @@ pub struct Maximum {
 }
 
 /// Where an antenna stands.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Antenna {
     /// Forward of midship, m.
@@ -56,7 +61,7 @@ pub struct Antenna {
 }
 
 /// A channel that can be derived of others.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Derivable {
     /// Surge velocity, of positions and heading.
@@ -68,7 +73,7 @@ pub enum Derivable {
 }
 
 /// A file of one sensor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorFile {
     /// Path, relative to the manifest.

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
 use crate::declarations::Derivable;
@@ -11,6 +10,7 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::smoother::{Noise, Smoothed, choose, smooth};
 use crate::stats::quantile;
+use crate::water::is_water_only;
 
 /// Samples below which a stretch without a gap tells no rate.
 const FEWEST: usize = 8;
@@ -34,17 +34,15 @@ pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findin
     let open: Vec<Channel> = pairs
         .into_iter()
         .filter(|&(name, channel)| {
-            wanted.contains(&name) && !measured(recording, channel, findings)
+            let is_wanted = wanted.contains(&name)
+                // One velocity over the ground beside one through the water would be no motion.
+                || (is_water_only(recording, channel) && derives_velocity(wanted));
+            is_wanted && !measured(recording, channel, findings)
         })
         .map(|(_, channel)| channel)
         .collect();
     if open.is_empty() {
         return;
-    }
-    if recording.trial.velocity == VelocityFrame::Water {
-        let message =
-            "velocities derived of positions are over ground, but `velocity: water` is declared";
-        return findings.error(None, None, message);
     }
     let needed = [Channel::X, Channel::Y, Channel::Psi];
     let Some(segments) = stretches(recording, &needed, findings) else { return };
@@ -61,6 +59,10 @@ pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findin
         let samples = samples.unzip();
         insert(recording, channel, samples, noise, findings);
     }
+}
+
+fn derives_velocity(wanted: &[Derivable]) -> bool {
+    wanted.iter().any(|name| matches!(name, Derivable::U | Derivable::V))
 }
 
 /// A velocity along the heading or across it, and its variance: that of the track's rates, and that
@@ -217,9 +219,16 @@ mod tests {
         assert_eq!(ship.derived.len(), 1);
         let mut ship = without(&[Channel::V, Channel::X, Channel::Psi]);
         assert!(derive(&mut ship).contains("without x, psi"));
-        let mut ship = without(&[Channel::U]);
-        ship.trial.velocity = VelocityFrame::Water;
-        assert!(derive(&mut ship).contains("over ground"));
+    }
+
+    #[test]
+    fn a_log_through_the_water_is_no_velocity_over_the_ground() {
+        let mut ship = without(&[Channel::U, Channel::V]);
+        ship.trial.channels.insert(Channel::UWater, vec![9.0; ship.trial.len()]);
+        velocities(&mut ship, &[Derivable::V], &mut Findings::default());
+        let derived: Vec<Channel> = ship.derived.iter().map(|derived| derived.channel).collect();
+        assert_eq!(derived, [Channel::U, Channel::V]);
+        assert!(ship.trial.channels[&Channel::U][0] < 8.9);
     }
 
     #[test]

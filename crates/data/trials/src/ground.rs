@@ -1,6 +1,5 @@
-//! Course and speed over ground become surge and sway velocity.
+//! Course and speed over ground, and velocities north and east, become surge and sway velocity.
 
-use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
 use crate::declarations::Antenna;
@@ -14,6 +13,7 @@ pub(crate) fn velocities(
     antenna: Option<Antenna>,
     findings: &mut Findings,
 ) {
+    earth_fixed(recording, findings);
     let given = (recording.raw.remove(&Raw::Course), recording.raw.remove(&Raw::Speed));
     if given == (None, None) {
         return;
@@ -47,10 +47,33 @@ pub(crate) fn velocities(
     let message =
         format!("u and v come of course and speed over ground and the heading; they are {of}");
     findings.warning(None, None, message);
-    if recording.trial.velocity == VelocityFrame::Water {
-        let message = "speeds through the water are declared, but these are over ground";
-        findings.error(None, None, message);
+    recording.trial.channels.insert(Channel::U, u);
+    recording.trial.channels.insert(Channel::V, v);
+}
+
+/// Makes `u` and `v` of velocities north and east, where they were not measured.
+fn earth_fixed(recording: &mut Recording, findings: &mut Findings) {
+    let given = (recording.raw.remove(&Raw::VNorth), recording.raw.remove(&Raw::VEast));
+    if given == (None, None) {
+        return;
     }
+    let (Some(north), Some(east), Some(psi)) = (given.0, given.1, recording.channel(Channel::Psi))
+    else {
+        let message = "velocities north and east and the heading give u and v together; one is \
+                       missing, so none is used";
+        return findings.warning(None, None, message);
+    };
+    if [Channel::U, Channel::V].iter().any(|&channel| recording.channel(channel).is_some()) {
+        let message = "u or v was measured; velocities north and east are not used";
+        return findings.warning(None, None, message);
+    }
+    let turned = north.iter().zip(&east).zip(psi).map(|((north, east), psi)| {
+        let (sin, cos) = psi.sin_cos();
+        (north * cos + east * sin, east * cos - north * sin)
+    });
+    let (u, v): (Vec<f64>, Vec<f64>) = turned.unzip();
+    let message = "u and v come of velocities north and east and the heading";
+    findings.warning(None, None, message);
     recording.trial.channels.insert(Channel::U, u);
     recording.trial.channels.insert(Channel::V, v);
 }

@@ -25,6 +25,8 @@ pub(crate) struct Layout {
     pub lines: usize,
     /// What stands below the header, where that is units.
     pub units: Vec<String>,
+    /// For a table without a header, its number of columns; they are called `#1`, `#2`, ...
+    pub headerless: Option<usize>,
 }
 
 /// A line that is not blank.
@@ -40,6 +42,17 @@ struct Line<'a> {
 /// Finds the table; the header is the line with most names that are mapped or canonical, or else
 /// the first.
 pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
+    if mapping.unidentified.is_some() {
+        return guess(start);
+    }
+    let by_place = |name: &str| {
+        name.trim().strip_prefix('#').is_some_and(|place| place.parse::<usize>().is_ok())
+    };
+    if mapping.columns.iter().any(|(_, mapped)| by_place(&mapped.column))
+        && let Some(layout) = headerless(start)
+    {
+        return layout;
+    }
     let mut found = lines(start).enumerate().peekable();
     let Some(&(_, first)) = found.peek() else {
         return Layout { separator: b',', ..Layout::default() };
@@ -58,7 +71,40 @@ pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
     let below = lines(start).nth(at + 1).filter(|below| below.complete);
     let units = below.and_then(|below| units(&cells(below.bytes, separator)));
     let (offset, lines) = if at == 0 { (0, 0) } else { (line.offset, line.before) };
-    Layout { separator, offset, lines, units: units.unwrap_or_default() }
+    Layout { separator, offset, lines, units: units.unwrap_or_default(), headerless: None }
+}
+
+/// A table of which the first lines hold numbers alone.
+fn headerless(start: &[u8]) -> Option<Layout> {
+    let lines: Vec<Line> = lines(start).collect();
+    let width = |line: &Line| cells(line.bytes, likely_separator(line.bytes)).len();
+    let alike = |at: usize| {
+        let next = lines[at..].iter().take(3).filter(|line| line.complete);
+        next.clone().all(|line| is_data(line.bytes) && width(line) == width(&lines[at]))
+            && next.count() > 0
+    };
+    let at = (0..lines.len()).find(|&at| alike(at))?;
+    let Line { offset, before, bytes, .. } = lines[at];
+    let separator = likely_separator(bytes);
+    let headerless = Some(cells(bytes, separator).len());
+    Some(Layout { separator, offset, lines: before, units: Vec::new(), headerless })
+}
+
+/// The table's text: from its header on, which is made for a table without one.
+pub(crate) fn body(start: &[u8], layout: &Layout) -> Vec<u8> {
+    let text = &start[layout.offset..];
+    let Some(count) = layout.headerless else { return text.to_vec() };
+    let names: Vec<String> = (1..=count).map(|place| format!("#{place}")).collect();
+    let separator = char::from(layout.separator).to_string();
+    [names.join(&separator).as_bytes(), b"\n", text].concat()
+}
+
+impl Layout {
+    /// Lines of the file before what is read, less that of a header that was made.
+    pub(crate) fn shift(&self) -> isize {
+        let lines = isize::try_from(self.lines).unwrap_or(isize::MAX);
+        lines - isize::from(self.headerless.is_some())
+    }
 }
 
 /// How many names of the header are known.
@@ -72,20 +118,42 @@ pub(crate) fn known_names(start: &[u8], mapping: &Mapping) -> usize {
 pub(crate) fn guess(start: &[u8]) -> Layout {
     let canonical = Mapping::canonical();
     let lines: Vec<Line> = lines(start).collect();
-    let data = (1..lines.len()).find(|&at| is_data(lines[at].bytes));
+    let data = (0..lines.len()).find(|&at| is_data(lines[at].bytes));
     let Some(data) = data.filter(|_| known_names(start, &canonical) < CERTAIN) else {
         return find(start, &canonical);
     };
     let separator = likely_separator(lines[data].bytes);
+    let width = |at: usize| cells(lines[at].bytes, separator).len();
+    // Words of a title stand apart by blanks as well: there a header has a name for each column.
+    let most = usize::from(separator != b' ');
+    let heads = data > 0 && width(data - 1).abs_diff(width(data)) <= most;
+    if !heads && let Some(layout) = headerless(start) {
+        return layout;
+    }
+    if data == 0 {
+        return find(start, &canonical);
+    }
     let below = units(&cells(lines[data - 1].bytes, separator)).filter(|_| data > 1);
     let header = lines[if below.is_some() { data - 2 } else { data - 1 }];
     let units = below.unwrap_or_default();
-    Layout { separator, offset: header.offset, lines: header.before, units }
+    Layout { separator, offset: header.offset, lines: header.before, units, headerless: None }
 }
 
 /// A comma may be a decimal one where something else separates.
 fn likely_separator(line: &[u8]) -> u8 {
-    [b'\t', b';'].into_iter().find(|byte| line.contains(byte)).unwrap_or(b',')
+    let found = [b'\t', b';', b','].into_iter().find(|byte| line.contains(byte));
+    let by_blanks = || {
+        let mut cells =
+            line.split(|byte| byte.is_ascii_whitespace()).filter(|cell| !cell.is_empty());
+        let point = |cell: &[u8]| number(&Decimals::new(b' ').point(0, cell)).is_ok();
+        cells.clone().count() > 1 && cells.all(point)
+    };
+    match found {
+        // Numbers with decimal commas, apart by blanks.
+        Some(b',') if by_blanks() => b' ',
+        None if line.trim_ascii().contains(&b' ') => b' ',
+        found => found.unwrap_or(b','),
+    }
 }
 
 /// Whether most of a line's cells are numbers or times.
@@ -145,10 +213,16 @@ fn separator(line: &[u8]) -> u8 {
         line.iter().copied().filter(counts).count()
     };
     // The last of equals wins, and a comma is the rule.
-    [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator)).unwrap_or(b',')
+    let most = [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator));
+    let separator = most.unwrap_or(b',');
+    if bare(separator) == 0 && line.trim_ascii().contains(&b' ') { b' ' } else { separator }
 }
 
 fn cells(line: &[u8], separator: u8) -> Vec<String> {
+    if separator == b' ' {
+        let cells = line.split(|byte| byte.is_ascii_whitespace());
+        return cells.filter(|cell| !cell.is_empty()).map(name).collect();
+    }
     let mut reader = ReaderBuilder::new().delimiter(separator).has_headers(false).from_reader(line);
     let mut record = ByteRecord::new();
     // A line that cannot be split has no name in it.
@@ -194,10 +268,21 @@ mod tests {
     #[test]
     fn the_header_may_stand_below_other_lines() {
         let text = "Ship: A\nDate;2024-05-01\n\nt_s;u_kn;note\n0;1;a\n";
-        let wanted = Layout { separator: b';', offset: 25, lines: 3, units: Vec::new() };
+        let wanted = Layout { separator: b';', offset: 25, lines: 3, ..Layout::default() };
         assert_eq!(of(text), wanted);
         assert_eq!(of("a,b\n1,2\n").offset, 0);
         assert_eq!(of("").separator, b',');
+    }
+
+    #[test]
+    fn a_table_without_a_header_is_found_below_its_titles() {
+        let text =
+            b" HSVA, data\n Z10/10 starting to port\n  .00   2.34  -1.0\n  .05   2.40  -1.1\n";
+        let layout = guess(text);
+        assert_eq!((layout.separator, layout.headerless, layout.lines), (b' ', Some(3), 2));
+        assert!(body(text, &layout).starts_with(b"#1 #2 #3\n  .00"));
+        assert_eq!(guess(b"a b c\n0 1 2\n1 2 3\n").headerless, None);
+        assert_eq!(guess(b"0;1;2\n1;2;3\n").headerless, Some(3));
     }
 
     #[test]

@@ -8,6 +8,8 @@
 //! and [`lacking`] names what a law needs that a trial does not have. [`samples`] keeps trials as
 //! Parquet and writes them as CSV.
 
+mod blanks;
+mod bridge;
 mod calendar;
 mod cells;
 mod checks;
@@ -20,6 +22,9 @@ mod declarations;
 mod demand;
 mod derived;
 mod derived_channel;
+mod exclusion;
+mod faults;
+mod file_set;
 mod findings;
 mod ground;
 mod layout;
@@ -51,9 +56,11 @@ mod recording;
 mod resolve;
 mod rows;
 pub mod samples;
+mod sampling;
 mod scan;
 pub mod segmentation;
 mod series;
+mod shape;
 mod smoother;
 pub mod smoothing;
 mod source;
@@ -65,23 +72,25 @@ mod table;
 mod taker;
 #[cfg(test)]
 mod testing;
-mod unit_guess;
 mod units;
-mod vocabulary;
+mod water;
 mod workbook;
+mod written_time;
 
 pub use declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
 pub use demand::{Demand, demand_of_trial, measuring};
 pub use derived_channel::DerivedChannel;
+pub use exclusion::{Exclusion, RowRanges};
 pub use limits::Limits;
-pub use load::{Loaded, check_path, load_path};
+pub use load::{Loaded, check_path, find_faults, load_path};
 pub use manifest::read_manifest_file;
 pub use manifest_file::ManifestFile;
 pub use mapping::Mapping;
 pub use needs::{Lack, lacking};
 pub use outcome::{CheckOutcome, Refusal, TrialReading};
-pub use propose::{Guess, Proposal, propose};
+pub use propose::{Guess, Proposal, ProposalRequest, propose, propose_files};
 pub use read::{check, read_in_full, read_trial};
 pub use scan::{Steering, scan};
+pub use sistership_columns::{GivenColumn, Role};
 pub use source::Source;
 pub use stretches::Stretch;

@@ -10,7 +10,8 @@ use sistership_model::manifest::Manifest;
 use sistership_model::trial::{Finding, Trial};
 
 use crate::declarations::SensorFile;
-use crate::manifest::read_manifest_file;
+use crate::exclusion::Exclusion;
+use crate::manifest::read_local_manifest;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal};
 use crate::read::{Examined, StretchRequest, examine, stretches};
@@ -32,7 +33,7 @@ pub struct Loaded {
 /// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of
 /// the whole.
 pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
-    let (manifest, mut trials) = each(path, |name, examined| match examined {
+    let (manifest, mut trials) = each(path, false, |name, examined| match examined {
         Ok(examined) => examined.trial(name),
         Err(error) => Err(Refusal { file: name, findings: vec![unreadable(&error)] }),
     })?;
@@ -50,7 +51,7 @@ pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
 /// # Errors
 /// As [`load_path`].
 pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
-    let outcomes = each(path, |name, examined| match examined {
+    let outcomes = each(path, true, |name, examined| match examined {
         Ok(examined) => examined.outcome(name),
         Err(error) => CheckOutcome {
             file: name,
@@ -61,6 +62,30 @@ pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
         },
     })?;
     Ok(outcomes.1)
+}
+
+/// Faults of the values of a manifest's files that it does not exclude yet, by file and channel.
+///
+/// # Errors
+/// As [`load_path`].
+pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
+    let (manifest, mut listed) = listed(path)?;
+    listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
+    let found = each_listed(&listed, |_, examined| {
+        examined.map(|examined| examined.faults().to_vec()).unwrap_or_default()
+    });
+    let trials = manifest.iter().flat_map(|manifest| &manifest.trials);
+    let mut all: Vec<Exclusion> = Vec::new();
+    for (trial, faults) in trials.zip(found) {
+        for fault in faults {
+            let fault = Exclusion { file: trial.file.clone(), ..fault };
+            match all.iter_mut().find(|one| one.is_like(&fault)) {
+                Some(known) => known.add(&fault),
+                None => all.push(fault),
+            }
+        }
+    }
+    Ok(all)
 }
 
 /// A file that is to be read, and the sensors' that belong to it.
@@ -86,18 +111,29 @@ impl Listed {
 /// What `take` makes of each trial of a path, in the manifest's order; files are read side by side.
 fn each<T: Send>(
     path: &Path,
+    seeks_faults: bool,
     take: impl Fn(String, io::Result<Examined>) -> T + Sync,
 ) -> Result<(Option<Manifest>, Vec<T>), FileError> {
-    let (manifest, listed) = listed(path)?;
+    let (manifest, mut listed) = listed(path)?;
+    if seeks_faults {
+        listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
+    }
+    Ok((manifest, each_listed(&listed, take)))
+}
+
+fn each_listed<T: Send>(
+    listed: &[Listed],
+    take: impl Fn(String, io::Result<Examined>) -> T + Sync,
+) -> Vec<T> {
     let taken = |places: Vec<usize>| -> Vec<(usize, T)> {
         let group: Vec<&Listed> = places.iter().map(|&k| &listed[k]).collect();
         let each = places.iter().zip(examined(&group));
         each.map(|(&k, examined)| (k, take(listed[k].name.clone(), examined))).collect()
     };
     let mut all: Vec<(usize, T)> =
-        by_file(&listed).into_par_iter().with_max_len(1).flat_map_iter(taken).collect();
+        by_file(listed).into_par_iter().with_max_len(1).flat_map_iter(taken).collect();
     all.sort_by_key(|(place, _)| *place);
-    Ok((manifest, all.into_iter().map(|(_, taken)| taken).collect()))
+    all.into_iter().map(|(_, taken)| taken).collect()
 }
 
 /// Places of what is read in one pass.
@@ -145,7 +181,7 @@ fn listed(path: &Path) -> Result<(Option<Manifest>, Vec<Listed>), FileError> {
         return Ok((None, vec![alone]));
     }
     let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
-    let written = read_manifest_file(&shown, &text)?;
+    let written = read_local_manifest(&shown, &text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let listed =
         written.manifest.trials.iter().zip(&written.sensors).map(|(trial, sensors)| Listed {

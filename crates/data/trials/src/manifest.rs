@@ -19,6 +19,26 @@ use crate::units::Kind;
 /// Names line and field of everything that is wrong: the YAML, an unknown channel or unit, a path
 /// that leaves the folder, a file named twice, impossible smoothing, a declaration that cannot be.
 pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
+    let inside = |file: &ManifestFile| {
+        let trials = outside(file).into_iter();
+        trials.chain(sensors_outside(file)).collect()
+    };
+    read(file_name, text, inside)
+}
+
+/// As [`read_manifest_file`], of a manifest on disk, which may name files beside its folder.
+///
+/// # Errors
+/// As [`read_manifest_file`].
+pub(crate) fn read_local_manifest(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
+    read(file_name, text, |_| Vec::new())
+}
+
+fn read(
+    file_name: &str,
+    text: &str,
+    further: impl Fn(&ManifestFile) -> Vec<Problem>,
+) -> Result<ManifestFile, FileError> {
     let written: Written =
         sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
     let file = ManifestFile::from(written);
@@ -26,7 +46,9 @@ pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, F
     let problems = columns(&file)
         .chain(trials(manifest))
         .chain(sensors(&file))
+        .chain(further(&file))
         .chain(conventions(manifest))
+        .chain(exclusions(&file))
         .chain(declarations(&file.declarations));
     let refused = |Problem { field, near, message }: Problem| FileError {
         file: file_name.to_owned(),
@@ -48,7 +70,8 @@ struct Problem {
 
 fn columns(file: &ManifestFile) -> impl Iterator<Item = Problem> {
     let sensors = file.sensors.iter().flatten().flat_map(|sensor| &sensor.columns);
-    file.manifest.columns.iter().chain(sensors).filter_map(|(name, mapped)| {
+    let own = file.manifest.trials.iter().flat_map(|trial| &trial.columns);
+    file.manifest.columns.iter().chain(own).chain(sensors).filter_map(|(name, mapped)| {
         let problem = |message: String| Problem {
             field: format!("columns.{name}"),
             near: format!("{name}:"),
@@ -80,9 +103,6 @@ fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
             same_file(&other.file, &trial.file) && !(other.is_stretch() && trial.is_stretch())
         });
         let message = match trial.depth_m {
-            _ if !stays_inside(&trial.file) => {
-                "must be a path relative to the manifest that stays in its folder".to_owned()
-            }
             _ if twice => "is listed twice; the same data would count twice".to_owned(),
             Some(depth) if !(depth > 0.0 && depth.is_finite()) => {
                 format!("depth_m must be positive, not {depth}; leave it out for deep water")
@@ -99,18 +119,53 @@ fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
 }
 
 fn sensors(file: &ManifestFile) -> impl Iterator<Item = Problem> {
-    let is_wrong = |sensor: &&SensorFile| {
-        !stays_inside(&sensor.file)
-            || sensor.clock_offset_s.is_some_and(|offset| !offset.is_finite())
-    };
+    let is_wrong =
+        |sensor: &&SensorFile| sensor.clock_offset_s.is_some_and(|offset| !offset.is_finite());
     file.sensors.iter().flatten().filter(is_wrong).map(|sensor| Problem {
         field: "trials.sensors".into(),
         near: sensor.file.clone(),
-        message: format!(
-            "`{}` must be a path relative to the manifest that stays in its folder, and \
-             clock_offset_s a number",
-            sensor.file
-        ),
+        message: format!("`{}`: clock_offset_s must be a number", sensor.file),
+    })
+}
+
+/// Trials whose file is not in the manifest's folder.
+fn outside(file: &ManifestFile) -> Vec<Problem> {
+    let trials = file.manifest.trials.iter().enumerate();
+    trials
+        .filter(|(_, trial)| !stays_inside(&trial.file))
+        .map(|(index, trial)| left_folder(format!("trials[{index}].file"), &trial.file))
+        .collect()
+}
+
+fn sensors_outside(file: &ManifestFile) -> Vec<Problem> {
+    let sensors = file.sensors.iter().flatten().filter(|sensor| !stays_inside(&sensor.file));
+    sensors.map(|sensor| left_folder("trials.sensors".into(), &sensor.file)).collect()
+}
+
+fn left_folder(field: String, path: &str) -> Problem {
+    let message =
+        format!("`{path}` must be a path relative to the manifest that stays in its folder");
+    Problem { field, near: path.to_owned(), message }
+}
+
+fn exclusions(file: &ManifestFile) -> impl Iterator<Item = Problem> {
+    let problem = |near: &str, message: String| Problem {
+        field: "exclude".into(),
+        near: near.to_owned(),
+        message,
+    };
+    file.declarations.exclude.iter().filter_map(move |one| {
+        let unknown = one.channel.as_deref().filter(|name| Target::by_name(name).is_none());
+        if let Some(name) = unknown {
+            let message = format!("`{name}` is not a channel; channels are {}", channel_names());
+            return Some(problem(name, message));
+        }
+        if !file.manifest.trials.iter().any(|trial| trial.file == one.file) {
+            let message = format!("`{}` is the file of no trial", one.file);
+            return Some(problem(&one.file, message));
+        }
+        let is_open = one.rows.is_none() && one.from.is_none() && one.to.is_none();
+        is_open.then(|| problem(&one.why, "name `rows`, or `from` and `to`".into()))
     })
 }
 
@@ -162,6 +217,13 @@ fn stays_inside(path: &str) -> bool {
 }
 
 fn conventions(manifest: &Manifest) -> Option<Problem> {
+    if let Some(limit) = manifest.conventions.bridge_s.filter(|limit| !(*limit >= 0.0)) {
+        return Some(Problem {
+            field: "conventions.bridge_s".into(),
+            near: "bridge_s:".into(),
+            message: format!("must be a number of seconds, not {limit}"),
+        });
+    }
     let smoothing = manifest.conventions.smoothing?;
     let message = smoothing::check(smoothing.window, smoothing.degree).err()?;
     Some(Problem {

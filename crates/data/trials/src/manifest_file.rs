@@ -1,13 +1,16 @@
 //! A manifest as it is written: what the model's type holds, and what the reader is told besides.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_model::manifest::{
     ColumnMapping, FileTime, Manifest, ManifestTrial, TrialConventions, TrialsKind,
 };
 
 use crate::declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
+use crate::exclusion::Exclusion;
 use crate::mapping::Mapping;
 
 /// A manifest with everything that it declares.
@@ -22,46 +25,75 @@ pub struct ManifestFile {
     pub sensors: Vec<Vec<SensorFile>>,
 }
 
-/// The keys of the file. `Manifest` refuses what it does not know, so that its fields stand here
-/// once more.
-#[derive(Serialize, Deserialize)]
+/// Trials of a ship: files, columns, signs, and what is left out as faulty.
+// `Manifest` refuses what it does not know, so that its fields stand here once more.
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Written {
+    /// Always `trials`.
     kind: TrialsKind,
+    /// The ship that was tried; it may be left open, as `refine --ship` names it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     ship: String,
+    /// Signs and frames of the files.
     #[serde(default)]
     conventions: TrialConventions,
+    /// Which north headings and courses are counted from.
     #[serde(default, skip_serializing_if = "is_default")]
     heading: North,
+    /// Magnetic variation, deg, positive to the east: what is added to a magnetic heading.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     variation_deg: Option<f64>,
+    /// What 100 % of a channel is.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     maximum: BTreeMap<String, Maximum>,
+    /// Where positions were measured aboard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     antenna: Option<Antenna>,
+    /// Channels to be derived of position and heading where they were not measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     derive: Vec<Derivable>,
+    /// The sheet of a workbook; by default the first that has a table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sheet: Option<String>,
+    /// Channel (`t`, `x`, `psi`, ...) to column; canonical column names need no mapping. `#3` is
+    /// the third column of a file without a header.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, ColumnMapping>")]
     columns: indexmap::IndexMap<String, ColumnMapping>,
+    /// Columns that are not wanted, and not listed as left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     ignore: Vec<String>,
+    /// Values and rows that are left out as faulty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    exclude: Vec<Exclusion>,
+    /// The files, relative to the manifest.
     trials: Vec<WrittenTrial>,
 }
 
-#[derive(Serialize, Deserialize)]
+/// A file, or a stretch of one.
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenTrial {
+    /// Path, relative to the manifest.
     file: String,
+    /// Where the stretch begins that is read; by default the file's first row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     from: Option<FileTime>,
+    /// Where it ends; by default the last row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to: Option<FileTime>,
+    /// What was done.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     manoeuvre: Option<String>,
+    /// Water depth, m; by default deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     depth_m: Option<f64>,
+    /// The file's own columns, in place of those of the manifest.
+    #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, ColumnMapping>")]
+    columns: indexmap::IndexMap<String, ColumnMapping>,
+    /// Files of further sensors, which are put on the trial's times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     sensors: Vec<SensorFile>,
 }
@@ -70,10 +102,25 @@ fn is_default(north: &North) -> bool {
     *north == North::default()
 }
 
+impl JsonSchema for ManifestFile {
+    fn schema_name() -> Cow<'static, str> {
+        "Manifest".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Written::json_schema(generator)
+    }
+}
+
 impl ManifestFile {
     /// The mapping of one of its files.
     pub fn mapping(&self, trial: &ManifestTrial) -> Mapping {
-        Mapping { declared: self.declarations.clone(), ..Mapping::of(&self.manifest, trial) }
+        let of_file = self.declarations.exclude.iter().filter(|one| one.file == trial.file);
+        Mapping {
+            declared: self.declarations.clone(),
+            exclude: of_file.cloned().collect(),
+            ..Mapping::of(&self.manifest, trial)
+        }
     }
 
     /// What it says of one of its trials.
@@ -119,6 +166,7 @@ impl From<Written> for ManifestFile {
             to: trial.to,
             manoeuvre: trial.manoeuvre,
             depth_m: trial.depth_m,
+            columns: trial.columns,
         });
         let manifest = Manifest {
             kind: written.kind,
@@ -135,6 +183,7 @@ impl From<Written> for ManifestFile {
             maximum: written.maximum,
             antenna: written.antenna,
             derive: written.derive,
+            exclude: written.exclude,
         };
         Self { manifest, declarations, sensors }
     }
@@ -145,8 +194,8 @@ impl From<ManifestFile> for Written {
         let ManifestFile { manifest, declarations, sensors } = file;
         let sensors = sensors.into_iter().chain(std::iter::repeat(Vec::new()));
         let trials = manifest.trials.into_iter().zip(sensors).map(|(trial, sensors)| {
-            let ManifestTrial { file, from, to, manoeuvre, depth_m } = trial;
-            WrittenTrial { file, from, to, manoeuvre, depth_m, sensors }
+            let ManifestTrial { file, from, to, manoeuvre, depth_m, columns } = trial;
+            WrittenTrial { file, from, to, manoeuvre, depth_m, columns, sensors }
         });
         Self {
             kind: manifest.kind,
@@ -160,6 +209,7 @@ impl From<ManifestFile> for Written {
             sheet: declarations.sheet,
             columns: manifest.columns,
             ignore: declarations.ignore,
+            exclude: declarations.exclude,
             trials: trials.collect(),
         }
     }

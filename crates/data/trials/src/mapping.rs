@@ -3,6 +3,7 @@
 use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
 use crate::declarations::{Declarations, SensorFile};
+use crate::exclusion::Exclusion;
 use crate::limits::Limits;
 use crate::stretches::Stretch;
 
@@ -28,7 +29,18 @@ pub struct Mapping {
     /// Rows that room is made for before any is read, so that columns need not grow; see
     /// [`crate::demand`].
     pub room: usize,
+    /// What is left out of the file, as faulty.
+    pub exclude: Vec<Exclusion>,
+    /// Where columns are yet to be identified: the place and unit of a time that is written as
+    /// text. Every column is then read as it stands.
+    pub(crate) unidentified: Option<WrittenTime>,
+    /// Whether faults are looked for.
+    pub(crate) seeks_faults: bool,
 }
+
+/// A column of times that are written as text, if there is one: its place and unit.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct WrittenTime(pub Option<(usize, &'static str)>);
 
 impl Mapping {
     /// The mapping of a file whose columns have canonical names and whose signs are the canonical
@@ -40,11 +52,13 @@ impl Mapping {
     /// The mapping of one file of a manifest.
     pub fn of(manifest: &Manifest, trial: &ManifestTrial) -> Self {
         Self {
-            columns: manifest
-                .columns
-                .iter()
-                .map(|(name, column)| (name.clone(), column.clone()))
-                .collect(),
+            columns: match trial.columns.is_empty() {
+                true => &manifest.columns,
+                false => &trial.columns,
+            }
+            .iter()
+            .map(|(name, column)| (name.clone(), column.clone()))
+            .collect(),
             conventions: manifest.conventions.clone(),
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
@@ -52,6 +66,9 @@ impl Mapping {
             stretch: Stretch::of(trial),
             limits: Limits::default(),
             room: 0,
+            exclude: Vec::new(),
+            unidentified: None,
+            seeks_faults: false,
         }
     }
 
@@ -62,6 +79,7 @@ impl Mapping {
             columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),
             room: 0,
             stretch: None,
+            exclude: Vec::new(),
             ..self.clone()
         }
     }

@@ -88,6 +88,9 @@ fn mapped(
     let offers = offers.map_err(|error| findings.error(None, None, damaged(&error))).ok()?;
     let names: Vec<String> = offers.iter().map(|offer| offer.name.clone()).collect();
     let columns = resolve(&names, mapping, findings)?;
+    if mapping.unidentified.is_some() {
+        return Some(of_one_length(columns, &offers));
+    }
     let time = columns.iter().find(|column| column.target == Target::Time)?;
     let length = offers[time.index].length;
     for column in columns.iter().filter(|column| offers[column.index].length != length) {
@@ -104,6 +107,14 @@ fn mapped(
         findings.error(None, None, message);
     }
     (!findings.has_errors()).then_some(columns)
+}
+
+/// Columns of the length that most have.
+fn of_one_length(mut columns: Vec<Column>, offers: &[Offer]) -> Vec<Column> {
+    let alike = |length: usize| offers.iter().filter(|other| other.length == length).count();
+    let length = offers.iter().map(|offer| offer.length).max_by_key(|&length| alike(length));
+    columns.retain(|column| Some(offers[column.index].length) == length);
+    columns
 }
 
 /// The names of the columns that a file has.

@@ -64,10 +64,8 @@ fn example() -> Vec<u8> {
 
 fn mapping() -> Mapping {
     let mut mapping = Mapping::canonical();
-    let column = |column: &str, unit: &str| sistership_model::manifest::ColumnMapping {
-        column: column.into(),
-        unit: unit.into(),
-    };
+    let column =
+        |column: &str, unit: &str| sistership_model::manifest::ColumnMapping::new(column, unit);
     mapping.columns =
         vec![("y".into(), column("track(:,2)", "m")), ("psi".into(), column("log.psi", "rad"))];
     mapping

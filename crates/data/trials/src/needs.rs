@@ -5,6 +5,7 @@ use std::fmt;
 use sistership_model::coefficient::Axis;
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::law::Law;
+use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Trial};
 
 /// A channel that is missing.
@@ -72,7 +73,11 @@ fn remedy(trial: &Trial, channel: Channel) -> String {
         Channel::R => has(&[Channel::Psi]),
         _ => false,
     };
+    let by_log = channel == Channel::V && trial.velocity == VelocityFrame::Water;
     match channel {
+        Channel::V if by_log && derived => "declare `derive: [u, v]`: positions and heading give \
+            both over the ground, and the speed through the water stands beside them"
+            .into(),
         _ if derived => format!("map its column, or declare `derive: [{channel}]`"),
         Channel::Depth => "map its column, or give `depth_m` of the trial".into(),
         Channel::U | Channel::V => {

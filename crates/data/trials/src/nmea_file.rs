@@ -7,8 +7,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, BufReader, Read};
 
-use sistership_model::manifest::VelocityFrame;
-
 use crate::calendar::{DAY, SECOND, iso};
 use crate::findings::Findings;
 use crate::mapping::Mapping;
@@ -27,7 +25,7 @@ const DAYS: i64 = 1000;
 
 /// Reads every sentence that a trial can use.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
-    let mut log = Log::new(mapping);
+    let mut log = Log::default();
     if let Err(message) = lines(input, mapping, |row, text| log.line(row, text)) {
         findings.error(None, None, message);
         return None;
@@ -41,7 +39,7 @@ pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
     for text in start.lines() {
         if let Line::Sentence(sentence) = line(text) {
             let name = format!("{}{}", sentence.talker, sentence.kind);
-            let readings = sentence.readings(VelocityFrame::Ground).into_iter();
+            let readings = sentence.readings().into_iter();
             found.extend(readings.map(|(target, _)| (target, name.clone())));
         }
     }
@@ -105,8 +103,8 @@ struct Pending {
     readings: Vec<(Origin, f64)>,
 }
 
+#[derive(Default)]
 struct Log {
-    frame: VelocityFrame,
     /// The first mark, which time is counted from, and the last: line and ns, over midnights.
     first: Option<i64>,
     last: Option<(usize, i64)>,
@@ -122,21 +120,6 @@ struct Log {
 }
 
 impl Log {
-    fn new(mapping: &Mapping) -> Self {
-        Self {
-            frame: mapping.conventions.velocity,
-            first: None,
-            last: None,
-            midnight: None,
-            days: 0,
-            own: false,
-            pending: Vec::new(),
-            series: BTreeMap::new(),
-            damaged: (0, 0),
-            timeless: 0,
-        }
-    }
-
     fn line(&mut self, row: usize, text: &str) -> Result<(), String> {
         match line(text) {
             Line::Sentence(sentence) => self.sentence(row, sentence),
@@ -171,7 +154,7 @@ impl Log {
         let mut talker = [0; 5];
         talker[..2].copy_from_slice(sentence.talker.as_bytes());
         talker[2..].copy_from_slice(sentence.kind.as_bytes());
-        let readings = sentence.readings(self.frame).into_iter();
+        let readings = sentence.readings().into_iter();
         let readings: Vec<(Origin, f64)> =
             readings.map(|(target, value)| ((target, talker), value)).collect();
         match self.last {

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
 use crate::calendar::{DAY, SECOND, day};
@@ -101,7 +100,7 @@ impl Sentence<'_> {
     }
 
     /// What a trial can use of it; nothing where it says that it is not valid.
-    pub(crate) fn readings(&self, frame: VelocityFrame) -> Vec<(Target, f64)> {
+    pub(crate) fn readings(&self) -> Vec<(Target, f64)> {
         let channel = |channel, value: Option<f64>| value.map(|v| (Target::Channel(channel), v));
         let raw = |raw, value: Option<f64>| value.map(|v| (Target::Raw(raw), v));
         let number = |number, scale: f64| self.number(number).map(|value| value * scale);
@@ -138,10 +137,17 @@ impl Sentence<'_> {
                 ]
             }
             "VBW" => {
-                let first = if frame == VelocityFrame::Water { 1 } else { 4 };
-                let holds = self.is(first + 2, "A");
-                let speed = |at| number(at, KNOT).filter(|_| holds);
-                vec![channel(Channel::U, speed(first)), channel(Channel::V, speed(first + 1))]
+                let speed = |at, status| number(at, KNOT).filter(|_| self.is(status, "A"));
+                vec![
+                    channel(Channel::UWater, speed(1, 3)),
+                    channel(Channel::VWater, speed(2, 3)),
+                    channel(Channel::U, speed(4, 6)),
+                    channel(Channel::V, speed(5, 6)),
+                ]
+            }
+            "VHW" => {
+                let metric = || number(7, 1.0 / 3.6);
+                vec![channel(Channel::UWater, number(5, KNOT).or_else(metric))]
             }
             _ => Vec::new(),
         };
@@ -169,10 +175,10 @@ mod tests {
         format!("${body}*{:02X}", body.bytes().fold(0, |sum, byte| sum ^ byte))
     }
 
-    fn readings(body: &str, frame: VelocityFrame) -> Vec<(&'static str, f64)> {
+    fn readings(body: &str) -> Vec<(&'static str, f64)> {
         match line(&summed(body)) {
             Line::Sentence(sentence) => sentence
-                .readings(frame)
+                .readings()
                 .into_iter()
                 .map(|(target, value)| (target.name(), (value * 1e6).round() / 1e6))
                 .collect(),
@@ -182,28 +188,30 @@ mod tests {
 
     #[test]
     fn sentences_give_canonical_values() {
-        let ground = VelocityFrame::Ground;
         let place = "GPGGA,120003.25,5130.00,N,00930.00,W,1,08,0.9,1.0,M,0.0,M,,";
-        assert_eq!(readings(place, ground), [("latitude", 0.898845), ("longitude", -0.165806)]);
-        assert!(readings(&place.replace("W,1", "W,0"), ground).is_empty());
-        assert_eq!(readings("HEHDT,80.0,T", ground), [("psi", 1.396263)]);
-        assert_eq!(readings("TIROT,-60.0,A", ground), [("r", -0.017453)]);
+        assert_eq!(readings(place), [("latitude", 0.898845), ("longitude", -0.165806)]);
+        assert!(readings(&place.replace("W,1", "W,0")).is_empty());
+        assert_eq!(readings("HEHDT,80.0,T"), [("psi", 1.396263)]);
+        assert_eq!(readings("TIROT,-60.0,A"), [("r", -0.017453)]);
         assert_eq!(
-            readings("AGRSA,10.0,A,-10.0,A", ground),
+            readings("AGRSA,10.0,A,-10.0,A"),
             [("delta_s", 0.174533), ("delta_p", -0.174533)]
         );
-        assert_eq!(readings("AGRSA,10.0,A,,V", ground), [("delta_s", 0.174533)]);
-        assert_eq!(readings("RCRPM,S,0,120.0,,A", ground), [("n", 2.0)]);
-        assert!(readings("RCRPM,E,0,120.0,,A", ground).is_empty());
+        assert_eq!(readings("AGRSA,10.0,A,,V"), [("delta_s", 0.174533)]);
+        assert_eq!(readings("RCRPM,S,0,120.0,,A"), [("n", 2.0)]);
+        assert!(readings("RCRPM,E,0,120.0,,A").is_empty());
         let vbw = "VDVBW,10.0,1.0,A,9.0,0.5,A";
-        assert_eq!(readings(vbw, ground), [("u", 4.63), ("v", 0.257222)]);
-        assert_eq!(readings(vbw, VelocityFrame::Water), [("u", 5.144444), ("v", 0.514444)]);
+        let both = readings(vbw);
+        assert_eq!(both[..2], [("u_water", 5.144444), ("v_water", 0.514444)]);
+        assert_eq!(both[2..], [("u", 4.63), ("v", 0.257222)]);
+        assert_eq!(readings(&vbw.replace("0.5,A", "0.5,V")).len(), 2);
+        assert_eq!(readings("VWVHW,80.0,T,82.0,M,10.0,N,18.5,K"), [("u_water", 5.144444)]);
         assert_eq!(
-            readings("WIMWV,40.0,R,10.0,N,A", ground),
+            readings("WIMWV,40.0,R,10.0,N,A"),
             [("apparent_wind_from", 0.698132), ("apparent_wind_speed", 5.144444)]
         );
-        assert!(readings("WIMWV,45.0,T,10.0,N,A", ground).is_empty());
-        assert_eq!(readings("GPVTG,90.0,T,,M,10.0,N,18.5,K", ground)[1], ("speed", 5.144444));
+        assert!(readings("WIMWV,45.0,T,10.0,N,A").is_empty());
+        assert_eq!(readings("GPVTG,90.0,T,,M,10.0,N,18.5,K")[1], ("speed", 5.144444));
     }
 
     #[test]
@@ -214,7 +222,7 @@ mod tests {
         assert_eq!(line(&summed("PSIMSNS,1")), Line::Other);
         for text in ["$*", "$,*2C", "$\u{e9}\u{e9}\u{e9},*00", "$GPGGA*56", "$*00"] {
             if let Line::Sentence(sentence) = line(text) {
-                let _ = (sentence.readings(VelocityFrame::Ground), sentence.of_day());
+                let _ = (sentence.readings(), sentence.of_day());
             }
         }
     }
@@ -225,6 +233,6 @@ mod tests {
         let Line::Sentence(sentence) = line(&rmc) else { unreachable!("it is summed") };
         assert_eq!(sentence.of_day(), Some(12 * 3600 * SECOND + 3_250_000_000));
         assert_eq!(sentence.midnight(), Some(19_844 * DAY));
-        assert_eq!(sentence.readings(VelocityFrame::Ground).len(), 4);
+        assert_eq!(sentence.readings().len(), 4);
     }
 }

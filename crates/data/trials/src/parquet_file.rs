@@ -134,7 +134,10 @@ fn mapped<R: ChunkReader + 'static>(
         metadata(input, limits).map_err(|refused| findings.error(None, None, refused.to_string()));
     let (meta, rows) = opened.ok()?;
     let schema = meta.file_metadata().schema_descr();
-    let columns = resolve(&names(schema), mapping, findings)?;
+    let mut columns = resolve(&names(schema), mapping, findings)?;
+    if mapping.unidentified.is_some() {
+        columns.retain(|column| is_number(&schema.column(column.index)));
+    }
     check_types(schema, &columns, findings);
     let mut holding = 0;
     for column in columns.iter().filter(|_| !findings.has_errors()).collect::<Vec<_>>() {

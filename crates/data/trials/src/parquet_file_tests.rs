@@ -57,8 +57,7 @@ fn integers_floats_and_nulls_are_read() {
 #[test]
 fn text_is_no_channel_and_sizes_are_bounded() {
     let mut mapping = Mapping::canonical();
-    let note =
-        sistership_model::manifest::ColumnMapping { column: "note".into(), unit: "m/s".into() };
+    let note = sistership_model::manifest::ColumnMapping::new("note", "m/s");
     mapping.columns.push(("v".into(), note));
     let mut findings = Findings::default();
     assert!(read(foreign(), &mapping, &mut findings).is_none());

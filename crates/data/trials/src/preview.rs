@@ -1,10 +1,11 @@
 //! The start of a file as a person would look at it: names, units and the first rows.
 
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
 
+use crate::blanks::Blanks;
 use crate::layout;
 use crate::limits::Limits;
 use crate::mat_file;
@@ -77,11 +78,12 @@ fn line_ends(text: Vec<u8>) -> Vec<u8> {
 
 fn of_text(start: &[u8]) -> Preview {
     let layout = layout::guess(start);
+    let by_blanks = layout.separator == b' ';
     let mut reader = ReaderBuilder::new()
-        .delimiter(layout.separator)
+        .delimiter(if by_blanks { b'\t' } else { layout.separator })
         .flexible(true)
         .has_headers(false)
-        .from_reader(&start[layout.offset..]);
+        .from_reader(Blanks::new(Cursor::new(layout::body(start, &layout)), by_blanks));
     let (mut record, mut rows) = (ByteRecord::new(), Vec::new());
     while rows.len() < ROWS && reader.read_byte_record(&mut record).unwrap_or(false) {
         rows.push(record.iter().map(layout::name).collect());

@@ -1,20 +1,19 @@
 //! A manifest proposed for files: what each column most likely is, and why.
 
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
-use indexmap::IndexMap;
+use sistership_columns::GivenColumn;
 use sistership_model::FileError;
 use sistership_model::manifest::{
-    ColumnMapping, Manifest, ManifestTrial, Missing, TrialConventions, TrialsKind,
+    Manifest, ManifestTrial, Missing, RudderSign, TrialConventions, TrialsKind,
 };
 
 use crate::declarations::{Declarations, Derivable, SensorFile};
+use crate::file_set::{Part, SetFile, Span, parts};
 use crate::manifest_file::ManifestFile;
-use crate::preview::{Preview, preview};
-use crate::table::Target;
-use crate::unit_guess::{UnitGuess, unit};
-use crate::units::Kind;
-use crate::vocabulary::likely;
+use crate::preview::preview;
+use crate::sampling::{FileSample, sample};
+use crate::shape::Shape;
 
 /// A manifest and what it rests on.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,45 +22,77 @@ pub struct Proposal {
     pub manifest: ManifestFile,
     /// One for each column of each file.
     pub guesses: Vec<Guess>,
+    /// Remarks on columns together.
+    pub notes: Vec<String>,
 }
 
 /// What a column was taken for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guess {
-    /// The file, as it was named.
+    /// The file, as the manifest names it.
     pub file: String,
-    /// The column's header.
+    /// The column's header; `#3` for the third of a file without one.
     pub column: String,
     /// The channel's name in manifests; absent for a column that is left out.
     pub channel: Option<String>,
     /// Its unit.
     pub unit: Option<String>,
+    /// Whether it counts the other way than the channel.
+    pub reversed: bool,
     /// Why.
     pub why: String,
-    /// Whether header and unit say so themselves; otherwise someone should look.
+    /// Whether the evidence settles it; otherwise someone should look.
     pub certain: bool,
+    /// Where a second reading is nearly as likely: which, and what answers it.
+    pub question: Option<String>,
 }
 
-/// Proposes a manifest for files in one folder. Files with the columns of the first are trials of
-/// their own; files with others are taken for further sensors of the trial that shares most parts
-/// of their name, as `rudder_2.csv` does with `motion_2.csv`, else of the first.
+/// Files for which a manifest is wanted.
+#[derive(Debug, Clone, Copy)]
+pub struct ProposalRequest<'a> {
+    /// The ship that the trials are of; empty where it is not known.
+    pub ship: &'a str,
+    /// The files.
+    pub files: &'a [&'a Path],
+    /// The folder that the manifest is to stand in; by default that of the files.
+    pub folder: Option<&'a Path>,
+    /// Columns that the user has settled.
+    pub given: &'a [GivenColumn],
+}
+
+/// Proposes a manifest that stands beside the files.
+///
+/// # Errors
+/// As [`propose_files`].
+pub fn propose(ship: &str, files: &[&Path]) -> Result<Proposal, Vec<FileError>> {
+    propose_files(&ProposalRequest { ship, files, folder: None, given: &[] })
+}
+
+/// Proposes a manifest. Files with the same columns share a mapping; a file that has all that a
+/// trial needs is one, with columns of its own where they differ; others are sensors of the trial
+/// whose clock theirs overlaps.
 ///
 /// # Errors
 /// Every file that cannot be read, and why.
-pub fn propose(ship: &str, files: &[&Path]) -> Result<Proposal, Vec<FileError>> {
-    let mut seen = Vec::new();
+pub fn propose_files(request: &ProposalRequest) -> Result<Proposal, Vec<FileError>> {
+    let folder = request.folder.map_or_else(|| common_folder(request.files), Path::to_path_buf);
+    let mut set = FileSet::default();
     let mut errors = Vec::new();
-    for path in files {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        match preview(&name, path) {
-            Ok(preview) => seen.push(Seen::of(name, preview)),
-            Err(error) => errors.push(refused(path, &error.to_string())),
+    for path in request.files {
+        let name = relative(path, &folder);
+        if let Err(error) = set.add(name, path) {
+            errors.push(refused(path, &error.to_string()));
         }
     }
-    if seen.is_empty() && errors.is_empty() {
+    if set.files.is_empty() && errors.is_empty() {
         errors.push(refused(Path::new(""), "no file is named"));
     }
-    if errors.is_empty() { Ok(proposal(ship, seen)) } else { Err(errors) }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    set.shapes.iter_mut().for_each(|shape| shape.identify(request.given));
+    set.settle_spans();
+    Ok(set.proposal(request.ship))
 }
 
 fn refused(path: &Path, message: &str) -> FileError {
@@ -74,165 +105,173 @@ fn refused(path: &Path, message: &str) -> FileError {
     }
 }
 
-/// A file and what its columns were taken for.
-struct Seen {
-    file: String,
-    preview: Preview,
-    columns: IndexMap<String, ColumnMapping>,
-    guesses: Vec<Guess>,
+/// The folder that all files are in, at some depth.
+fn common_folder(files: &[&Path]) -> PathBuf {
+    let parent = |path: &&Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
+    let mut folders = files.iter().map(parent);
+    let first = folders.next().unwrap_or_default();
+    folders.fold(first, |common, folder| {
+        let shared = common.components().zip(folder.components()).take_while(|(a, b)| a == b);
+        shared.map(|(part, _)| part).collect()
+    })
 }
 
-impl Seen {
-    fn of(file: String, preview: Preview) -> Self {
-        let mut seen = Self { file, preview, columns: IndexMap::new(), guesses: Vec::new() };
-        seen.guesses.extend(seen.preview.sentences.iter().map(|(name, target)| Guess {
-            file: seen.file.clone(),
-            column: name.clone(),
-            channel: Some(target.name().to_owned()),
-            unit: Some(Kind::of(*target).canonical().to_owned()),
-            why: "NMEA 0183 says what the sentence holds; it needs no mapping".into(),
-            certain: true,
-        }));
-        for index in 0..seen.preview.names.len() {
-            let guess = seen.guess(index);
-            if let (Some(channel), Some(unit)) = (&guess.channel, &guess.unit) {
-                let mapped = ColumnMapping { column: guess.column.clone(), unit: unit.clone() };
-                seen.columns.insert(channel.clone(), mapped);
+/// A path as it is seen from a folder, with `/` between its parts.
+fn relative(path: &Path, folder: &Path) -> String {
+    let here = |path: &Path| if path.as_os_str().is_empty() { ".".into() } else { path.to_owned() };
+    let plain = |path: &Path| std::path::absolute(here(path)).unwrap_or_else(|_| path.to_owned());
+    let (path, folder) = (plain(path), plain(folder));
+    let same = path.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(same).filter(|part| *part != Component::CurDir);
+    let down = path.components().skip(same);
+    let parts = up
+        .map(|_| "..".to_owned())
+        .chain(down.map(|part| part.as_os_str().to_string_lossy().into_owned()));
+    parts.collect::<Vec<_>>().join("/")
+}
+
+/// Files and their shapes.
+#[derive(Default)]
+struct FileSet {
+    files: Vec<SetFile>,
+    shapes: Vec<Shape>,
+    /// First and last time of each file as it stands, until its unit is known.
+    samples: Vec<FileSample>,
+    sheet: Option<String>,
+}
+
+impl FileSet {
+    fn add(&mut self, name: String, path: &Path) -> std::io::Result<()> {
+        let preview = preview(&name, path)?;
+        let sample = match preview.sentences.is_empty() {
+            true => sample(&name, path, &preview)?,
+            false => FileSample::default(),
+        };
+        let known = self.shapes.iter().position(|shape| shape.fits(&preview));
+        let shape = known.unwrap_or_else(|| {
+            self.shapes.push(Shape::new(&preview));
+            self.shapes.len() - 1
+        });
+        self.shapes[shape].add(&sample.recording);
+        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        self.files.push(SetFile { name, folder, shape, span: None });
+        self.samples.push(sample);
+        self.sheet = self.sheet.take().or(preview.sheet);
+        Ok(())
+    }
+
+    /// First and last time of each file, now that its column and unit are known.
+    fn settle_spans(&mut self) {
+        for (file, sample) in self.files.iter_mut().zip(self.samples.drain(..)) {
+            let Some((at, factor)) = self.shapes[file.shape].time else { continue };
+            let Some(column) = sample.recording.columns.get(at) else { continue };
+            let start = sample.start.as_ref().filter(|start| start.dated);
+            let from = start.map_or(0.0, |start| start.at_s);
+            let values = column.values.iter().filter(|value| value.is_finite());
+            let ends = (values.clone().next(), values.last());
+            if let (Some(first), Some(last)) = ends {
+                let (from_s, to_s) = (from + first * factor, from + last * factor);
+                file.span = Some(Span { from_s, to_s, is_dated: start.is_some() });
             }
-            seen.guesses.push(guess);
         }
-        seen
     }
 
-    fn guess(&self, index: usize) -> Guess {
-        let column = self.preview.names[index].clone();
-        let nothing = |why: String| Guess {
-            file: self.file.clone(),
-            column: column.clone(),
-            channel: None,
-            unit: None,
-            why,
-            certain: false,
+    fn proposal(mut self, ship: &str) -> Proposal {
+        let parts = parts(&self.files, &self.shapes);
+        let rudder = self.rudder();
+        let places: Vec<usize> = (0..parts.len()).filter(|&k| parts[k] == Part::Trial).collect();
+        let first = places.first().map_or(0, |&at| self.files[at].shape);
+        let columns = self.shapes[first].columns.clone();
+        let trials: Vec<ManifestTrial> = places.iter().map(|&at| self.trial(at, first)).collect();
+        let sensors = places.iter().map(|&at| self.sensors(at, &parts)).collect();
+        let conventions = TrialConventions {
+            missing: Missing::Bridge,
+            rudder_positive: rudder,
+            ..TrialConventions::default()
         };
-        let canonical = crate::names::canonical(&column);
-        let (target, exact) = match (&canonical, likely(&column)) {
-            (Some((target, _)), _) => (*target, true),
-            (None, Some(likely)) => match Target::by_name(likely.target) {
-                Some(target) => (target, likely.exact),
-                None => return nothing("no known name of a channel; left out".into()),
-            },
-            _ => return nothing("no known name of a channel; left out".into()),
+        let manifest = Manifest {
+            kind: TrialsKind::Trials,
+            ship: ship.to_owned(),
+            conventions,
+            columns,
+            trials,
         };
-        let name = target.name();
-        if let Some(first) = self.columns.get(name) {
-            return nothing(format!("`{}` is taken for {name} already; left out", first.column));
-        }
-        let cells: Vec<&str> =
-            self.preview.rows.iter().filter_map(|row| row.get(index)).map(String::as_str).collect();
-        if !self.preview.rows.is_empty() && cells.iter().all(|cell| cell.is_empty()) {
-            return nothing("empty in the first rows; left out".into());
-        }
-        let below = self.preview.units.get(index).map(String::as_str);
-        let UnitGuess { unit, why, certain } = unit(target, &column, below, &cells);
-        let how = if exact { "is a name of" } else { "contains a name of" };
-        Guess {
-            file: self.file.clone(),
-            column,
-            channel: Some(name.to_owned()),
-            unit: Some(unit),
-            why: format!("the header {how} {name}; {why}"),
-            certain: exact && certain,
-        }
+        let declarations = self.declarations();
+        let notes = self.shapes.iter().flat_map(|shape| shape.notes.clone()).collect();
+        let guesses = self.guesses();
+        Proposal { manifest: ManifestFile { manifest, declarations, sensors }, guesses, notes }
     }
 
-    fn has(&self, names: &[&str]) -> bool {
-        let told = |name: &str| self.preview.sentences.iter().any(|(_, held)| held.name() == name);
-        names.iter().all(|name| self.columns.contains_key(*name) || told(name))
-    }
-}
-
-fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
-    let (mut trials, mut further, mut guesses) = (Vec::new(), Vec::new(), Vec::new());
-    let (columns, mut declarations) = match seen.first() {
-        Some(first) => (first.columns.clone(), declarations(&seen)),
-        None => Default::default(),
-    };
-    for (at, one) in seen.into_iter().enumerate() {
-        if at == 0 || one.columns == columns {
-            trials.push(ManifestTrial::of(one.file));
-        } else {
-            let columns = one.columns.into_iter().collect();
-            further.push(SensorFile { file: one.file, columns, clock_offset_s: None });
+    /// The rudder's sign, where all files agree; then no column says so itself.
+    fn rudder(&mut self) -> RudderSign {
+        let mut signs = self.shapes.iter().filter_map(Shape::rudder_reversed).peekable();
+        let all = signs.peek().is_some() && signs.all(|reversed| reversed);
+        if !all {
+            return RudderSign::StarboardTurn;
         }
-        declarations.sheet = declarations.sheet.or(one.preview.sheet);
-        guesses.extend(one.guesses);
-    }
-    let mut sensors = vec![Vec::new(); trials.len().max(1)];
-    for sensor in further {
-        sensors[trial_of(&sensor.file, &trials)].push(sensor);
-    }
-    let manifest = Manifest {
-        kind: TrialsKind::Trials,
-        ship: ship.to_owned(),
-        // A row without time or state is no sample; that it was left out is said, and gaps stay
-        // gaps.
-        conventions: TrialConventions { missing: Missing::Drop, ..TrialConventions::default() },
-        columns,
-        trials,
-    };
-    Proposal { manifest: ManifestFile { manifest, declarations, sensors }, guesses }
-}
-
-/// The place of the trial whose file shares most parts of its name with a sensor's.
-fn trial_of(sensor: &str, trials: &[ManifestTrial]) -> usize {
-    let parts = name_parts(sensor);
-    let shared = |trial: &ManifestTrial| {
-        name_parts(&trial.file).iter().filter(|part| parts.contains(part)).count()
-    };
-    let places = trials.iter().enumerate().map(|(place, trial)| (place, shared(trial)));
-    places.rev().max_by_key(|(_, count)| *count).map_or(0, |(place, _)| place)
-}
-
-/// Runs of letters and of digits of a file's name without its ending.
-fn name_parts(file: &str) -> Vec<String> {
-    let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-    let mut parts: Vec<String> = Vec::new();
-    let mut last = None;
-    for letter in stem.chars() {
-        let kind = letter.is_alphanumeric().then(|| letter.is_numeric());
-        match (kind == last, kind) {
-            (true, Some(_)) => parts.last_mut().into_iter().for_each(|part| part.push(letter)),
-            (false, Some(_)) => parts.push(letter.to_string()),
-            (_, None) => {}
+        for shape in &mut self.shapes {
+            for name in ["delta", "delta_s", "delta_p"] {
+                shape.columns.get_mut(name).into_iter().for_each(|one| one.reversed = false);
+            }
         }
-        last = kind;
+        RudderSign::PortTurn
     }
-    parts
-}
 
-/// Columns to pass over, and velocities to derive where positions and heading are there and they
-/// are not.
-fn declarations(seen: &[Seen]) -> Declarations {
-    let has = |names: &[&str]| names.iter().all(|name| seen.iter().any(|one| one.has(&[name])));
-    let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
-    let ground = has(&["course", "speed", "psi"]);
-    let mut derive = Vec::new();
-    if track && !ground {
-        let open = [("u", Derivable::U), ("v", Derivable::V)];
-        derive.extend(open.into_iter().filter(|(name, _)| !has(&[name])).map(|(_, one)| one));
+    fn trial(&self, at: usize, first: usize) -> ManifestTrial {
+        let file = &self.files[at];
+        let own = file.shape != first;
+        let columns = own.then(|| self.shapes[file.shape].columns.clone()).unwrap_or_default();
+        ManifestTrial { columns, ..ManifestTrial::of(&file.name) }
     }
-    if has(&["psi"]) && !has(&["r"]) {
-        derive.push(Derivable::R);
+
+    fn sensors(&self, trial: usize, parts: &[Part]) -> Vec<SensorFile> {
+        let of_trial =
+            self.files.iter().zip(parts).filter(|(_, part)| **part == Part::SensorOf(trial));
+        let sensor = |file: &SetFile| {
+            let shape = &self.shapes[file.shape];
+            let trial = &self.shapes[self.files[trial].shape];
+            // What the trial has itself is not read twice.
+            let own = shape.columns.iter().filter(|(name, _)| *name == "t" || !trial.has(name));
+            SensorFile {
+                file: file.name.clone(),
+                columns: own.map(|(name, column)| (name.clone(), column.clone())).collect(),
+                clock_offset_s: None,
+            }
+        };
+        of_trial.map(|(file, _)| sensor(file)).collect()
     }
-    let mut ignore: Vec<String> = seen
-        .iter()
-        .flat_map(|one| &one.guesses)
-        .filter(|guess| guess.channel.is_none() && !guess.column.is_empty())
-        .map(|guess| guess.column.clone())
-        .collect();
-    ignore.sort_unstable();
-    ignore.dedup();
-    Declarations { derive, ignore, ..Declarations::default() }
+
+    /// A guess for each column of each file.
+    fn guesses(&self) -> Vec<crate::propose::Guess> {
+        let of_file = |file: &SetFile| {
+            let each = self.shapes[file.shape].guesses.iter();
+            each.map(|guess| Guess { file: file.name.clone(), ..guess.clone() }).collect::<Vec<_>>()
+        };
+        self.files.iter().flat_map(of_file).collect()
+    }
+
+    /// Columns to pass over, and velocities to derive where positions and heading are there and
+    /// they are not.
+    fn declarations(&self) -> Declarations {
+        let one = |name: &str| self.shapes.iter().any(|shape| shape.has(name));
+        let has = |names: &[&str]| names.iter().all(|name| one(name));
+        let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
+        let ground = has(&["course", "speed", "psi"]) || has(&["v_north", "v_east", "psi"]);
+        let mut derive = Vec::new();
+        if track && !ground {
+            let open = [("u", Derivable::U), ("v", Derivable::V)];
+            derive.extend(open.into_iter().filter(|(name, _)| !one(name)).map(|(_, one)| one));
+        }
+        if has(&["psi"]) && !has(&["r"]) {
+            derive.push(Derivable::R);
+        }
+        let guesses = self.shapes.iter().flat_map(|shape| &shape.guesses);
+        let left = guesses.filter(|guess| guess.channel.is_none() && !guess.column.is_empty());
+        let mut ignore: Vec<String> = left.map(|guess| guess.column.clone()).collect();
+        ignore.sort_unstable();
+        ignore.dedup();
+        Declarations { derive, ignore, sheet: self.sheet.clone(), ..Declarations::default() }
+    }
 }
 
 #[cfg(test)]

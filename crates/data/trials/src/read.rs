@@ -1,10 +1,14 @@
 //! From a source and a mapping to a checked trial.
 
+use sistership_model::manifest::Missing;
 use sistership_model::trial::{Finding, Trial};
 
+use crate::bridge::{BRIDGED_S, bridge};
 use crate::checks;
 use crate::convert::convert;
 use crate::csv_file::CsvRows;
+use crate::exclusion::{Exclusion, exclude};
+use crate::faults;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal, TrialReading};
@@ -17,7 +21,9 @@ use crate::source::{Content, Sensor, Source};
 use crate::stream::TableRows;
 use crate::table::Table;
 use crate::taker::RowsFile;
-use crate::{csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, workbook};
+use crate::{
+    csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, water, workbook,
+};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
 ///
@@ -62,12 +68,18 @@ impl Examined {
         })
     }
 
+    /// Faults that were found, where they were looked for.
+    pub(crate) fn faults(&self) -> &[Exclusion] {
+        &self.recording.faults
+    }
+
     pub(crate) fn trial(self, file: String) -> Result<Trial, Refusal> {
         self.reading(file).map(|reading| reading.trial)
     }
 
     pub(crate) fn outcome(self, file: String) -> CheckOutcome {
-        let Self { recording: Recording { trial, .. }, errors, warnings } = self;
+        let Self { recording: Recording { trial, faults, .. }, errors, mut warnings } = self;
+        warnings.extend(faults.iter().map(Exclusion::remark));
         CheckOutcome { file, rows: trial.len(), duration_s: trial.duration_s(), errors, warnings }
     }
 }
@@ -187,7 +199,13 @@ fn record(
             join(&mut table, series(other, offset_s), findings);
         }
     }
+    exclude(&mut table, &mapping.exclude, findings);
+    let faults = if mapping.seeks_faults { faults::find(name, &table) } else { Vec::new() };
+    if mapping.conventions.missing == Missing::Bridge {
+        bridge(&mut table, mapping.conventions.bridge_s.unwrap_or(BRIDGED_S), findings);
+    }
     let mut recording = convert(name, table, mapping, findings);
+    recording.faults = faults;
     made(&mut recording, mapping, findings);
     checks::run(&mut recording, findings);
     recording
@@ -236,6 +254,7 @@ fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
     derived::yaw_rate(recording, wanted, findings);
     ground::velocities(recording, antenna, findings);
     derived::velocities(recording, wanted, findings);
+    water::settle(recording, findings);
 }
 
 #[cfg(test)]

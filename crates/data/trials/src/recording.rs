@@ -7,6 +7,7 @@ use std::ops::Range;
 use sistership_model::trial::{Channel, Trial};
 
 use crate::derived_channel::DerivedChannel;
+use crate::exclusion::Exclusion;
 use crate::findings::Hits;
 use crate::table::{Column, Raw, Start, Target};
 use crate::units::Kind;
@@ -29,6 +30,8 @@ pub(crate) struct Recording {
     pub derived: Vec<DerivedChannel>,
     /// What time zero is in the calendar, where the file says it.
     pub start: Option<Start>,
+    /// Faults that were found in the file's values, where they were looked for.
+    pub faults: Vec<Exclusion>,
     /// Median time between samples, s; zero until time is known to be in order.
     pub interval_s: f64,
     /// Ranges without a gap; empty until time is known to be in order.

@@ -1,11 +1,11 @@
 //! From a file's headers to the columns that are read.
 
-use sistership_model::manifest::WindKind;
+use sistership_model::manifest::{VelocityFrame, WindKind};
 use sistership_model::trial::Channel;
 
 use crate::declarations::Declarations;
 use crate::findings::Findings;
-use crate::mapping::Mapping;
+use crate::mapping::{Mapping, WrittenTime};
 use crate::names;
 use crate::table::{Column, Raw, Target};
 use crate::units::{Kind, plain_unit};
@@ -40,6 +40,9 @@ pub(crate) fn resolve_heading(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Vec<Column>> {
+    if let Some(time) = &mapping.unidentified {
+        return Some(unidentified(heading, time));
+    }
     let Heading { names: headers, units, row } = heading;
     let mut resolver = Resolver { headers, units, row, mapping, columns: Vec::new(), findings };
     resolver.mapped();
@@ -51,6 +54,21 @@ pub(crate) fn resolve_heading(
     resolver.ignored();
     let Resolver { columns, findings, .. } = resolver;
     (!findings.has_errors()).then_some(columns)
+}
+
+/// Every column as it stands.
+fn unidentified(heading: Heading, time: &WrittenTime) -> Vec<Column> {
+    let of_column = |(index, header): (usize, &String)| {
+        let unit = time.0.filter(|(at, _)| *at == index).map(|(_, unit)| unit);
+        let target = match unit {
+            Some(_) => Target::Time,
+            None => Target::Unidentified(u16::try_from(index).unwrap_or(u16::MAX)),
+        };
+        let unit = unit.unwrap_or("1").to_owned();
+        let to_si = if unit == "excel" { 86_400.0 } else { 1.0 };
+        Column { index, header: header.clone(), target, unit, to_si }
+    };
+    heading.names.iter().enumerate().map(of_column).collect()
 }
 
 struct Resolver<'a> {
@@ -76,6 +94,10 @@ impl Resolver<'_> {
                 Ok(index) => {
                     self.contradicted(index, target, &mapped.unit);
                     self.add(index, target, &mapped.unit);
+                    let added = self.columns.last_mut().filter(|column| column.index == index);
+                    if let Some(column) = added.filter(|_| mapped.reversed) {
+                        column.to_si = -column.to_si;
+                    }
                 }
                 Err(message) => self.findings.error(Some(self.row), Some(&mapped.column), message),
             }
@@ -146,18 +168,20 @@ impl Resolver<'_> {
         }
     }
 
-    /// Apparent wind goes to its own channels, so that nothing downstream can take it for the true
-    /// one.
+    /// Apparent wind and speeds through the water go to their own channels, so that nothing
+    /// downstream can take them for the true wind and for speeds over the ground.
     fn redirect(&self, target: Target) -> Target {
-        match (self.mapping.conventions.wind.kind, target) {
-            (WindKind::Apparent, Target::Channel(Channel::WindSpeed)) => {
-                Target::Channel(Channel::ApparentWindSpeed)
-            }
-            (WindKind::Apparent, Target::Channel(Channel::WindFrom)) => {
-                Target::Channel(Channel::ApparentWindFrom)
-            }
-            _ => target,
-        }
+        let Target::Channel(channel) = target else { return target };
+        let conventions = &self.mapping.conventions;
+        let is_apparent = conventions.wind.kind == WindKind::Apparent;
+        let is_through_water = conventions.velocity == VelocityFrame::Water;
+        Target::Channel(match channel {
+            Channel::WindSpeed if is_apparent => Channel::ApparentWindSpeed,
+            Channel::WindFrom if is_apparent => Channel::ApparentWindFrom,
+            Channel::U if is_through_water => Channel::UWater,
+            Channel::V if is_through_water => Channel::VWater,
+            other => other,
+        })
     }
 
     /// Columns that carry a canonical name, for channels that the manifest leaves open.

@@ -19,7 +19,7 @@ fn run(headers: &[&str], mapping: &Mapping) -> (Option<Vec<Column>>, String) {
 
 fn mapped(columns: &[(&str, &str, &str)]) -> Mapping {
     let one = |&(name, column, unit): &(&str, &str, &str)| {
-        (name.to_owned(), ColumnMapping { column: column.to_owned(), unit: unit.to_owned() })
+        (name.to_owned(), ColumnMapping::new(column, unit))
     };
     Mapping { columns: columns.iter().map(one).collect(), ..Mapping::default() }
 }

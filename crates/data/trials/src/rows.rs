@@ -25,6 +25,15 @@ pub(crate) struct Builder<'a> {
     scratch: Vec<f64>,
     /// For each column, what its first cell lacks while no cell has held a number.
     unfilled: Vec<Option<Fault>>,
+    /// For each column, the cells without a number that were kept as gaps.
+    gaps: Vec<Gaps>,
+}
+
+/// Cells without a number.
+#[derive(Clone, Default)]
+struct Gaps {
+    count: usize,
+    first: Option<(usize, Fault)>,
 }
 
 /// Faulty rows listed one by one before they are only counted.
@@ -36,7 +45,8 @@ impl<'a> Builder<'a> {
         let unfilled = vec![Some(Fault::Empty); columns.len()];
         let table = Table { columns, values, ..Table::default() };
         let scratch = Vec::new();
-        Self { table, missing, findings, run: None, faulty: 0, scratch, unfilled }
+        let gaps = vec![Gaps::default(); unfilled.len()];
+        Self { table, missing, findings, run: None, faulty: 0, scratch, unfilled, gaps }
     }
 
     /// With room for so many rows: columns that grow take half as much again.
@@ -48,7 +58,31 @@ impl<'a> Builder<'a> {
 
     /// Whether rows without a value are left out.
     pub(crate) fn drops(&self) -> bool {
-        self.missing == Missing::Drop
+        self.missing != Missing::Refuse
+    }
+
+    /// Whether a cell without a number becomes a gap of its channel.
+    fn keeps(&self) -> bool {
+        self.missing == Missing::Bridge
+    }
+
+    fn gap(&mut self, position: usize, row: usize, fault: Fault) {
+        let gaps = &mut self.gaps[position];
+        gaps.count += 1;
+        gaps.first.get_or_insert((row, fault));
+        self.scratch.push(f64::NAN);
+    }
+
+    fn tell_gaps(&mut self) {
+        for (column, gaps) in self.table.columns.iter().zip(&self.gaps) {
+            if let Some((row, fault)) = &gaps.first {
+                let message = match gaps.count {
+                    1 => fault.to_string(),
+                    count => format!("{fault}, and in {} further rows", count - 1),
+                };
+                self.findings.warning(Some(*row), Some(&column.header), message);
+            }
+        }
     }
 
     /// Learns that columns have numbers; rows that were kept although they had none there are
@@ -60,6 +94,7 @@ impl<'a> Builder<'a> {
             }
             if let Some(fault) = self.unfilled[position].take()
                 && !self.table.rows.is_empty()
+                && !self.keeps()
             {
                 self.retract(position, &fault);
             }
@@ -96,7 +131,7 @@ impl<'a> Builder<'a> {
     }
 
     fn end_run(&mut self) {
-        let Some(run) = self.run.take().filter(|_| self.missing == Missing::Drop) else { return };
+        let Some(run) = self.run.take().filter(|_| self.drops()) else { return };
         let rows = if run.first == run.last {
             format!("row {}", run.first)
         } else {
@@ -110,6 +145,7 @@ impl<'a> Builder<'a> {
     /// The table, once every row has been seen.
     pub(crate) fn finish(mut self) -> Table {
         self.absent();
+        self.tell_gaps();
         self.table.rows.shrink_to_fit();
         self.table.values.iter_mut().for_each(Vec::shrink_to_fit);
         let last = self.run.as_ref().map(|run| run.last);
@@ -136,6 +172,7 @@ impl<'a> Builder<'a> {
             if self.unfilled[position].is_some() {
                 let column = self.table.columns.remove(position);
                 self.table.values.remove(position);
+                self.gaps.remove(position);
                 let message = "is empty throughout; taken as absent";
                 self.findings.warning(None, Some(&column.header), message);
             }
@@ -150,7 +187,8 @@ impl Taker for Builder<'_> {
     /// One row of the file; `cell` gives the number in the n-th mapped column.
     fn row(&mut self, row: usize, mut cell: impl FnMut(usize, &Column) -> Result<f64, Fault>) {
         self.scratch.clear();
-        for (position, column) in self.table.columns.iter().enumerate() {
+        for position in 0..self.table.columns.len() {
+            let column = &self.table.columns[position];
             let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
             match cell(position, column).and_then(|value| si(value).ok_or(Fault::NotANumber)) {
                 Ok(value) => self.scratch.push(value),
@@ -159,6 +197,9 @@ impl Taker for Builder<'_> {
                 {
                     self.unfilled[position] = Some(fault);
                     self.scratch.push(f64::NAN);
+                }
+                Err(fault) if self.keeps() && column.target != Target::Time => {
+                    self.gap(position, row, fault);
                 }
                 Err(fault) => {
                     let header = column.header.clone();

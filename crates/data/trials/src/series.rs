@@ -109,8 +109,8 @@ fn sample(times: &[f64], t: &[f64], values: &[f64], is_angle: bool) -> Sampled {
             (Some(before), Some(&next)) if next - t[before] <= longest => {
                 let share = (time - t[before]) / (next - t[before]);
                 let change = values[after] - values[before];
-                let turns = if is_angle { ((change + PI) / TAU).floor() * TAU } else { 0.0 };
-                values[before] + share * (change - turns)
+                let change = if is_angle { shorter_way(change) } else { change };
+                values[before] + share * change
             }
             _ => f64::NAN,
         };
@@ -120,13 +120,18 @@ fn sample(times: &[f64], t: &[f64], values: &[f64], is_angle: bool) -> Sampled {
     Sampled { values: values.collect(), lost }
 }
 
+/// A change of direction along the shorter way round.
+pub(crate) fn shorter_way(change: f64) -> f64 {
+    change - ((change + PI) / TAU).floor() * TAU
+}
+
 fn median_step(t: &[f64]) -> f64 {
     let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-fn is_angle(target: Target) -> bool {
+pub(crate) fn is_angle(target: Target) -> bool {
     matches!(
         target,
         Target::Channel(Channel::Psi | Channel::WindFrom | Channel::ApparentWindFrom)
@@ -135,7 +140,7 @@ fn is_angle(target: Target) -> bool {
 }
 
 /// Takes rows with a gap out of every column; those that follow them resume.
-fn leave_out(table: &mut Table) {
+pub(crate) fn leave_out(table: &mut Table) {
     let whole: Vec<bool> = (0..table.rows.len())
         .map(|k| table.values.iter().all(|values| values[k].is_finite()))
         .collect();

@@ -18,12 +18,14 @@ const UNEVEN: f64 = 0.1;
 
 /// The measured motions. Rudder and revolutions are commands with edges that a smoother would blur
 /// ahead of time, and wind directions wrap: these stay as recorded.
-const SMOOTHED: [Channel; 8] = [
+const SMOOTHED: [Channel; 10] = [
     Channel::X,
     Channel::Y,
     Channel::Psi,
     Channel::U,
     Channel::V,
+    Channel::UWater,
+    Channel::VWater,
     Channel::R,
     Channel::Phi,
     Channel::P,

@@ -10,6 +10,8 @@ pub(crate) enum Target {
     Channel(Channel),
     /// What channels are made of.
     Raw(Raw),
+    /// A column that is yet to be identified, by its place in the file.
+    Unidentified(u16),
 }
 
 /// What instruments show, of which channels are made.
@@ -29,9 +31,12 @@ pub(crate) enum Raw {
     /// Propellers, 1/s: starboard and port.
     NS,
     NP,
+    /// Velocity over ground, m/s: towards north and towards east.
+    VNorth,
+    VEast,
 }
 
-const RAW: [(Raw, &str, Dimension); 8] = [
+const RAW: [(Raw, &str, Dimension); 10] = [
     (Raw::Latitude, "latitude", Dimension::NONE),
     (Raw::Longitude, "longitude", Dimension::NONE),
     (Raw::Course, "course", Dimension::NONE),
@@ -40,6 +45,8 @@ const RAW: [(Raw, &str, Dimension); 8] = [
     (Raw::DeltaP, "delta_p", Dimension::NONE),
     (Raw::NS, "n_s", Dimension::RATE),
     (Raw::NP, "n_p", Dimension::RATE),
+    (Raw::VNorth, "v_north", Dimension::SPEED),
+    (Raw::VEast, "v_east", Dimension::SPEED),
 ];
 
 impl Raw {
@@ -59,7 +66,7 @@ impl Raw {
     pub(crate) fn gives(self) -> &'static [Channel] {
         match self {
             Self::Latitude | Self::Longitude => &[Channel::X, Channel::Y],
-            Self::Course | Self::Speed => &[Channel::U, Channel::V],
+            Self::Course | Self::Speed | Self::VNorth | Self::VEast => &[Channel::U, Channel::V],
             Self::DeltaS | Self::DeltaP => &[Channel::Delta],
             Self::NS | Self::NP => &[Channel::N],
         }
@@ -81,6 +88,7 @@ impl Target {
             Self::Time => "t",
             Self::Channel(channel) => channel.name(),
             Self::Raw(raw) => raw.name(),
+            Self::Unidentified(_) => "",
         }
     }
 }

@@ -24,7 +24,10 @@ const SUFFIXES: &[(&str, Kind, &str)] = &[
     ("s", Kind::Time, "s"),
     ("sec", Kind::Time, "s"),
     ("ms", Kind::Time, "ms"),
+    ("us", Kind::Time, "us"),
+    ("ns", Kind::Time, "ns"),
     ("min", Kind::Time, "min"),
+    ("h", Kind::Time, "h"),
     ("m", Kind::Length, "m"),
     ("km", Kind::Length, "km"),
     ("nmi", Kind::Length, "nmi"),
@@ -125,6 +128,7 @@ impl Kind {
             Target::Channel(Channel::N) | Target::Raw(Raw::NS | Raw::NP) => Self::Revolutions,
             Target::Channel(channel) => Self::measuring(channel.dimension()),
             Target::Raw(raw) => Self::measuring(raw.dimension()),
+            Target::Unidentified(_) => Self::Length,
         }
     }
 

@@ -122,10 +122,8 @@ fn a_clock_that_alternates_ends() {
 #[test]
 fn numbers_beyond_all_bounds_are_refused() {
     let mut mapping = derived();
-    let column = |column: &str, unit: &str| sistership_model::manifest::ColumnMapping {
-        column: column.into(),
-        unit: unit.into(),
-    };
+    let column =
+        |column: &str, unit: &str| sistership_model::manifest::ColumnMapping::new(column, unit);
     mapping.columns = vec![("t".into(), column("day", "excel"))];
     for (rows, count) in [("1e308", 20), ("1e300", 20), ("1e-320", 20)] {
         let rows: String =

@@ -16,7 +16,7 @@ use sistership_jobs::archive::Archive;
 use sistership_jobs::budget::{self, Budget, Held};
 use sistership_jobs::catalogue::{Catalogue, KnownLaw, MOST};
 use sistership_jobs::predictions::session::Sessions;
-use sistership_listener::{Stopping, Throttle};
+use sistership_listener::{Stopping, Throttle, TrustedProxies};
 use sistership_pages::ship::SIMILAR;
 use sistership_pages::version::KnownManoeuvres;
 use sistership_web_support::answers::Answers;
@@ -37,6 +37,7 @@ struct Inner {
     drafts: Drafts,
     sessions: Sessions,
     throttle: Throttle,
+    proxies: TrustedProxies,
     limits: Limits,
     leases: Leases,
     spool: Arc<Spool>,
@@ -85,6 +86,7 @@ impl App {
             sessions: Sessions::new(config.limits.sessions),
             credentials,
             throttle: Throttle::default(),
+            proxies: config.proxies.clone(),
             limits: config.limits,
             leases: config.leases,
             spool: Arc::new(Spool::below(config.data_dir.join("uploads"))),
@@ -153,6 +155,11 @@ impl App {
     /// Who has presented wrong keys.
     pub(crate) fn throttle(&self) -> &Throttle {
         &self.0.throttle
+    }
+
+    /// The proxies whose word for a client's address is taken.
+    pub(crate) fn proxies(&self) -> &TrustedProxies {
+        &self.0.proxies
     }
 
     pub(crate) fn limits(&self) -> &Limits {

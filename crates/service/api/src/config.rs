@@ -8,6 +8,7 @@ use std::time::Duration;
 use sistership_auth::openid::Settings as OpenIdSettings;
 pub use sistership_jobs::leases::Leases;
 use sistership_jobs::predictions::session::SessionLimits;
+use sistership_listener::TrustedProxies;
 use sistership_store::ObjectsPlace;
 
 use crate::start_error::StartError;
@@ -37,6 +38,8 @@ pub struct Config {
     pub accounts: bool,
     /// The OpenID provider at which people may sign in, too.
     pub openid: Option<OpenIdSettings>,
+    /// The proxies whose word for a client's address is taken.
+    pub proxies: TrustedProxies,
     /// Bounds on what is sent.
     pub limits: Limits,
     /// How workers hold their jobs.
@@ -105,6 +108,7 @@ impl Config {
             api_key: None,
             accounts: false,
             openid: None,
+            proxies: TrustedProxies::default(),
             limits: Limits::default(),
             leases: Leases::default(),
             workers: 1,

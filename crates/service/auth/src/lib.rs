@@ -3,6 +3,7 @@
 
 mod attempts;
 mod grant;
+mod guessable;
 mod key;
 mod names;
 pub mod openid;
@@ -12,7 +13,7 @@ mod role;
 mod secret;
 mod signature;
 
-pub use attempts::Attempts;
+pub use attempts::{Attempt, Attempts};
 pub use grant::{Grant, Scope};
 pub use key::{KeyText, ServiceKey};
 pub use names::{check_name, is_reserved_name};

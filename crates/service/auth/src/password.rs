@@ -1,6 +1,7 @@
 //! Passwords: Argon2id (RFC 9106) with 19 MiB, two passes and one lane, which the library has by
 //! default and OWASP's Password Storage Cheat Sheet asks for at least.
 
+use crate::guessable::independent_parts;
 use argon2::Argon2;
 use argon2::password_hash::phc::PasswordHash;
 use argon2::password_hash::{PasswordHasher as _, PasswordVerifier as _};
@@ -10,6 +11,10 @@ use argon2::password_hash::{PasswordHasher as _, PasswordVerifier as _};
 const FEWEST: usize = 15;
 /// Most bytes: what is hashed is bounded.
 const MOST: usize = 256;
+
+/// Fewest parts that are guesses of their own: eight of the 26 letters alone are 2e11 guesses, which
+/// at one each 12 s (`attempts`) nobody makes.
+const FEWEST_PARTS: usize = 8;
 
 /// Why there is no hash of a password.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -22,13 +27,18 @@ pub struct PasswordError(String);
 /// Says what would be right.
 pub fn check_password(password: &str) -> Result<(), String> {
     let characters = password.chars().count();
-    match characters >= FEWEST && password.len() <= MOST {
-        true => Ok(()),
-        false => Err(format!(
+    if characters < FEWEST || password.len() > MOST {
+        return Err(format!(
             "must have {FEWEST} characters at least and {MOST} bytes at most; it may have spaces, \
              so that a sentence will do"
-        )),
+        ));
     }
+    if independent_parts(password) < FEWEST_PARTS {
+        return Err("is among the first to be guessed: it is made of repetitions, sequences or \
+             words that everybody tries; a sentence of your own will do"
+            .to_owned());
+    }
+    Ok(())
 }
 
 /// The hash of a password, with a salt of its own, as a PHC string.
@@ -75,5 +85,13 @@ mod tests {
         assert!(check_password("fourteen chars").is_err() && check_password("").is_err());
         assert!(check_password("fifteen charact").is_ok());
         assert!(check_password(&"a".repeat(257)).is_err());
+    }
+
+    #[test]
+    fn passwords_that_everybody_tries_are_refused() {
+        for password in ["aaaaaaaaaaaaaaa", "password1234567", "Qwertyuiop123456"] {
+            assert!(check_password(password).is_err_and(|why| why.contains("guessed")));
+        }
+        assert!(check_password("a long sentence of its own").is_ok());
     }
 }

@@ -53,6 +53,10 @@ impl Archive {
             Err(error) if error.is_out_of_space() => {
                 tracing::error!(%error, "the objects could not be marked")
             }
+            // It serves what needs none, and says in `/readyz` that the store does not answer.
+            Err(error) if error.is_passing() => {
+                tracing::error!(%error, "the object store does not answer")
+            }
             other => other?,
         }
         let store = Store::connect(database_url, Arc::new(SystemClock)).await?;

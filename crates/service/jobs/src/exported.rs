@@ -2,11 +2,9 @@
 
 use serde::Deserialize;
 use sistership_export::{ExportError, Plan, Subject, by_name};
-use sistership_model::Law;
+use sistership_model::{Law, Model};
 use sistership_store::Version;
 use utoipa::ToSchema;
-
-use crate::archive::document;
 
 /// The tool that a version is written down for; C where none is named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
@@ -49,17 +47,21 @@ impl ExportFormat {
         }
     }
 
-    /// Writes a version down; `law` is that of its model.
+    /// Writes a version down by its model, with the weights of a learned correction attached, and
+    /// its law.
     ///
     /// # Errors
     /// Says why the version cannot be exported.
-    pub fn write(self, version: &Version, law: &Law) -> Result<Exported, ExportError> {
-        let unreadable = |error: &dyn std::fmt::Display| ExportError::Archive(error.to_string());
-        let model = document(version).map_err(|error| unreadable(&error))?.model;
+    pub fn write(
+        self,
+        version: &Version,
+        (model, law): (&Model, &Law),
+    ) -> Result<Exported, ExportError> {
+        let missing = || ExportError::Archive("there is no such format".to_owned());
         let line = format!("{}/{}", version.head.model, version.head.number);
         let sha256 = version.head.sha256.clone();
-        let plan = Plan::new(&Subject { model: &model, law, version: Some(line), sha256 })?;
-        let format = by_name(self.name()).ok_or_else(|| unreadable(&"there is no such format"))?;
+        let plan = Plan::new(&Subject { model, law, version: Some(line), sha256 })?;
+        let format = by_name(self.name()).ok_or_else(missing)?;
         let file = format!("{}.{}", plan.identifier, format.extension());
         Ok(Exported { file, bytes: format.write(&plan)? })
     }

@@ -53,6 +53,14 @@ impl<'a> Inputs<'a> {
         self.archive.source(source).await
     }
 
+    /// The model of a version with the weights of its learned correction, if it has one: its
+    /// document names them by their hash.
+    pub async fn model(&self, source: &SourceVersion) -> Result<Model> {
+        let mut model = self.source(source).await?;
+        self.archive.attach(&mut model).await?;
+        Ok(model)
+    }
+
     /// Trials with their samples, in their order.
     pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
         trials.iter().for_each(|trial| self.note(InputKind::Samples, &trial.sha256));

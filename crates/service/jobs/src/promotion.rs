@@ -4,10 +4,13 @@
 use std::sync::Arc;
 
 use sistership_identification::refine::{
-    Extent, Family, Refinement, Request, Settings, SourceEnvelopes, weigh,
+    Extent, Family, Refinement, ReplayedTrials, Request, Settings, SourceEnvelopes, Thinning, weigh,
 };
-use sistership_model::trial::Trial;
+use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel};
+use sistership_simulation::Ship;
+use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_simulation::recorded::{ReplaySettings, replay};
 
 use crate::archive::{Archive, document};
 use crate::derive::Refined;
@@ -65,7 +68,8 @@ pub async fn against_champion(
 ) -> Result<Option<Comparison>, DeriveError> {
     let Some(alias) = alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
     let version = archive.store.versions().get(ship, alias.version_number).await?;
-    let champion = document(&version)?;
+    let mut champion = document(&version)?;
+    archive.attach(&mut champion.model).await?;
     let law = archive.law(&champion.model.law, champion.recipe.law_sha256()).await?;
     let compare = move || {
         let ingredients = &refined.ingredients;
@@ -118,9 +122,8 @@ fn compared(contest: &Contest<'_>) -> Option<Comparison> {
 
 /// The champion's error as it is; outer none where it cannot be simulated on these trials.
 fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
-    // By its law alone it would be another model.
     if contest.champion.model.branch.is_some() {
-        return None;
+        return corrected_error(contest);
     }
     let trials: Vec<&Trial> = contest.trials.iter().map(|(trial, _)| *trial).collect();
     let Contest { champion, law, target, refinement, .. } = *contest;
@@ -146,6 +149,35 @@ fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     let weighed =
         weigh((&request, &SourceEnvelopes::default()), Extent::Source, &|_, _| true).ok()?;
     Some(weighed.first()?.error)
+}
+
+/// The error of a champion with a learned correction, which carrying over to another ship would
+/// leave out: of its own simulations, by the scales of the refinement.
+fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
+    let settings = &contest.refinement.settings;
+    let trials = contest.trials.iter().map(|(trial, _)| *trial);
+    let fitted: Vec<&Trial> =
+        trials.filter(|trial| !settings.held_out.contains(&trial.name)).collect();
+    let model = &contest.champion.model;
+    let mut ship = Ship::new(model, contest.law).ok()?;
+    let speeds = fitted.iter().flat_map(|trial| trial.channel(Channel::U).unwrap_or_default());
+    ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
+    let replayed =
+        ReplayedTrials::new(contest.law, Some(ship.lpp_m()), &fitted, Thinning::from(settings));
+    let steps = ReplaySettings {
+        restart_s: settings.restart_s,
+        step_s: replayed.step_s,
+        ..ReplaySettings::default()
+    };
+    let mut total = SquaredError::default();
+    for trial in &replayed.trials {
+        let run = replay(&ship, trial, &steps).ok()?;
+        if run.stopped.is_some() {
+            return Some(None);
+        }
+        total.add(&SquaredError::of(trial, &run));
+    }
+    Some(Some(standardised_mse(&total, &standard_deviations(&fitted))))
 }
 
 #[cfg(test)]

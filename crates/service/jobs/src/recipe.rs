@@ -61,6 +61,8 @@ pub struct TrainingRecipe {
     pub law_sha256: String,
     /// The trials, in the order in which they were given.
     pub trials: Vec<RecipeTrial>,
+    /// The library of effects, see [`crate::library::Library`].
+    pub effects_sha256: String,
     /// Every setting, the seed among them.
     pub settings: Training,
     /// The program that did it.
@@ -216,11 +218,11 @@ impl Recipe {
     pub fn effects_sha256(&self) -> Option<&str> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),
+            Self::Training(recipe) => Some(&recipe.effects_sha256),
             Self::Plain(version::Recipe::Refinement { effects_sha256, .. }) => {
                 Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
             }
             Self::Family(_)
-            | Self::Training(_)
             | Self::Plain(version::Recipe::Published { .. })
             | Self::Registered(_) => None,
         }
@@ -299,6 +301,7 @@ mod tests {
         let trained = json!({ "kind": "branch",
             "foundation": { "ship": "kcs", "number": 2, "sha256": "c" },
             "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }],
+            "effects_sha256": "e",
             "settings": { "mode": "parallel", "inputs": [["N", ["r", "delta"]]], "learner":
                 { "kind": "kernel_ridge", "centres": 9, "length": 3.0, "ridge": 0.5 },
                 "seed": 1, "window_s": 2.0, "hop_s": 0.5, "fade": 1.0 }, "code_revision": "1" });

@@ -45,6 +45,10 @@ pub struct DiagnosisJob {
     pub number: i64,
     /// The trials' ids.
     pub trials: Vec<String>,
+    /// Whether these trials together with those before them since the version was fitted are
+    /// diagnosed, too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub with_earlier: bool,
     /// Every setting.
     pub settings: sistership_diagnosis::Settings,
     /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept

@@ -1,7 +1,6 @@
 //! Where a refinement starts: at a version, at the most similar ship, or at what a search finds;
 //! and the recipe that follows from it.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use sistership_identification::refine::{Member, Prior, Settings};
@@ -11,11 +10,11 @@ use sistership_model::version::{
 };
 use sistership_model::{Vessel, Zoo};
 use sistership_model_selection::{Asked, Ladder, best_start, population};
-use sistership_priors::source::{Similarity, best_source, similar};
+use sistership_priors::source::{Similarity, best_ranked};
 use sistership_store::{Law, Ship, Version};
 
 use crate::archive::Archive;
-use crate::champions::champions;
+use crate::champions::SourceModels;
 use crate::derive::Progress;
 use crate::error::DeriveError;
 use crate::library::{self, Library, library};
@@ -138,37 +137,35 @@ pub async fn searched(
     settings: Settings,
     progress: Progress,
 ) -> Result<Start> {
-    let (models, mut versions): (BTreeMap<_, _>, BTreeMap<_, _>) =
-        champions(archive, &zoo, &target)
-            .await?
-            .into_iter()
-            .map(|(ship, (model, version))| ((ship.clone(), model), (ship, version)))
-            .unzip();
+    let models = Arc::new(SourceModels::read(archive, &zoo).await?);
     let trials = archive.trials(trials).await?;
+    let known = Arc::clone(&models);
     let best = tokio::task::spawn_blocking(move || {
         let trials: Vec<&Trial> = trials.iter().collect();
-        let (zoo, target, champions) = (&*zoo, &target, &models);
+        let (zoo, target, champions) = (&*zoo, &target, &known.champions);
         let asked = Asked { zoo, target, champions, trials: &trials, settings: &settings };
         best_start(&asked, &|fraction, what| progress(fraction, what))
     })
     .await??;
     let entrant = best.entrant;
-    let source = match (&entrant.source_law, versions.remove(&entrant.source.ship)) {
-        (None, _) => None,
-        (Some(_), Some(champion)) => Some(champion),
-        (Some(_), None) => Some(published_version(archive, &entrant.source.name).await?),
+    let source = match &entrant.source_law {
+        None => None,
+        Some(_) => {
+            let ship = &entrant.source.ship;
+            Some(source_version(archive, &models, (ship, &entrant.source.name)).await?)
+        }
     };
     Ok(Start {
         source,
         law: Some(entrant.law.name.clone()),
         population: published(archive, &best.population).await?,
         settings: best.settings,
-        similarity: Some(best.similarity),
+        similarity: Some(models.explained(best.similarity)),
         ladder: Some(best.ladder),
     })
 }
 
-/// The best eligible ship of the zoo, measured on the trials.
+/// The best eligible ship of the store, measured on the trials.
 ///
 /// # Errors
 /// None is eligible.
@@ -178,15 +175,30 @@ pub async fn most_similar(
     target: Vessel,
     trials: &[RecipeTrial],
 ) -> Result<(Version, Similarity)> {
+    let models = Arc::new(SourceModels::read(archive, &zoo).await?);
     let trials = archive.trials(trials).await?;
+    let known = Arc::clone(&models);
     let best = move || {
-        let similarity = similar(&zoo, &target, None, &trials.iter().collect::<Vec<_>>());
-        best_source(&zoo, &similarity).map(|model| (model.name, similarity))
+        let similarity = known.rank(&zoo, &target, None, &trials.iter().collect::<Vec<_>>());
+        best_ranked(&similarity).cloned().map(|best| (best, similarity))
     };
-    let (name, similarity) = tokio::task::spawn_blocking(best)
+    let (best, similarity) = tokio::task::spawn_blocking(best)
         .await?
         .map_err(|reasons| DeriveError::Lost(reasons.to_string()))?;
-    Ok((published_version(archive, &name).await?, similarity))
+    let model = best.model.as_deref().unwrap_or(&best.ship);
+    Ok((source_version(archive, &models, (&best.ship, model)).await?, similarity))
+}
+
+/// The version that a ship gives as a source: its champion, else its published model.
+async fn source_version(
+    archive: &Archive,
+    models: &SourceModels,
+    (ship, model): (&str, &str),
+) -> Result<Version> {
+    match models.version(archive, ship).await? {
+        Some(champion) => Ok(champion),
+        None => published_version(archive, model).await,
+    }
 }
 
 fn from(source: &Version) -> SourceVersion {

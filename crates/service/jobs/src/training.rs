@@ -1,7 +1,9 @@
 //! The recipe of a learned branch, from what is asked.
 
 use sistership_identification::refine::RefineError;
-use sistership_learned::{BranchChoice, BranchKind, BranchSettings, Kinds, choose};
+use sistership_learned::{
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Kinds, choose,
+};
 use sistership_model::trial::Trial;
 use sistership_model::version::{RecipeTrial, SourceVersion, code_revision};
 use sistership_store::Version;
@@ -10,6 +12,7 @@ use crate::archive::{Archive, document};
 use crate::derive::Progress;
 use crate::error::DeriveError;
 use crate::recipe::{TrainingKind, TrainingRecipe};
+use crate::start::library_of;
 
 /// The recipe of a branch beside a version, everything settled that was not asked.
 ///
@@ -36,6 +39,7 @@ pub async fn training_recipe(
         foundation: SourceVersion { ship, number, sha256 },
         law_sha256,
         trials,
+        effects_sha256: library_of(archive).await?.sha256.clone(),
         settings,
         code_revision: code_revision().to_owned(),
     })
@@ -58,14 +62,16 @@ pub async fn chosen(
     let work = move || -> Result<BranchChoice, DeriveError> {
         let read: Vec<&Trial> = read.iter().collect();
         let told = |kind: BranchKind| progress(0.1, &format!("trying {}", kind.name()));
-        let choice = choose(&stored.model, &law, &read, (&settings, Kinds::Every), &told)?;
+        let folds = HeldOutFold::of_one(&stored.model, read.len());
+        let on = HeldOutTrials { law: &law, trials: &read, folds: &folds };
+        let choice = choose(&stored.model, &on, (&settings, Kinds::Every), &told)?;
         choice.ok_or(DeriveError::Refine(RefineError::Cancelled))
     };
     tokio::task::spawn_blocking(work).await?
 }
 
-/// The version of a line without a learned branch that one with such a branch was trained beside;
-/// the version itself where it has none, nothing where it was made elsewhere.
+/// The version of a line without a learned correction that one with such a correction came of; the
+/// version itself where it has none, nothing where it was made elsewhere.
 ///
 /// # Errors
 /// The store does not answer, or a version does not read.
@@ -74,9 +80,13 @@ pub async fn foundation_of(
     ship: &str,
     number: i64,
 ) -> Result<Option<i64>, DeriveError> {
-    let stored = document(&archive.store.versions().get(ship, number).await?)?;
-    Ok(match stored.model.branch {
-        None => Some(number),
-        Some(_) => stored.recipe.starts_from().map(|foundation| foundation.number),
-    })
+    let mut number = number;
+    loop {
+        let stored = document(&archive.store.versions().get(ship, number).await?)?;
+        if stored.model.branch.is_none() {
+            return Ok(Some(number));
+        }
+        let Some(earlier) = stored.recipe.starts_from() else { return Ok(None) };
+        number = earlier.number;
+    }
 }

@@ -16,6 +16,7 @@ use hyper_util::server::graceful::Watcher;
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 
+use crate::address::party;
 use crate::body::{Received, Rest, Sent};
 use crate::limits::Limits;
 use crate::pace::Pace;
@@ -33,7 +34,7 @@ const HEAD_BYTES: usize = 32 << 10;
 pub(super) struct Connection {
     router: Router,
     limits: Limits,
-    party: IpAddr,
+    address: IpAddr,
     pace: Arc<Pace>,
     seat: Arc<Seat>,
 }
@@ -43,11 +44,11 @@ impl Connection {
         router: &Router,
         limits: Limits,
         seats: &Arc<Seats>,
-        party: IpAddr,
+        address: IpAddr,
     ) -> Option<Self> {
         let pace = Arc::new(Pace::new(&limits));
-        let seat = Arc::new(Seats::admit(seats, party, &pace)?);
-        Some(Self { router: router.clone(), limits, party, pace, seat })
+        let seat = Arc::new(Seats::admit(seats, party(address), &pace)?);
+        Some(Self { router: router.clone(), limits, address, pace, seat })
     }
 
     pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher, mut stopping: Stopping) {
@@ -93,7 +94,7 @@ impl Connection {
         let mut request =
             request.map(|body| Body::new(Received::new(body, Arc::clone(&pace), rest.clone())));
         request.extensions_mut().insert(Peer {
-            party: self.party,
+            address: self.address,
             pace: Arc::clone(&pace),
             _seat: Arc::clone(&self.seat),
             crowded,

@@ -12,8 +12,8 @@ const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
 /// What a request's connection says of it.
 #[derive(Clone)]
 pub struct Peer {
-    /// Whom it comes from.
-    pub party: IpAddr,
+    /// The other end of the connection.
+    pub address: IpAddr,
     /// How its connection gets on.
     pub(crate) pace: Arc<Pace>,
     /// Its connection's place, which is kept while this is.

@@ -8,7 +8,6 @@ use axum::Router;
 use hyper_util::server::graceful::GracefulShutdown;
 use tokio::net::{TcpListener, TcpStream};
 
-use crate::address::party;
 use crate::connection::Connection;
 use crate::limits::Limits;
 use crate::seats::Seats;
@@ -67,7 +66,7 @@ impl Server {
         if let Err(error) = prepare(&stream) {
             tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
         }
-        match Connection::new(&self.router, self.limits, &self.seats, party(from.ip())) {
+        match Connection::new(&self.router, self.limits, &self.seats, from.ip()) {
             Some(connection) => drop(tokio::spawn(connection.serve(
                 stream,
                 self.graceful.watcher(),

@@ -33,11 +33,8 @@ fn outcome(job: &Job) -> Option<String> {
         return Some(found(verdict, &result));
     }
     let (version, alias) = (result["version"].as_i64()?, result["alias"].as_str()?);
-    let from = match result["source"].as_str() {
-        Some(source) => format!("from {source}"),
-        None => "from the trials alone".to_owned(),
-    };
-    Some(format!("version {version}, {alias}, {from}"))
+    let from = result["from"].as_str().map_or(String::new(), |from| format!(", from {from}"));
+    Some(format!("version {version}, {alias}{from}"))
 }
 
 /// What a diagnosis has found.

@@ -25,9 +25,20 @@ pub struct Diagnosis {
     pub report: NewReport,
     /// What was found.
     pub found: NewDiagnosed,
+    /// The diagnosis of what is new alone, where this one is of earlier trials, too.
+    pub of_new: Option<PartDiagnosis>,
     /// How many times as much the champion leaves of new trials as of those that it was fitted on,
     /// where that is known.
     pub drift: Option<f64>,
+}
+
+/// A diagnosis of a part of the trials, of which no version comes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartDiagnosis {
+    /// The report.
+    pub report: NewReport,
+    /// What was found.
+    pub found: NewDiagnosed,
 }
 
 /// The verdict by which nothing is missing.
@@ -61,31 +72,44 @@ impl Store {
         F: FnOnce(Option<&VersionHead>, &ReportHead) -> String,
     {
         let mut tx = self.begin().await?;
+        let of_new = match &diagnosis.of_new {
+            Some(part) => Some(self.put(&mut tx, part, None).await?),
+            None => None,
+        };
         let version = match &diagnosis.version {
             Some((version, moves)) => Some(versions::insert(self, &mut tx, version, moves).await?),
             None => None,
         };
         let made_id = version.as_ref().map(|version| version.id.clone());
         let report = NewReport { version_id: made_id.clone(), ..diagnosis.report.clone() };
-        let report = reports::insert(self, &mut tx, &report).await?;
-        let found =
-            diagnoses::insert(self, &mut tx, &diagnosis.found, made_id.as_deref(), &report.id)
-                .await?;
-        let after = json!({ "ship": diagnosis.report.ship, "verdict": found.verdict });
-        tx.note(
-            self.now_us(),
-            "diagnosis.create",
-            format!("diagnosis:{}", found.id),
-            None,
-            Some(after),
-        );
-        tell(self, &mut tx, diagnosis, &found, &report.id).await?;
+        let all = PartDiagnosis { report, found: diagnosis.found.clone() };
+        let (report, found) = self.put(&mut tx, &all, made_id.as_deref()).await?;
+        let told = match of_new {
+            Some((_, of_new)) if found.verdict == COMPLETE => of_new,
+            _ => found.clone(),
+        };
+        tell(self, &mut tx, diagnosis, &told).await?;
         // How the ship stands has changed.
         search_index::mark(self, &mut tx, &diagnosis.report.ship).await?;
         let result = result(version.as_ref(), &report);
         let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;
         Ok(CommittedDiagnosis { version, report, found, job })
+    }
+
+    /// Puts a report and what was found in.
+    async fn put(
+        &self,
+        tx: &mut Transaction,
+        part: &PartDiagnosis,
+        made_id: Option<&str>,
+    ) -> Result<(ReportHead, Diagnosed)> {
+        let report = reports::insert(self, tx, &part.report).await?;
+        let found = diagnoses::insert(self, tx, &part.found, made_id, &report.id).await?;
+        let after = json!({ "ship": part.report.ship, "verdict": found.verdict });
+        let subject = format!("diagnosis:{}", found.id);
+        tx.note(self.now_us(), "diagnosis.create", subject, None, Some(after));
+        Ok((report, found))
     }
 }
 
@@ -96,13 +120,12 @@ async fn tell(
     tx: &mut Transaction,
     diagnosis: &Diagnosis,
     found: &Diagnosed,
-    report: &str,
 ) -> Result<()> {
     let ship = &diagnosis.report.ship;
     if found.verdict != COMPLETE {
         let effects: Value = serde_json::from_str(&found.effects).unwrap_or_default();
         let about = json!({ "diagnosis": found.id, "verdict": found.verdict, "effects": effects,
-            "report": report });
+            "report": found.report_id });
         webhooks::tell(store, tx, webhooks::DIAGNOSIS_FAILED, ship, about).await?;
     }
     match diagnosis.drift {

@@ -14,10 +14,15 @@ use crate::error::{Result, StoreError};
 use crate::folders;
 use crate::group::WriterGroup;
 use crate::migrate;
+use crate::postgres_pool::PostgresPool;
 
 const BUSY: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
 const POSTGRES_CONNECTIONS: u32 = 16;
+/// How long the wait for a connection may take, that for the server included.
+const CONNECTION: Duration = Duration::from_secs(6);
+/// How long a connection that has rested may take to say that it is there.
+const ANSWER: Duration = Duration::from_secs(1);
 
 /// Opens the database at `url` and brings its schema up to date.
 pub(crate) async fn connect(url: &str) -> Result<Database> {
@@ -94,21 +99,30 @@ fn is_locked(error: &sqlx::Error) -> bool {
 
 async fn postgres(url: &str) -> Result<Database> {
     let options = PgConnectOptions::from_str(url)?.application_name("sistership");
-    let pool =
-        PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).test_before_acquire(false);
-    // A connection that was used a moment ago is there; asking each time would cost as much as the
-    // query.
-    let pool = pool.before_acquire(|connection, about| {
-        Box::pin(async move {
-            match about.idle_for > RESTED {
-                true => connection.ping().await.map(|()| true),
-                false => Ok(true),
-            }
-        })
-    });
-    let pool: PgPool = pool.connect_with(options).await?;
+    let pool: PgPool = postgres_options().connect_with(options.clone()).await?;
     migrate::postgres(&pool).await?;
+    let pool =
+        PostgresPool::new(pool, move || postgres_options().connect_lazy_with(options.clone()));
     Ok(Database { read: Pool::Postgres(pool.clone()), write: Writer::Postgres(pool), unit: None })
+}
+
+fn postgres_options() -> PgPoolOptions {
+    let pool = PgPoolOptions::new()
+        .max_connections(POSTGRES_CONNECTIONS)
+        .acquire_timeout(CONNECTION)
+        .test_before_acquire(false);
+    // A connection that was used a moment ago is there; asking each time would cost as much as the
+    // query. One that does not answer is replaced.
+    pool.before_acquire(|connection, about| {
+        Box::pin(async move {
+            if about.idle_for <= RESTED {
+                return Ok(true);
+            }
+            let silent = || sqlx::Error::Io(std::io::ErrorKind::TimedOut.into());
+            let answered = tokio::time::timeout(ANSWER, connection.ping()).await;
+            answered.map_err(|_| silent())?.map(|()| true)
+        })
+    })
 }
 
 #[cfg(test)]

@@ -1,14 +1,15 @@
 //! The connections of the two databases behind one set of operations. Every operation is written
-//! once and expanded for both by [`on!`] and [`within!`].
+//! once for both; those within a transaction are expanded by [`within!`].
 
 use std::time::Duration;
 
 use sqlx::pool::PoolConnection;
-use sqlx::{PgPool, Postgres, Sqlite, SqlitePool};
+use sqlx::{Postgres, Sqlite, SqlitePool};
 
 use crate::arguments::{Args, bind, check};
 use crate::error::Result;
 use crate::group::{TransactionPart, WriterGroup};
+use crate::postgres_pool::{Lease, PostgresPool};
 use crate::record::Record;
 use crate::statements::Statement;
 
@@ -19,56 +20,41 @@ pub(crate) const RESTED: Duration = Duration::from_secs(5);
 #[derive(Debug, Clone)]
 pub(crate) enum Writer {
     Sqlite(WriterGroup),
-    Postgres(PgPool),
+    Postgres(PostgresPool),
 }
 
 /// A pool of connections.
 #[derive(Debug, Clone)]
 pub(crate) enum Pool {
     Sqlite(SqlitePool),
-    Postgres(PgPool),
+    Postgres(PostgresPool),
 }
 
 /// A transaction of the database; it is undone unless [committed](Self::commit).
 pub(crate) enum DatabaseTransaction {
     Sqlite(TransactionPart),
-    Postgres(sqlx::Transaction<'static, Postgres>),
+    Postgres(sqlx::Transaction<'static, Postgres>, Lease),
 }
 
 /// A connection that one reader keeps while there is more to ask: giving it back costs a round
 /// trip.
 pub(crate) enum Reader {
     Sqlite(PoolConnection<Sqlite>),
-    Postgres(PoolConnection<Postgres>),
+    Postgres(PoolConnection<Postgres>, Lease),
 }
 
-/// Expands one body for both databases, with the connections and the statement's text for them.
-macro_rules! on {
-    ($pool:expr, $statement:expr, |$connections:ident, $sql:ident| $body:expr) => {
-        match $pool {
-            Pool::Sqlite($connections) => {
-                let $sql = $statement.sqlite;
-                $body
-            }
-            Pool::Postgres($connections) => {
-                let $sql = $statement.postgres;
-                $body
-            }
-        }
-    };
-}
-
-/// The same with the connection that a transaction has.
+/// Expands one body, a future, for both databases, with the connection that a transaction has and
+/// the statement's text for it.
 macro_rules! within {
     ($transaction:expr, $statement:expr, |$connection:ident, $sql:ident| $body:expr) => {
         match $transaction {
             DatabaseTransaction::Sqlite(part) => {
                 let ($connection, $sql) = (part.connection()?, $statement.sqlite);
-                $body
+                $body.await?
             }
-            DatabaseTransaction::Postgres(transaction) => {
+            DatabaseTransaction::Postgres(transaction, lease) => {
                 let ($connection, $sql) = (&mut **transaction, $statement.postgres);
-                $body
+                lease.within($body).await?
             }
         }
     };
@@ -81,9 +67,15 @@ impl Pool {
         statement: Statement,
         args: Args<'_>,
     ) -> Result<Option<T>> {
-        Ok(on!(self, statement, |pool, sql| bind!(sqlx::query_as(sql), args)
-            .fetch_optional(pool)
-            .await)?)
+        match self {
+            Self::Sqlite(pool) => {
+                Ok(bind!(sqlx::query_as(statement.sqlite), args).fetch_optional(pool).await?)
+            }
+            Self::Postgres(pool) => {
+                let (lease, query) = (pool.lease(), sqlx::query_as(statement.postgres));
+                lease.within(bind!(query, args).fetch_optional(&lease.pool)).await
+            }
+        }
     }
 
     /// The rows that a reading statement finds.
@@ -92,16 +84,26 @@ impl Pool {
         statement: Statement,
         args: Args<'_>,
     ) -> Result<Vec<T>> {
-        Ok(on!(self, statement, |pool, sql| bind!(sqlx::query_as(sql), args)
-            .fetch_all(pool)
-            .await)?)
+        match self {
+            Self::Sqlite(pool) => {
+                Ok(bind!(sqlx::query_as(statement.sqlite), args).fetch_all(pool).await?)
+            }
+            Self::Postgres(pool) => {
+                let (lease, query) = (pool.lease(), sqlx::query_as(statement.postgres));
+                lease.within(bind!(query, args).fetch_all(&lease.pool)).await
+            }
+        }
     }
 
     /// A connection for several reading statements in a row.
     pub(crate) async fn reader(&self) -> Result<Reader> {
         Ok(match self {
             Self::Sqlite(pool) => Reader::Sqlite(pool.acquire().await?),
-            Self::Postgres(pool) => Reader::Postgres(pool.acquire().await?),
+            Self::Postgres(pool) => {
+                let lease = pool.lease();
+                let connection = lease.within(lease.pool.acquire()).await?;
+                Reader::Postgres(connection, lease)
+            }
         })
     }
 
@@ -120,7 +122,11 @@ impl Writer {
     pub(crate) async fn begin(&self) -> Result<DatabaseTransaction> {
         Ok(match self {
             Self::Sqlite(group) => DatabaseTransaction::Sqlite(group.begin().await?),
-            Self::Postgres(pool) => DatabaseTransaction::Postgres(pool.begin().await?),
+            Self::Postgres(pool) => {
+                let lease = pool.lease();
+                let transaction = lease.within(lease.pool.begin()).await?;
+                DatabaseTransaction::Postgres(transaction, lease)
+            }
         })
     }
 
@@ -141,24 +147,40 @@ impl Reader {
         args: Args<'_>,
     ) -> Result<Vec<T>> {
         check(args)?;
+        match self {
+            Self::Sqlite(one) => {
+                Ok(bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await?)
+            }
+            Self::Postgres(one, lease) => {
+                let query = bind!(sqlx::query_as(statement.postgres), args);
+                lease.within(query.fetch_all(&mut **one)).await
+            }
+        }
+    }
+
+    /// The same for a statement that may read a whole table, however long that takes.
+    pub(crate) async fn all_of_table<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Vec<T>> {
         Ok(match self {
             Self::Sqlite(one) => {
-                bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await
+                bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await?
             }
-            Self::Postgres(one) => {
-                bind!(sqlx::query_as(statement.postgres), args).fetch_all(&mut **one).await
+            Self::Postgres(one, _) => {
+                bind!(sqlx::query_as(statement.postgres), args).fetch_all(&mut **one).await?
             }
-        }?)
+        })
     }
 }
 
 impl DatabaseTransaction {
     /// The number of rows that a writing statement changed.
     pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query(sql), args)
-            .execute(to)
-            .await?
-            .rows_affected()))
+        Ok(within!(self, statement, |to, sql| async move {
+            bind!(sqlx::query(sql), args).execute(to).await.map(|done| done.rows_affected())
+        }))
     }
 
     /// The row that a statement is sure to return.
@@ -167,9 +189,7 @@ impl DatabaseTransaction {
         statement: Statement,
         args: Args<'_>,
     ) -> Result<T> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args)
-            .fetch_one(to)
-            .await)?)
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_one(to)))
     }
 
     /// The row that a statement finds or returns, if any.
@@ -178,9 +198,7 @@ impl DatabaseTransaction {
         statement: Statement,
         args: Args<'_>,
     ) -> Result<Option<T>> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args)
-            .fetch_optional(to)
-            .await)?)
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_optional(to)))
     }
 
     /// The rows that a statement finds or returns.
@@ -189,25 +207,25 @@ impl DatabaseTransaction {
         statement: Statement,
         args: Args<'_>,
     ) -> Result<Vec<T>> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args)
-            .fetch_all(to)
-            .await)?)
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_all(to)))
     }
 
     /// Says something about the transaction itself.
     pub(crate) async fn run(&mut self, sql: &'static str) -> Result<()> {
         match self {
             Self::Sqlite(part) => sqlx::raw_sql(sql).execute(part.connection()?).await.map(drop)?,
-            Self::Postgres(tx) => sqlx::raw_sql(sql).execute(&mut **tx).await.map(drop)?,
+            Self::Postgres(tx, lease) => {
+                lease.within(sqlx::raw_sql(sql).execute(&mut **tx)).await.map(drop)?;
+            }
         }
         Ok(())
     }
 
     /// Makes it last.
     pub(crate) async fn commit(self) -> Result<()> {
-        Ok(match self {
-            Self::Sqlite(tx) => tx.commit().await,
-            Self::Postgres(tx) => tx.commit().await,
-        }?)
+        match self {
+            Self::Sqlite(tx) => Ok(tx.commit().await?),
+            Self::Postgres(tx, lease) => lease.within(tx.commit()).await,
+        }
     }
 }

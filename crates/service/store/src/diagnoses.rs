@@ -13,12 +13,13 @@ use crate::version;
 
 statements! {
     INSERT = same("INSERT INTO diagnoses (id, version_id, made_id, report_id, verdict, effects, \
-        trials, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7, $8) \
-        RETURNING id, version_id, made_id, report_id, verdict, effects, trials, created_us");
-    ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, created_us \
-        FROM diagnoses WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
+        trials, unexplained, drift, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10) \
+        RETURNING id, version_id, made_id, report_id, verdict, effects, trials, unexplained, drift, \
+        created_us");
+    ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, unexplained, \
+        drift, created_us FROM diagnoses WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
-        created_us FROM diagnoses WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, \
+        unexplained, drift, created_us FROM diagnoses WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, \
         '~') ORDER BY id DESC LIMIT $3");
 }
 
@@ -39,6 +40,11 @@ record! {
         pub effects: String,
         /// Ids of the trials it was made on, a JSON list.
         pub trials: String,
+        /// Ids of those of which it leaves something that no effect explains, a JSON list.
+        pub unexplained: String,
+        /// How much more the champion left of new trials then than of those it was fitted on, JSON;
+        /// none where that could not be told, or another version was diagnosed.
+        pub drift: Option<String>,
         /// When it was made.
         pub created_us: i64,
     }
@@ -55,6 +61,10 @@ pub struct NewDiagnosed {
     pub effects: String,
     /// Ids of the trials it was made on, a JSON list.
     pub trials: String,
+    /// Ids of those of which it leaves something that no effect explains, a JSON list.
+    pub unexplained: String,
+    /// How much more the champion leaves of new trials than of those it was fitted on, JSON.
+    pub drift: Option<String>,
 }
 
 /// The diagnoses of a store.
@@ -96,10 +106,13 @@ pub(crate) async fn insert(
     checks::name("verdict", &new.verdict)?;
     checks::json("effects", &new.effects)?;
     checks::json("trials", &new.trials)?;
+    checks::json("unexplained", &new.unexplained)?;
+    new.drift.as_deref().map_or(Ok(()), |drift| checks::json("drift", drift))?;
     version::check_id(tx, "version_id", &new.version_id).await?;
     let id = store.new_id();
     let values = args![id: &id, version_id: &new.version_id, made_id: made_id,
         report_id: report_id, verdict: &new.verdict,
-        effects: &new.effects, trials: &new.trials, created_us: store.now_us()];
+        effects: &new.effects, trials: &new.trials, unexplained: &new.unexplained,
+        drift: &new.drift, created_us: store.now_us()];
     tx.one(INSERT, values).await
 }

@@ -65,7 +65,7 @@ pub enum StoreError {
         /// What the system said.
         error: std::io::Error,
     },
-    /// The object store failed, or an object is not what was put there (500).
+    /// The object store failed (503), or an object is not what was put there (500).
     #[error("objects: {0}")]
     Objects(#[from] ObjectsError),
 }
@@ -87,6 +87,11 @@ impl StoreError {
             Self::Objects(error) => io_errors(error).any(is_out_of_space),
             _ => false,
         }
+    }
+
+    /// Whether the object store does not do now what it may do later.
+    pub fn is_passing(&self) -> bool {
+        matches!(self, Self::Objects(error) if error.is_passing())
     }
 
     /// The error of something that could not be kept for want of space.

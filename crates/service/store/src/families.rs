@@ -9,6 +9,7 @@ use crate::error::{Result, StoreError};
 use crate::objects::sha256_hex;
 use crate::page::{List, Page};
 use crate::record::{Counted, record};
+use crate::search::FactRange;
 use crate::statements::{same, statements};
 use crate::store::Store;
 use crate::version;
@@ -35,12 +36,12 @@ statements! {
         LEFT JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
         LEFT JOIN versions v ON v.model = a.model AND v.number = a.version_number \
         WHERE m.family = $1 AND m.ship > COALESCE($2, '') ORDER BY m.ship LIMIT $3");
-    DRIFTED = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members \
+    WITHIN = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members \
         m JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
         JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
         JOIN versions v ON v.model = a.model AND v.number = a.version_number \
-        WHERE m.family = $1 AND (SELECT d.verdict FROM diagnoses d WHERE d.version_id = v.id OR \
-        d.made_id = v.id ORDER BY d.id DESC LIMIT 1) NOT IN ('complete') ORDER BY m.ship LIMIT $2");
+        JOIN ship_facts f ON f.ship = m.ship AND f.fact = $2 AND f.value >= $3 AND f.value <= $4 \
+        WHERE m.family = $1 ORDER BY m.ship LIMIT $5");
     TEACH = same("INSERT INTO family_priors (family, revision, document, sha256, created_us) \
         SELECT $1, COALESCE(MAX(revision), 0) + 1, $2, $3, $4 FROM family_priors WHERE family = $1 \
         RETURNING family, revision, document, sha256, created_us");
@@ -205,9 +206,16 @@ impl Families<'_> {
         Ok(page.of(members, |member: &FamilyMember| member.ship.clone()))
     }
 
-    /// Members whose champion does not hold by its newest diagnosis, by name.
-    pub async fn drifted(&self, family: &str, limit: i64) -> Result<Vec<FamilyMember>> {
-        self.0.database().all(DRIFTED, args![family: family, limit: limit]).await
+    /// Members that have a champion and a fact in a range, by name.
+    pub async fn within(
+        &self,
+        family: &str,
+        range: &FactRange,
+        limit: i64,
+    ) -> Result<Vec<FamilyMember>> {
+        let values = args![family: family, fact: &range.fact, min: range.min, max: range.max,
+            limit: limit];
+        self.0.database().all(WITHIN, values).await
     }
 
     /// Keeps what a family has taught now, as its next revision.

@@ -212,9 +212,9 @@ impl Fault {
 impl Store {
     /// Checks the database, every reference between its rows.
     pub async fn row_faults(&self) -> Result<Vec<Fault>> {
-        let mut faults = Vec::new();
+        let (mut faults, mut reader) = (Vec::new(), self.database().reader().await?);
         for (check, statement) in CHECKS {
-            let found: Vec<Found> = self.database().all(*statement, &[]).await?;
+            let found: Vec<Found> = reader.all_of_table(*statement, &[]).await?;
             faults.extend(
                 found.into_iter().map(|found| Fault::new(check, found.place, found.message)),
             );

@@ -23,6 +23,7 @@ const SQLITE: &[MigrationSource] = &[
     (11, "identities", include_str!("../../../../migrations/sqlite/0011_identities.sql")),
     (12, "vector_stamps", include_str!("../../../../migrations/sqlite/0012_vector_stamps.sql")),
     (13, "notes", include_str!("../../../../migrations/sqlite/0013_notes.sql")),
+    (14, "weighed", include_str!("../../../../migrations/sqlite/0014_weighed.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../../migrations/postgres/0001_initial.sql")),
@@ -38,6 +39,7 @@ const POSTGRES: &[MigrationSource] = &[
     (11, "identities", include_str!("../../../../migrations/postgres/0011_identities.sql")),
     (12, "vector_stamps", include_str!("../../../../migrations/postgres/0012_vector_stamps.sql")),
     (13, "notes", include_str!("../../../../migrations/postgres/0013_notes.sql")),
+    (14, "weighed", include_str!("../../../../migrations/postgres/0014_weighed.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

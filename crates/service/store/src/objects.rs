@@ -74,14 +74,23 @@ impl Objects {
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
         let key = hash(bytes.clone()).await?;
         let _held = self.putting().await?;
-        self.store.put(&path(&key)?, PutPayload::from(bytes)).await.map_err(ObjectsError::from)?;
+        let (at, size) = (path(&key)?, bytes.len());
+        let put = self.store.put(&at, PutPayload::from(bytes));
+        tokio::time::timeout(patience(size), put)
+            .await
+            .map_err(ObjectsError::from)?
+            .map_err(ObjectsError::from)?;
         Ok(key)
     }
 
     /// The bytes of this key, verified.
     pub async fn get(&self, key: &str) -> Result<Bytes> {
-        let found = self.store.get(&path(key)?).await.map_err(|error| failure(key, error))?;
-        let bytes = found.bytes().await.map_err(|error| failure(key, error))?;
+        let at = path(key)?;
+        let found = tokio::time::timeout(ANSWER, self.store.get(&at)).await;
+        let found = found.map_err(ObjectsError::from)?.map_err(|error| failure(key, error))?;
+        let size = usize::try_from(found.meta.size).unwrap_or(usize::MAX);
+        let bytes = tokio::time::timeout(patience(size), found.bytes()).await;
+        let bytes = bytes.map_err(ObjectsError::from)?.map_err(|error| failure(key, error))?;
         let actual = hash(bytes.clone()).await?;
         match actual == key {
             true => Ok(bytes),
@@ -134,8 +143,18 @@ async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
-/// How long a look at the mark may take.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// How long a look at the mark may take: whoever asks whether the server is ready waits for it.
+const PATIENCE: Duration = Duration::from_millis(800);
+/// How long the store may take to answer, what it repeats included.
+const ANSWER: Duration = Duration::from_secs(20);
+/// Bytes a second that it must take or give then, the least of any link in use.
+const LEAST_RATE: f64 = 128e3;
+
+/// How long an object of so many bytes may take.
+fn patience(size: usize) -> Duration {
+    ANSWER + Duration::from_secs_f64(size as f64 / LEAST_RATE)
+}
+
 /// What every store of ours has beside its objects.
 const MARK: &str = "about.txt";
 /// The folder of all objects.

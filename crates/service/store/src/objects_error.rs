@@ -24,3 +24,35 @@ pub enum ObjectsError {
     #[error(transparent)]
     Stopped(#[from] tokio::task::JoinError),
 }
+
+impl ObjectsError {
+    /// Whether the store behind it does not do now what it may do later: it fails, refuses, or does
+    /// not answer.
+    pub fn is_passing(&self) -> bool {
+        use object_store::Error::{Generic, PermissionDenied, Unauthenticated};
+        match self {
+            Self::Store(Generic { .. } | PermissionDenied { .. } | Unauthenticated { .. }) => true,
+            Self::Late(_) => true,
+            Self::Store(_) | Self::Damaged { .. } | Self::Folder(_) | Self::Stopped(_) => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_bucket_does_not_do_now_is_told_from_what_it_will_never_do() {
+        let source = || Box::new(std::io::Error::other("503 Service Unavailable"));
+        let path = || "a".to_owned();
+        for (error, expected) in [
+            (object_store::Error::Generic { store: "S3", source: source() }, true),
+            (object_store::Error::PermissionDenied { path: path(), source: source() }, true),
+            (object_store::Error::Unauthenticated { path: path(), source: source() }, true),
+            (object_store::Error::NotFound { path: path(), source: source() }, false),
+        ] {
+            assert_eq!(ObjectsError::from(error).is_passing(), expected);
+        }
+    }
+}

@@ -76,7 +76,7 @@ impl Questions {
     /// one.
     pub(crate) fn keep(&self, reader: Option<Reader>) {
         let mut open = self.open();
-        let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(_)) && !open.closed);
+        let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(..)) && !open.closed);
         open.kept.extend(reader.map(|reader| (reader, Instant::now())));
     }
 

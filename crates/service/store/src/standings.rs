@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::record::record;
 use crate::statements::{pair, statements};
 use crate::store::Store;
-use crate::version::VersionHead;
+use crate::version::{Version, VersionHead};
 
 /// A text about the names of `$1`, a JSON list, which it goes through first.
 macro_rules! of_names {
@@ -32,19 +32,34 @@ statements! {
         "aliases a CROSS JOIN versions v WHERE a.model = n.value AND a.alias = 'champion' \
         AND v.model = a.model AND v.number = a.version_number"
     );
-    NEWEST = pair(
+    CHAMPION_DOCUMENTS = of_names!(
+        "v.id, v.model, v.number, v.parent, v.law, v.method, v.document, v.sha256, v.created_us, \
+        v.author",
+        "aliases a CROSS JOIN versions v WHERE a.model = n.value AND a.alias = 'champion' \
+        AND v.model = a.model AND v.number = a.version_number"
+    );
+    // A diagnosis concerns the version that it is of, and the one that came of it.
+    DIAGNOSES = pair(
         "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, \
-        d.effects, d.trials, d.created_us \
-        FROM json_each($1) n CROSS JOIN diagnoses d WHERE d.id = (SELECT MAX(x.id) FROM \
-        (SELECT MAX(s.id) AS id FROM diagnoses s WHERE s.version_id = n.value \
-        UNION ALL SELECT MAX(m.id) AS id FROM diagnoses m WHERE m.made_id = n.value) x)",
+        d.effects, d.trials, d.unexplained, d.drift, d.created_us \
+        FROM json_each($1) n CROSS JOIN diagnoses d WHERE d.id IN (SELECT x.id FROM \
+        (SELECT s.id FROM diagnoses s WHERE s.version_id = n.value \
+        UNION ALL SELECT m.id FROM diagnoses m WHERE m.made_id = n.value) x ORDER BY x.id DESC \
+        LIMIT 200) ORDER BY n.value, d.id DESC",
         "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, \
-        d.effects, d.trials, d.created_us \
+        d.effects, d.trials, d.unexplained, d.drift, d.created_us \
         FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN LATERAL (SELECT * \
         FROM ((SELECT s.* FROM diagnoses s WHERE s.version_id = n.value ORDER BY s.id DESC LIMIT \
-        1) UNION ALL \
-        (SELECT m.* FROM diagnoses m WHERE m.made_id = n.value ORDER BY m.id DESC LIMIT 1)) x \
-        ORDER BY x.id DESC LIMIT 1) d"
+        200) UNION ALL \
+        (SELECT m.* FROM diagnoses m WHERE m.made_id = n.value ORDER BY m.id DESC LIMIT 200)) x \
+        ORDER BY x.id DESC LIMIT 200) d ORDER BY n.value, d.id DESC"
+    );
+    DELETED = pair(
+        "SELECT t.id FROM json_each($1) n CROSS JOIN trials t WHERE t.id = n.value AND \
+        t.deleted_us IS NOT NULL",
+        "SELECT t.id FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN \
+        LATERAL (SELECT o.id FROM trials o WHERE o.id = n.value AND o.deleted_us IS NOT NULL LIMIT \
+        1) t"
     );
     FACTS = of_names!("f.ship, f.value", "ship_facts f WHERE f.ship = n.value AND f.fact = $2");
     // Here and below a limit keeps PostgreSQL from joining all rows.
@@ -70,8 +85,9 @@ statements! {
 pub struct ShipStanding {
     /// The version that is its champion.
     pub champion: Option<VersionHead>,
-    /// The newest diagnosis that the champion was subject or result of.
-    pub newest: Option<Diagnosed>,
+    /// The newest diagnoses that the champion was subject or result of, at most 200, the latest
+    /// first.
+    pub diagnoses: Vec<Diagnosed>,
     /// The fact that was asked for.
     pub fact: Option<f64>,
     /// The facts whose names begin as was asked for, by name.
@@ -86,6 +102,14 @@ record! {
         flatten head: Diagnosed,
         /// The version's id.
         pub concerns: String,
+    }
+}
+
+record! {
+    /// A trial's id.
+    pub struct TrialId {
+        /// The id.
+        pub id: String,
     }
 }
 
@@ -110,6 +134,18 @@ record! {
 }
 
 impl Store {
+    /// The champions of those of these ships that have one, with their documents.
+    pub async fn champions(&self, ships: &[String]) -> Result<Vec<Version>> {
+        self.database().all(CHAMPION_DOCUMENTS, args![names: &names_list(ships)]).await
+    }
+
+    /// Which of these trials are deleted, by their ids.
+    pub async fn deleted_trials(&self, ids: &[String]) -> Result<Vec<String>> {
+        let found: Vec<TrialId> =
+            self.database().all(DELETED, args![ids: &names_list(ids)]).await?;
+        Ok(found.into_iter().map(|trial| trial.id).collect())
+    }
+
     /// How each of these ships stands, with one of its facts, and those whose names begin like
     /// `series`; one of which nothing is known has an empty standing.
     pub async fn standings(
@@ -123,12 +159,15 @@ impl Store {
         let mut all: BTreeMap<String, ShipStanding> = ships.iter().map(empty).collect();
         let champions: Vec<VersionHead> = database.all(CHAMPIONS, args![names: &names]).await?;
         let ids: Vec<String> = champions.iter().map(|champion| champion.id.clone()).collect();
-        let newest: Vec<Concerning> = database.all(NEWEST, args![ids: &names_list(&ids)]).await?;
-        let mut newest: BTreeMap<String, Diagnosed> =
-            newest.into_iter().map(|one| (one.concerns, one.head)).collect();
+        let concerning: Vec<Concerning> =
+            database.all(DIAGNOSES, args![ids: &names_list(&ids)]).await?;
+        let mut diagnoses: BTreeMap<String, Vec<Diagnosed>> = BTreeMap::new();
+        for Concerning { head, concerns } in concerning {
+            diagnoses.entry(concerns).or_default().push(head);
+        }
         for champion in champions {
             if let Some(standing) = all.get_mut(&champion.model) {
-                standing.newest = newest.remove(&champion.id);
+                standing.diagnoses = diagnoses.remove(&champion.id).unwrap_or_default();
                 standing.champion = Some(champion);
             }
         }

@@ -106,7 +106,7 @@ mod prepare {
                     group.pool().prepare(statement.sqlite.into_sql_str()).await.map(drop)
                 }
                 Writer::Postgres(pool) => {
-                    pool.prepare(statement.postgres.into_sql_str()).await.map(drop)
+                    pool.lease().pool.prepare(statement.postgres.into_sql_str()).await.map(drop)
                 }
             }
         }

@@ -14,6 +14,9 @@ use crate::reserve;
 use crate::statements::{same, statements};
 use crate::unit::Unit;
 
+/// How long the database may take to say that it is there.
+const SOON: std::time::Duration = std::time::Duration::from_millis(800);
+
 statements! {
     PING = same("SELECT CAST(1 AS BIGINT) AS alive");
 }
@@ -111,9 +114,11 @@ impl Store {
         ending.take_if(|at| *at == moment).is_some()
     }
 
-    /// Whether the database answers.
+    /// Whether the database answers, and soon.
     pub async fn health(&self) -> Result<()> {
-        self.database().optional::<Pong>(PING, &[]).await.map(drop)
+        let answered = tokio::time::timeout(SOON, self.database().optional::<Pong>(PING, &[]));
+        let late = |_| sqlx::Error::Io(std::io::ErrorKind::TimedOut.into());
+        answered.await.map_err(late)?.map(drop)
     }
 
     /// Ends all connections once what is under way has ended.

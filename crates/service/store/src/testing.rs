@@ -133,7 +133,9 @@ impl Store {
             let count = AssertSqlSafe(format!("SELECT COUNT(*) FROM {table}"));
             let rows = match &self.database().read {
                 Pool::Sqlite(pool) => sqlx::query_scalar(count).fetch_one(pool).await?,
-                Pool::Postgres(pool) => sqlx::query_scalar(count).fetch_one(pool).await?,
+                Pool::Postgres(pool) => {
+                    sqlx::query_scalar(count).fetch_one(&pool.lease().pool).await?
+                }
             };
             counts.push((*table, rows));
         }

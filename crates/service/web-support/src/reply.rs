@@ -32,10 +32,17 @@ impl Reply {
         Ok(Self { status: status.as_u16(), location: None, etag: None, body, queued: false })
     }
 
-    /// With the place of what was made.
+    /// With the place of what was made, by the segments of its path.
     #[must_use]
-    pub fn at(mut self, location: String) -> Self {
-        self.location = Some(location);
+    pub fn at(mut self, segments: &[&str]) -> Self {
+        self.location = Some(path(segments));
+        self
+    }
+
+    /// With the place of a list of what was made: a path and one parameter of its query.
+    #[must_use]
+    pub fn at_list(mut self, segments: &[&str], (name, value): (&str, &str)) -> Self {
+        self.location = Some(format!("{}?{name}={}", path(segments), encoded(value)));
         self
     }
 
@@ -53,6 +60,21 @@ impl Reply {
     }
 }
 
+/// A path of segments, each percent-encoded.
+pub fn path(segments: &[&str]) -> String {
+    segments.iter().map(|segment| format!("/{}", encoded(segment))).collect()
+}
+
+/// A text within an address: every byte but the unreserved ones (RFC 3986, 2.3) percent-encoded.
+fn encoded(text: &str) -> String {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
+    let each = text.bytes().map(|byte| match is_plain(byte) {
+        true => char::from(byte).to_string(),
+        false => format!("%{byte:02X}"),
+    });
+    each.collect()
+}
+
 impl IntoResponse for Reply {
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.status).unwrap_or(StatusCode::OK);
@@ -66,5 +88,16 @@ impl IntoResponse for Reply {
         set(header::LOCATION, self.location);
         set(header::ETAG, self.etag);
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_percent_encoded() {
+        assert_eq!(path(&["v1", "families", "A/B söhne"]), "/v1/families/A%2FB%20s%C3%B6hne");
+        assert_eq!(path(&["v1", "users", "a.b_c"]), "/v1/users/a.b_c");
     }
 }

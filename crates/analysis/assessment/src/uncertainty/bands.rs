@@ -12,6 +12,7 @@ use sistership_simulation::manoeuvre::{
 };
 
 use crate::uncertainty::next_trial::{Drawn, NextTrial, next_trial};
+use crate::uncertainty::physical::physical_value;
 use crate::uncertainty::sampling::{Sampling, draws};
 
 /// Draws that sail in lockstep.
@@ -44,7 +45,8 @@ impl Bands {
     }
 }
 
-/// The band of a figure: 95 % of the draws that reached it are inside.
+/// The band of a figure: 95 % of the draws that reached it are inside. A draw whose figure cannot
+/// be that of a ship, as a tactical diameter below zero, has not reached it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// The figure, as [`Figure::name`].
@@ -87,7 +89,8 @@ pub fn bands(
     for (draw, sailed) in sailed.into_iter().enumerate() {
         for mut figure in sailed.figures() {
             let by_step = by_step.get(&figure.name).copied().unwrap_or(0.0);
-            figure.value.iter_mut().for_each(|value| *value -= by_step);
+            figure.value =
+                figure.value.and_then(|value| physical_value(&figure.name, value, by_step));
             drawn[draw].extend(figure.value.map(|value| (figure.name.clone(), value)));
             if !figures.contains_key(&figure.name) {
                 order.push(figure.name.clone());
@@ -106,7 +109,8 @@ pub fn bands_over(sailed: Vec<StandardManoeuvres>) -> Vec<Band> {
     let draws = sailed.len();
     let mut order: Vec<String> = Vec::new();
     let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
-    for figure in sailed.into_iter().flat_map(|sailed| sailed.figures()) {
+    for mut figure in sailed.into_iter().flat_map(|sailed| sailed.figures()) {
+        figure.value = figure.value.and_then(|value| physical_value(&figure.name, value, 0.0));
         if !figures.contains_key(&figure.name) {
             order.push(figure.name.clone());
         }
@@ -189,7 +193,8 @@ fn band(figures: &[Figure], draws: usize) -> Option<Band> {
     let mut values: Vec<f64> = figures.iter().filter_map(|figure| figure.value).collect();
     values.sort_by(f64::total_cmp);
     let first = figures.first()?;
-    let judged: Vec<bool> = figures.iter().filter_map(|figure| figure.pass).collect();
+    let reached = figures.iter().filter(|figure| figure.value.is_some());
+    let judged: Vec<bool> = reached.filter_map(|figure| figure.pass).collect();
     let share = |count: usize, all: usize| count as f64 / all as f64;
     Some(Band {
         figure: first.name.clone(),

@@ -4,6 +4,7 @@
 mod bands;
 mod fold_scatter;
 mod next_trial;
+mod physical;
 mod sampling;
 
 pub use bands::{Band, Bands, bands, bands_over, figures, quantile};

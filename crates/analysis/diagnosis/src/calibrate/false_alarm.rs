@@ -16,13 +16,17 @@ use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
 use super::trial_information::TrialInformation;
 use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
 
 /// By `effect/form`.
+///
+/// # Errors
+/// Says that the information is not positive.
 pub(super) fn levels(
     workspace: &LinearisedTrials<'_>,
     (known, but_one): (&TrialInformation<'_>, &[CoefficientPrior]),
     candidates: &[EffectCandidate],
-) -> BTreeMap<String, FalseAlarmLevel> {
+) -> Result<BTreeMap<String, FalseAlarmLevel>, RefineError> {
     let size = known.fixed.weighted_mean.len();
     let columns: Vec<usize> =
         candidates.iter().flat_map(|candidate| workspace.columns().showing(candidate)).collect();
@@ -31,9 +35,9 @@ pub(super) fn levels(
         MarginalInformation::new(&known.grams[trial].select(&places), &but_one[trial])
     };
     let single: Vec<MarginalInformation> =
-        (0..known.grams.len()).into_par_iter().filter_map(alone).collect();
+        (0..known.grams.len()).into_par_iter().map(alone).collect::<Result<_, _>>()?;
     let Some(total) = single.iter().cloned().reduce(MarginalInformation::plus) else {
-        return BTreeMap::new();
+        return Ok(BTreeMap::new());
     };
     let mut first = 0;
     let mut of = |candidate: &EffectCandidate| {
@@ -47,7 +51,7 @@ pub(super) fn levels(
         };
         (candidate.key(), FalseAlarmLevel { each: rounded(each), together: rounded(together) })
     };
-    candidates.iter().map(&mut of).collect()
+    Ok(candidates.iter().map(&mut of).collect())
 }
 
 /// Explained by what chance explains; one where no trial says anything of the effect.

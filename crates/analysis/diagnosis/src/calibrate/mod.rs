@@ -235,7 +235,7 @@ impl<'a> Calibration<'a> {
         let errs = model.uncertainty.as_ref().map(|known| known.systematic_errors.clone());
         Ok(Uncertainty {
             systematic_errors: errs.unwrap_or_default(),
-            false_alarm_levels: false_alarm::levels(all, (known, but_one), &candidates),
+            false_alarm_levels: false_alarm::levels(all, (known, but_one), &candidates)?,
             remainder,
             ..uncertainty(all, known, learned)?
         })
@@ -298,7 +298,7 @@ fn remainder(
         let Some(shift) = shift(&but_one[trial], workspace.columns().len()) else {
             return Ok(Vec::new());
         };
-        Ok(largest(workspace, &workspace.parts(trial)?, discrepancies, &shift))
+        largest(workspace, &workspace.parts(trial)?, discrepancies, &shift)
     };
     let sizes: Vec<Vec<(Channel, f64)>> = (0..workspace.trials.len())
         .into_par_iter()

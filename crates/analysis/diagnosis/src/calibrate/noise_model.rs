@@ -81,29 +81,30 @@ pub(super) fn most_probable(
         false => &THRESHOLDS.calibration.factors,
     };
     let first = if start.is_some() { rounds.len() - 1 } else { 0 };
-    let mut best = start.or_else(|| coarse(workspace)).ok_or_else(not_positive)?;
+    let mut best = match start {
+        Some(start) => start,
+        None => coarse(workspace)?,
+    };
     for factors in &rounds[first..] {
         let coefficients = coefficients(workspace, fixed, &best)?.ok_or_else(not_positive)?;
-        best = refined(workspace, best, &coefficients, factors);
+        best = refined(workspace, best, &coefficients, factors)?;
     }
     Ok(best)
 }
 
 /// The best of a few levels of discrepancy, the same for all axes.
-fn coarse(workspace: &LinearisedTrials<'_>) -> Option<NoiseModel> {
+fn coarse(workspace: &LinearisedTrials<'_>) -> Result<NoiseModel, RefineError> {
     let as_it_is = vec![vec![0.0; workspace.columns().len()]; workspace.trials.len()];
     let (scales, parts) = (workspace.scales(), along(workspace, &as_it_is));
     let at = |level: &f64| NoiseModel {
         discrepancies: scales.discrepancies(*level),
         noise: workspace.noise.clone(),
     };
-    let scored = THRESHOLDS
-        .calibration
-        .first_levels
-        .iter()
-        .map(at)
-        .map(|tried| (deviance(&parts, &tried), tried));
-    Some(scored.min_by(|a, b| a.0.total_cmp(&b.0))?.1)
+    let scored = |tried: NoiseModel| Ok((deviance(&parts, &tried)?, tried));
+    let levels = THRESHOLDS.calibration.first_levels.iter();
+    let all: Vec<Scored> = levels.map(at).map(scored).collect::<Result<_, RefineError>>()?;
+    let best = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, best)| best).ok_or_else(not_positive)
 }
 
 /// For each trial the coefficients by the others; of a single trial, by itself.
@@ -129,12 +130,12 @@ fn along(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> Linearise
 }
 
 /// Minus twice the logarithm of the likelihood.
-fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> f64 {
+fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> Result<f64, RefineError> {
     let all: Vec<&Linearised> = parts.iter().flatten().collect();
-    let mut each = deviances(&all, &scatter.noise, &scatter.discrepancies).into_iter();
+    let mut each = deviances(&all, &scatter.noise, &scatter.discrepancies)?.into_iter();
     // Summed in order: the same on any number of threads.
     let trials = parts.iter().map(|parts| each.by_ref().take(parts.len()).sum::<f64>());
-    trials.collect::<Vec<_>>().iter().sum()
+    Ok(trials.collect::<Vec<_>>().iter().sum())
 }
 
 /// Each number alone, as far as it helps.
@@ -143,18 +144,20 @@ fn refined(
     start: NoiseModel,
     coefficients: &[Vec<f64>],
     factors: &[f64],
-) -> NoiseModel {
+) -> Result<NoiseModel, RefineError> {
     let parts = along(workspace, coefficients);
-    let scored = |tried: NoiseModel, number: NoiseParameter| {
-        is_possible(workspace, &tried, number).then(|| (deviance(&parts, &tried), tried))
-    };
-    let mut best = (deviance(&parts, &start), start);
+    let scored =
+        |tried: NoiseModel, number: NoiseParameter| match is_possible(workspace, &tried, number) {
+            true => Ok(Some((deviance(&parts, &tried)?, tried))),
+            false => Ok(None),
+        };
+    let mut best = (deviance(&parts, &start)?, start);
     for factor in factors {
         for number in best.1.numbers() {
-            best = multiplied(best, number, *factor, &scored);
+            best = multiplied(best, number, *factor, &scored)?;
         }
     }
-    best.1
+    Ok(best.1)
 }
 
 /// A noise model with its deviance.
@@ -166,23 +169,24 @@ fn multiplied(
     best: Scored,
     number: NoiseParameter,
     factor: f64,
-    scored: &(dyn Fn(NoiseModel, NoiseParameter) -> Option<Scored> + Sync),
-) -> Scored {
-    let better = |from: &Scored, by: f64| {
+    scored: &(dyn Fn(NoiseModel, NoiseParameter) -> Result<Option<Scored>, RefineError> + Sync),
+) -> Result<Scored, RefineError> {
+    let better = |from: &Scored, by: f64| -> Result<Option<Scored>, RefineError> {
         let most = from.0 - THRESHOLDS.calibration.least_gain;
         // What is no number is no gain.
-        scored(from.1.times(number, by), number).filter(|(deviance, _)| *deviance <= most)
+        let tried = scored(from.1.times(number, by), number)?;
+        Ok(tried.filter(|(deviance, _)| *deviance <= most))
     };
     let (more, less) = rayon::join(|| better(&best, factor), || better(&best, factor.recip()));
-    let (by, mut best) = match (more, less) {
+    let (by, mut best) = match (more?, less?) {
         (Some(more), _) => (factor, more),
         (None, Some(less)) => (factor.recip(), less),
-        (None, None) => return best,
+        (None, None) => return Ok(best),
     };
-    while let Some(next) = better(&best, by) {
+    while let Some(next) = better(&best, by)? {
         best = next;
     }
-    best
+    Ok(best)
 }
 
 /// No instrument errs by less than its readings scatter.

@@ -61,6 +61,6 @@ fn seeming(search: &HypothesisSearch<'_>) -> Result<Vec<EffectCandidate>, Refine
     let base = search.base(&[], least_level.as_slice())?;
     let least =
         THRESHOLDS.calibration.seeming_share * THRESHOLDS.calibration.systematic_error_evidence;
-    let seeming = screen(search, &base).into_iter().filter(|likely| likely.discounted >= least);
+    let seeming = screen(search, &base)?.into_iter().filter(|likely| likely.discounted >= least);
     Ok(seeming.map(|likely| likely.candidate).collect())
 }

@@ -43,7 +43,7 @@ pub(super) fn changes(
     let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
     let asked: Vec<usize> = open(remaining).iter().filter_map(place).collect();
     let asked = &asked[..asked.len().min(THRESHOLDS.changes.asked)];
-    let found = common(in_turn(&changing, asked, least_evidence), least_evidence);
+    let found = common(in_turn(&changing, asked, least_evidence)?, least_evidence);
     let whole = found.iter().filter(|change| change.course == ChangeCourse::Throughout).count();
     let is_change = whole as f64 <= THRESHOLDS.changes.throughout * workspace.trials.len() as f64;
     Ok(if is_change { found } else { Vec::new() })
@@ -61,7 +61,11 @@ pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
 }
 
 /// The changes that explain each trial, of effects that may still explain enough of them.
-fn in_turn(changing: &ChangeSearch<'_, '_>, asked: &[usize], least: f64) -> Vec<Vec<Change>> {
+fn in_turn(
+    changing: &ChangeSearch<'_, '_>,
+    asked: &[usize],
+    least: f64,
+) -> Result<Vec<Vec<Change>>, RefineError> {
     let mut each: Vec<Vec<Change>> = Vec::new();
     for &place in asked {
         let to_come = asked.len() - each.len();
@@ -70,9 +74,9 @@ fn in_turn(changing: &ChangeSearch<'_, '_>, asked: &[usize], least: f64) -> Vec<
             each.iter().filter(of_effect).count()
         };
         let may_be = |effect: &str| is_enough(explained(effect) + to_come, asked.len());
-        each.push(changing.of_trial(place, least, &may_be));
+        each.push(changing.of_trial(place, least, &may_be)?);
     }
-    each
+    Ok(each)
 }
 
 /// Whether the changes of an effect explain enough of the trials.

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::super::coefficient_prior::CoefficientPrior;
-use super::super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior};
+use super::super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive};
 use super::super::hypothesis::JudgedHypothesis;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::misfit::{of_shape, shadow_share};
@@ -16,6 +16,7 @@ use super::super::remainder::in_trial;
 use super::super::search::HypothesisSearch;
 use super::super::values::values;
 use sistership_filtering::{Discrepancies, EffectCandidate, Gram, Linearised, whitened};
+use sistership_identification::refine::RefineError;
 
 use super::source::{ChangeSource, sources};
 use super::windows::{Stretches, Window, interval};
@@ -79,36 +80,47 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
 
     /// The most evident change of each effect that explains all that remains of a trial, of those
     /// that are asked for.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known, or says that the information is not positive.
     pub fn of_trial(
         &self,
         place: usize,
         least_evidence: f64,
         is_asked: &(dyn Fn(&str) -> bool + Sync),
-    ) -> Vec<Change> {
-        let trial = &self.kept_columns(place);
-        let of_source = |source: &ChangeSource| {
-            if !is_asked(&source.candidate.effect) {
-                return None;
-            }
-            let stretches = self.stretches(place, source)?;
-            let coarse = self.by_stretches(trial, source, stretches)?;
-            let taken = simplest(&coarse, least_evidence)?;
-            if taken.evidence <= least_evidence {
-                return None;
-            }
-            let fine = match taken.window.is_timed() {
-                true => self.at_times(trial, source, stretches, taken.window)?,
-                false => Vec::new(),
-            };
-            let taken = most_evident(&fine).unwrap_or(taken);
-            let is_right = self.left(trial, stretches, taken)?.is_empty();
-            is_right.then(|| self.told((place, stretches), taken, (&coarse, &fine)))
-        };
-        let mut found: Vec<Change> = self.sources.par_iter().filter_map(of_source).collect();
+    ) -> Result<Vec<Change>, RefineError> {
+        let trial = &self.kept_columns(place)?;
+        let asked = self.sources.par_iter().filter(|source| is_asked(&source.candidate.effect));
+        let each: Vec<Option<Change>> = asked
+            .map(|source| self.of_source(trial, source, least_evidence))
+            .collect::<Result<_, _>>()?;
+        let mut found: Vec<Change> = each.into_iter().flatten().collect();
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let mut effects = BTreeSet::new();
         found.retain(|change| effects.insert(change.effect.clone()));
-        found
+        Ok(found)
+    }
+
+    /// The most evident change of a source, where it explains all that remains of a trial.
+    fn of_source(
+        &self,
+        trial: &KeptColumns,
+        source: &ChangeSource,
+        least_evidence: f64,
+    ) -> Result<Option<Change>, RefineError> {
+        let Some(stretches) = self.stretches(trial.place, source) else { return Ok(None) };
+        let coarse = self.by_stretches(trial, source, stretches)?;
+        let taken = simplest(&coarse, least_evidence);
+        let Some(taken) = taken.filter(|taken| taken.evidence > least_evidence) else {
+            return Ok(None);
+        };
+        let fine = match taken.window.is_timed() {
+            true => self.at_times(trial, source, stretches, taken.window)?,
+            false => Vec::new(),
+        };
+        let taken = most_evident(&fine).unwrap_or(taken);
+        let is_right = self.left(trial, stretches, taken)?.is_empty();
+        Ok(is_right.then(|| self.told((trial.place, stretches), taken, (&coarse, &fine))))
     }
 
     fn stretches(&self, place: usize, source: &ChangeSource) -> Option<Stretches> {
@@ -126,13 +138,13 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         trial: &KeptColumns,
         source: &'w ChangeSource,
         stretches: Stretches,
-    ) -> Option<Vec<WeighedChange<'w>>> {
+    ) -> Result<Vec<WeighedChange<'w>>, RefineError> {
         let cut = self.information(trial, source, &|t_s| stretches.hold(t_s))?;
         let of = |window: Window| {
             let spread = stretches.spread(window, source.columns.len());
             weighed(source, window, cut.through(&spread), stretches)
         };
-        Some(stretches.windows().into_iter().filter_map(of).collect())
+        Ok(stretches.windows().into_iter().filter_map(of).collect())
     }
 
     /// Windows of a source at times between the neighbours of one.
@@ -142,7 +154,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         source: &'w ChangeSource,
         stretches: Stretches,
         about: Window,
-    ) -> Option<Vec<WeighedChange<'w>>> {
+    ) -> Result<Vec<WeighedChange<'w>>, RefineError> {
         let windows = stretches.near(about);
         let shares =
             |t_s: f64| windows.iter().map(|window| window.share(t_s, stretches.span_s)).collect();
@@ -152,7 +164,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
             let own = (0..parameters).map(|parameter| parameter * windows.len() + at);
             weighed(source, *window, cut.of_columns(&own.collect::<Vec<_>>()), stretches)
         };
-        Some(windows.iter().enumerate().filter_map(of).collect())
+        Ok(windows.iter().enumerate().filter_map(of).collect())
     }
 
     /// What a trial says of the columns of a source, each once for every weight that a time has,
@@ -162,11 +174,15 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         trial: &KeptColumns,
         source: &ChangeSource,
         weights: &dyn Fn(f64) -> Vec<f64>,
-    ) -> Option<MarginalInformation> {
-        let all = MarginalInformation::new(&self.gram(trial, source, weights), &self.search.fixed)?;
+    ) -> Result<MarginalInformation, RefineError> {
+        let gram = self.gram(trial, source, weights)?;
+        let all = MarginalInformation::new(&gram, &self.search.fixed)?;
         let taken: Vec<usize> = (0..self.taken.len()).collect();
         let own: Vec<usize> = (taken.len()..all.right.len()).collect();
-        if taken.is_empty() { Some(all) } else { all.given(&taken, &self.taken, &own) }
+        if taken.is_empty() {
+            return Ok(all);
+        }
+        all.given(&taken, &self.taken, &own).ok_or_else(not_positive)
     }
 
     /// A trial with some columns as they are, and the columns of a source cut.
@@ -181,24 +197,25 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     }
 
     /// Those of coefficients and of the effects taken, which stay the same whatever changes.
-    fn kept_columns(&self, place: usize) -> KeptColumns {
+    fn kept_columns(&self, place: usize) -> Result<KeptColumns, RefineError> {
         let width = 1 + self.kept.len();
         let mut gram = Gram::empty(width);
         let mut whitened = |part: &Linearised| {
             let part = part.cut(&self.kept, &[], &|_| Vec::new());
-            let (rows, log_variance) = self.whitened(&part);
+            let (rows, log_variance) = self.whitened(&part)?;
             gram.add(&Gram::of_columns(&rows, log_variance));
-            rows
+            Ok(rows)
         };
-        let rows = self.workspace.linear()[place].iter().map(&mut whitened).collect();
-        KeptColumns { place, rows, gram }
+        let parts = self.workspace.linear()[place].iter();
+        let rows = parts.map(&mut whitened).collect::<Result<_, RefineError>>()?;
+        Ok(KeptColumns { place, rows, gram })
     }
 
     /// Residual and columns by readings.
-    fn whitened(&self, part: &Linearised) -> (DMatrix<f64>, f64) {
-        let (rows, log_variance) = whitened(part, &self.workspace.noise, &self.discrepancies);
+    fn whitened(&self, part: &Linearised) -> Result<(DMatrix<f64>, f64), RefineError> {
+        let (rows, log_variance) = whitened(part, &self.workspace.noise, &self.discrepancies)?;
         let width = 1 + part.sizes.columns;
-        (DMatrix::from_vec(width, rows.len() / width, rows), log_variance)
+        Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
     }
 
     /// Products of the kept columns and those of a source.
@@ -207,20 +224,20 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         trial: &KeptColumns,
         source: &ChangeSource,
         weights: &dyn Fn(f64) -> Vec<f64>,
-    ) -> Gram {
+    ) -> Result<Gram, RefineError> {
         let parts = self.cut((trial.place, &[]), source, weights);
         let (known, own) =
             (trial.gram.products.nrows(), parts.first().map_or(0, |part| part.sizes.columns));
         let mut gram = Gram { products: DMatrix::zeros(known + own, known + own), ..trial.gram };
         gram.products.view_mut((0, 0), (known, known)).copy_from(&trial.gram.products);
         for (part, rows) in parts.iter().zip(&trial.rows) {
-            let of_source = self.whitened(part).0.rows(1, own).transpose();
+            let of_source = self.whitened(part)?.0.rows(1, own).transpose();
             let (cross, square) = (rows * &of_source, of_source.tr_mul(&of_source));
             gram.products.view_mut((0, known), (known, own)).add_assign(&cross);
             gram.products.view_mut((known, 0), (own, known)).add_assign(&cross.transpose());
             gram.products.view_mut((known, known), (own, own)).add_assign(&square);
         }
-        gram
+        Ok(gram)
     }
 
     /// What remains unexplained of a trial with a change.
@@ -229,10 +246,10 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         trial: &KeptColumns,
         stretches: Stretches,
         change: &WeighedChange<'_>,
-    ) -> Option<Vec<Unexplained>> {
+    ) -> Result<Vec<Unexplained>, RefineError> {
         let WeighedChange { source, window, .. } = change;
         let weight = |t_s: f64| vec![window.share(t_s, stretches.span_s)];
-        let gram = self.gram(trial, source, &weight);
+        let gram = self.gram(trial, source, &weight)?;
         let parameters = self.fitted(&gram, &self.search.fixed, source)?;
         let changed = parameters.iter().skip(self.kept.len()).map(|size| source.misfit * size);
         let open: Vec<f64> = self.open.iter().copied().chain(changed).collect();
@@ -240,7 +257,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let parts = self.cut((place, &self.kept), source, &weight);
         let clean = self.search.model.uncertainty.as_ref().map(|known| &known.remainder);
         let named = (self.workspace, self.workspace.trials[place].name.as_str());
-        Some(in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean))
+        in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean)
     }
 
     /// Coefficients, effects taken and the change, fitted together on the trial.
@@ -249,13 +266,13 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         gram: &Gram,
         fixed: &CoefficientPrior,
         source: &ChangeSource,
-    ) -> Option<Vec<f64>> {
+    ) -> Result<Vec<f64>, RefineError> {
         let reduced = MarginalInformation::new(gram, fixed)?;
         let priors: Vec<NormalPrior> = self.taken.iter().chain(&source.priors).copied().collect();
         let places: Vec<usize> = (0..priors.len()).collect();
-        let estimate = reduced.estimate(&places, &priors)?;
+        let estimate = reduced.estimate(&places, &priors).ok_or_else(not_positive)?;
         let shift = &reduced.shift - &reduced.answers * &estimate.mean;
-        Some(shift.iter().chain(estimate.mean.iter()).copied().collect())
+        Ok(shift.iter().chain(estimate.mean.iter()).copied().collect())
     }
 
     /// The change as it is told; the others are all windows of its source.

@@ -21,22 +21,23 @@ use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::acts_on;
 use sistership_filtering::EffectCandidate;
+use sistership_identification::refine::RefineError;
 use weighed::{View, WeighedCandidate};
 
 /// Of every listed effect and of each of its parameters whose absence is zero, from a base without
-/// effects at one of its levels; none where the information is not positive.
+/// effects at one of its levels.
+///
+/// # Errors
+/// Says that the information is not positive.
 pub(super) fn limits(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     level: usize,
     least_evidence: f64,
-) -> Vec<DetectionLimit> {
-    let all = Detection::new(search, base, level, least_evidence);
-    let of = |all: &Detection<'_>| {
-        let listed = (0..all.candidates.len()).into_par_iter().filter(|&at| all.is_listed(at));
-        listed.flat_map_iter(|place| all.of_candidate(place)).collect()
-    };
-    all.as_ref().map(of).unwrap_or_default()
+) -> Result<Vec<DetectionLimit>, RefineError> {
+    let all = Detection::new(search, base, level, least_evidence)?;
+    let listed = (0..all.candidates.len()).into_par_iter().filter(|&at| all.is_listed(at));
+    Ok(listed.flat_map_iter(|place| all.of_candidate(place)).collect())
 }
 
 /// Everything that may be found on these trials, with the coefficients integrated out.
@@ -71,7 +72,7 @@ impl<'a> Detection<'a> {
         base: &FilteredBase<'_>,
         level: usize,
         least_evidence: f64,
-    ) -> Option<Self> {
+    ) -> Result<Self, RefineError> {
         let candidates = search.others(&[]);
         let columns: Vec<Vec<usize>> = candidates
             .iter()
@@ -91,14 +92,15 @@ impl<'a> Detection<'a> {
             let total = base.total(level).select(&select);
             let reduced = MarginalInformation::new(&total, &search.fixed)?;
             let log_evidence = base.levels[level].level.log_prior - 0.5 * reduced.deviance;
-            Some(AloneLevel { log_evidence, information: reduced.information })
+            Ok(AloneLevel { log_evidence, information: reduced.information })
         };
-        let alone: Vec<AloneLevel> = (0..base.levels.len()).map(at).collect::<Option<_>>()?;
-        let information = alone.get(level)?.information.clone();
+        let alone: Vec<AloneLevel> =
+            (0..base.levels.len()).map(at).collect::<Result<_, RefineError>>()?;
+        let information = alone[level].information.clone();
         let view = |information: DMatrix<f64>, discount: &dyn Fn(&EffectCandidate) -> f64| {
             View::new(search, information, (&candidates, &places), discount)
         };
-        Some(Self {
+        Ok(Self {
             discounted: view(information.clone(), &|candidate| search.discount(candidate)),
             plain: view(information, &|_| 1.0),
             of_known: view(of_known, &|_| 1.0),

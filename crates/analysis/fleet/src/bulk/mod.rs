@@ -15,7 +15,7 @@ mod solved;
 
 pub use outcome::{AxisOutcome, BulkRefinement, Coefficient};
 pub use prior::{AxisPrior, Prior};
-pub use refine::{refine, refined_model};
+pub use refine::{refine, refined_model, with_balance};
 pub use request::BulkRequest;
 pub use sails::{SailedFigures, sail};
 pub use settings::BulkSettings;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 use sistership_model::vessel::Status;
+use sistership_model::{Law, Model};
 
 use super::outcome::BulkRefinement;
 use super::report::outcome;
@@ -12,6 +12,7 @@ use super::request::BulkRequest;
 use super::sails::sail;
 use super::solved::solve;
 use sistership_identification::refine::{Fitted, RefineError};
+use sistership_propulsion::{Evidence, balance, needs_balance};
 
 /// Refines, and pulls the model towards the prior, a decade at a time, until it sails what the
 /// model before sails.
@@ -46,6 +47,17 @@ pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> 
         }
     }
     Err(RefineError::Cancelled)
+}
+
+/// The model with a surge balance where its law lets coefficients say what the propeller does, or
+/// takes no revolutions. Statistics do not tell the range of the trials: the law alone counts at
+/// the approach.
+pub fn with_balance(model: Model, law: &Law) -> Model {
+    if model.propulsion.is_some() || !needs_balance(law) {
+        return model;
+    }
+    let evidence = Evidence { model: &model, law, estimate: None, trials: &[] };
+    Model { propulsion: balance(&evidence), ..model }
 }
 
 /// The model with these coefficients and no others.

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
+use sistership_identification::refine::RefineError;
 use sistership_numerics::{Moments, Whitened};
 
 /// What trials say: a likelihood proportional to `exp(-z' precision z/2 + information' z)`.
@@ -27,27 +28,32 @@ pub(super) struct AxisPlace {
 
 impl AxisPlace {
     /// Regressors in units of the coefficients, and the axis' own target.
-    fn moments(&self, trials: &[TrialStatistics]) -> Option<Vec<Moments>> {
-        let regression = &trials.first()?.regressions[self.regression];
+    fn moments(&self, trials: &[TrialStatistics]) -> Result<Vec<Moments>, RefineError> {
+        let Some(first) = trials.first() else { return Ok(Vec::new()) };
+        let regression = &first.regressions[self.regression];
         let (p, q) = (self.units.len(), regression.axes.len());
-        let unmixing = regression.unmixing().ok()?;
+        let unmixing = regression.unmixing()?;
         let mut map = DMatrix::zeros(p + q, p + 1);
         (0..p).for_each(|j| map[(j, j)] = self.units[j]);
         (0..q).for_each(|target| map[(p + target, p)] = unmixing[(self.axis, target)]);
-        Some(
-            trials
-                .iter()
-                .map(|trial| {
-                    trial.regressions[self.regression].moments.mapped(&map, p).about_origin()
-                })
-                .collect(),
-        )
+        let own = |trial: &TrialStatistics| {
+            trial.regressions[self.regression].moments.mapped(&map, p).about_origin()
+        };
+        Ok(trials.iter().map(own).collect())
     }
 
     /// What a member's trials say; none where they have no sample.
-    pub fn evidence(&self, trials: &[TrialStatistics]) -> Option<MemberEvidence> {
+    ///
+    /// # Errors
+    /// Says that their axes cannot be told apart.
+    pub fn evidence(
+        &self,
+        trials: &[TrialStatistics],
+    ) -> Result<Option<MemberEvidence>, RefineError> {
         let parts = self.moments(trials)?;
-        let all = Moments::sum(&parts).filter(|all| all.count > 0.0)?;
+        let Some(all) = Moments::sum(&parts).filter(|all| all.count > 0.0) else {
+            return Ok(None);
+        };
         let whitened = Whitened::new(&all);
         let lambda = whitened.least_lambda();
         let variance = whitened.residual_variance(0, lambda).max(f64::MIN_POSITIVE);
@@ -56,11 +62,11 @@ impl AxisPlace {
         let least = whitened.basis() * whitened.solution(0, lambda);
         let design_effect =
             (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
-        Some(MemberEvidence {
+        Ok(Some(MemberEvidence {
             precision: covariance * share,
             information: cross.column(0) * share,
             design_effect,
-        })
+        }))
     }
 }
 

@@ -7,6 +7,7 @@ use super::evidence::{AxisPlace, MemberEvidence};
 use super::prior::{FORMAT, FamilyAxis, FamilyPrior};
 use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
+use sistership_identification::refine::RefineError;
 use sistership_numerics::Moments;
 
 /// Why nothing can be learned of a family.
@@ -22,6 +23,14 @@ pub enum FamilyError {
         member: String,
         /// Another one.
         first: String,
+    },
+    /// The statistics of one cannot be used.
+    #[error("the statistics of `{member}` cannot be used: {reason}")]
+    Statistics {
+        /// The member.
+        member: String,
+        /// Why.
+        reason: String,
     },
     /// The numbers broke down.
     #[error("the covariance over the members cannot be learned: {0}")]
@@ -48,9 +57,9 @@ pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
         return Err(FamilyError::Few(members.len()));
     }
     alike(&members)?;
-    let places = places(&members);
+    let places = places(&members)?;
     let evidence: Vec<Vec<MemberEvidence>> =
-        places.iter().map(|place| said(place, &members)).collect();
+        places.iter().map(|place| said(place, &members)).collect::<Result<_, _>>()?;
     let design_effect = design_effect(&evidence);
     let kept = |p: usize| members.len() as f64 / (members.len() + p + 1) as f64;
     let first = &members[0].trials[0];
@@ -92,49 +101,47 @@ fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
 }
 
 /// The axes with units in which a coefficient of 1 explains all of its target, over all members.
-fn places(members: &[&Member<'_>]) -> Vec<AxisPlace> {
+///
+/// # Errors
+/// Names a member whose statistics cannot be used.
+fn places(members: &[&Member<'_>]) -> Result<Vec<AxisPlace>, FamilyError> {
     let regressions = &members[0].trials[0].regressions;
     let axes = regressions
         .iter()
         .enumerate()
         .flat_map(|(r, regression)| (0..regression.axes.len()).map(move |axis| (r, axis)));
-    axes.map(|(regression, axis)| AxisPlace {
-        regression,
-        axis,
-        units: units(members, regression, axis),
-    })
-    .collect()
+    let place = |(regression, axis): (usize, usize)| {
+        Ok(AxisPlace { regression, axis, units: units(members, regression, axis)? })
+    };
+    axes.map(place).collect()
 }
 
 /// Medians over the members of target deviation by regressor deviation, which a few odd ships do
 /// not move.
-fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Vec<f64> {
+fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Result<Vec<f64>, FamilyError> {
     let p = members[0].trials[0].regressions[regression].moments.regressors();
-    let of_member = |member: &&Member<'_>| -> Option<Vec<f64>> {
-        let all =
-            Moments::sum(member.trials.iter().map(|trial| &trial.regressions[regression].moments))?
-                .about_origin();
-        let unmixing = member.trials[0].regressions[regression].unmixing().ok()?;
+    let of_member = |member: &&Member<'_>| -> Result<Option<Vec<f64>>, FamilyError> {
+        let own = member.trials.iter().map(|trial| &trial.regressions[regression].moments);
+        let Some(all) = Moments::sum(own) else { return Ok(None) };
+        let all = all.about_origin();
+        let unmixing = member.trials[0].regressions[regression].unmixing();
+        let unmixing = unmixing.map_err(|reason| unusable(member, &reason))?;
         let q = all.targets();
         let target = (0..q)
             .map(|t| unmixing[(axis, t)].powi(2) * all.target_variance(t))
             .sum::<f64>()
             .sqrt();
-        Some(
-            (0..p)
-                .map(|j| {
-                    target
-                        / all
-                            .variance(j)
-                            .sqrt()
-                            .max(1e-12 * all.mean(j).abs())
-                            .max(f64::MIN_POSITIVE)
-                })
-                .collect(),
-        )
+        let moves = |j: usize| all.variance(j).sqrt().max(1e-12 * all.mean(j).abs());
+        Ok(Some((0..p).map(|j| target / moves(j).max(f64::MIN_POSITIVE)).collect()))
     };
-    let all: Vec<Vec<f64>> = members.iter().filter_map(of_member).collect();
-    (0..p).map(|j| median(all.iter().map(|units| units[j])).unwrap_or(1.0)).collect()
+    let all: Vec<Option<Vec<f64>>> = members.iter().map(of_member).collect::<Result<_, _>>()?;
+    let unit = |j: usize| median(all.iter().flatten().map(|units| units[j]));
+    // What moves in no member has any unit.
+    Ok((0..p).map(|j| unit(j).unwrap_or(1.0)).collect())
+}
+
+fn unusable(member: &Member<'_>, reason: &RefineError) -> FamilyError {
+    FamilyError::Statistics { member: member.name.to_owned(), reason: reason.to_string() }
 }
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
@@ -143,14 +150,13 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Vec<MemberEvidence> {
-    members
-        .par_iter()
-        .map(|member| place.evidence(member.trials))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .flatten()
-        .collect()
+fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Result<Vec<MemberEvidence>, FamilyError> {
+    let of_member = |member: &&Member<'_>| {
+        place.evidence(member.trials).map_err(|reason| unusable(member, &reason))
+    };
+    let all: Vec<Option<MemberEvidence>> =
+        members.par_iter().map(of_member).collect::<Result<_, _>>()?;
+    Ok(all.into_iter().flatten().collect())
 }
 
 /// The median over members and axes; samples never say more than they would alone.

@@ -2,22 +2,25 @@
 
 use std::collections::BTreeMap;
 
+use sistership_identification::refine::{Blocks, RefineError};
 use sistership_model::quantity::Quantity;
 use sistership_model::version::sha256;
 use sistership_model::{Law, Model};
 
-use sistership_identification::refine::{Blocks, RefineError};
+use super::beside::BesideLaw;
 
 /// The format of [`TrialStatistics`](super::TrialStatistics).
 pub const FORMAT: &str = "sistership-statistics/1";
 
-/// The regressions of a model, without the values of its coefficients: two models that differ in
-/// those only have one frame.
+/// The regressions of a model with its effects, without the values of its coefficients: two models
+/// that differ in those only have one frame, unless they have a learned correction.
 #[derive(Debug, Clone)]
 pub struct Frame {
     /// Time over which accelerations are differenced, s.
     pub difference_s: f64,
     pub(super) blocks: Blocks,
+    /// What was learned beside the law.
+    pub(super) beside: Option<BesideLaw>,
     /// Everything that shapes a row, as text.
     shape: String,
 }
@@ -27,28 +30,24 @@ impl Frame {
     /// of the time in which the ship sails its length.
     ///
     /// # Errors
-    /// Names what the model does not give. A model with effects is refused: what acted on its own
-    /// trials acts on no others.
+    /// Names what the model does not give: the weights of a learned correction among it.
     pub fn new(
         model: &Model,
         law: &Law,
         law_sha256: &str,
         difference_s: Option<f64>,
     ) -> Result<Self, RefineError> {
-        if let Some(effect) = model.effects.first() {
-            let message = format!(
-                "`{}` carries the effect `{}`, which statistics do not describe",
-                model.name, effect.name
-            );
-            return Err(RefineError::Law(message));
-        }
+        let dressed = law
+            .with_effects(model)
+            .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
         let difference_s = difference_s.or_else(|| tenth_of_a_length(model)).ok_or_else(|| {
             let message = format!("`{}` has no length or speed from which to take it", model.name);
             RefineError::Setting { field: "difference_s".into(), message }
         })?;
         Ok(Self {
             difference_s,
-            blocks: Blocks::new(model, law)?,
+            blocks: Blocks::new(model, &dressed)?,
+            beside: BesideLaw::new(model, law)?,
             shape: shape(model, law_sha256, difference_s),
         })
     }
@@ -76,6 +75,14 @@ fn shape(model: &Model, law_sha256: &str, difference_s: f64) -> String {
     };
     write("particulars", &model.particulars);
     write("parameters", &model.parameters);
+    for effect in &model.effects {
+        let form = format!("effect {}/{}", effect.name, effect.form.name);
+        write(&form, &effect.parameters);
+    }
+    if let Some(branch) = &model.branch {
+        // What a correction is told of the law depends on the coefficients, too.
+        write(&format!("correction {}", branch.weights_sha256), &model.coefficients);
+    }
     text.push_str(&model.coefficients.keys().map(String::as_str).collect::<Vec<_>>().join(" "));
     text
 }

@@ -5,6 +5,7 @@
 //! names of the coefficients and the time over which accelerations are differenced. [`Frame::key`]
 //! is a hash over all of it.
 
+mod beside;
 mod frame;
 mod packed;
 mod trial_statistics;

@@ -9,7 +9,7 @@ use sistership_model::trial::Trial;
 
 use super::frame::{FORMAT, Frame};
 use super::packed;
-use sistership_identification::refine::{Block, RefineError, trial_moments};
+use sistership_identification::refine::{Block, RefineError, trial_moments, trial_tables};
 use sistership_numerics::Moments;
 
 /// The statistics of one trial.
@@ -58,7 +58,17 @@ impl TrialStatistics {
     /// # Errors
     /// Names the channel that the trial lacks.
     pub fn of(frame: &Frame, trial: &Trial) -> Result<Self, RefineError> {
-        let moments = trial_moments(&frame.blocks, trial, Some(frame.difference_s))?;
+        let (blocks, difference_s) = (&frame.blocks, Some(frame.difference_s));
+        let moments = match &frame.beside {
+            None => trial_moments(blocks, trial, difference_s)?,
+            Some(beside) => {
+                let added = beside.along(trial)?;
+                let known = |axis: Axis, sample: usize| added.at(axis, sample);
+                let tables = trial_tables(blocks, trial, difference_s, &known)?;
+                let pairs = blocks.blocks.iter().zip(&tables);
+                pairs.map(|(one, table)| Moments::of_columns(table, one.regressors())).collect()
+            }
+        };
         let regressions = frame
             .blocks
             .blocks

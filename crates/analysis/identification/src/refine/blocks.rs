@@ -42,8 +42,12 @@ pub struct Block {
     pub(crate) mass: Vec<Vec<Option<usize>>>,
     /// The axes of the mass matrix' columns.
     pub(crate) columns: Vec<Axis>,
+    /// What effects add to the accelerations of these, where they do.
+    pub(crate) additions: Vec<Option<usize>>,
     /// What the regression solves for is this matrix times the coefficients of its axes.
     pub mixing: DMatrix<f64>,
+    /// Its inverse: from what the regression solves for to the coefficients of the axes.
+    pub(crate) unmixing: DMatrix<f64>,
 }
 
 /// Every regression of a law, and the tape that evaluates their pieces.
@@ -87,6 +91,7 @@ impl Blocks {
         let tape = lowering.finish();
         for block in &mut blocks {
             let Some(mixing) = mixing(block, &tape, names.len()) else { return Ok(None) };
+            block.unmixing = inverse(&mixing).ok_or_else(|| singular(equations.law(), block))?;
             block.mixing = mixing;
         }
         Ok(Some(Self { blocks, tape, inputs: equations.inputs() }))
@@ -152,7 +157,8 @@ fn block(
             group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?,
         );
     }
-    let mixing = DMatrix::identity(axes.len(), axes.len());
+    let unmixed = DMatrix::identity(axes.len(), axes.len());
+    let additions = lowering.additions(group)?;
     let shrinkage = names[0]
         .iter()
         .map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage))
@@ -167,7 +173,9 @@ fn block(
         rests,
         mass,
         columns: group.to_vec(),
-        mixing,
+        mixing: unmixed.clone(),
+        unmixing: unmixed,
+        additions,
     }))
 }
 
@@ -201,6 +209,25 @@ impl Block {
     }
 }
 
+/// The inverse of a mixing matrix; none where it is singular.
+fn inverse(mixing: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let (rows, columns) = mixing.shape();
+    let inverse = mixing.clone().lu().solve(&DMatrix::identity(rows, columns))?;
+    inverse.iter().all(|value| value.is_finite()).then_some(inverse)
+}
+
+/// The refusal of a mixing matrix that has no inverse.
+fn singular(law: &Law, block: &Block) -> RefineError {
+    let axes: Vec<String> = block.axes.iter().map(|axis| format!("{axis:?}")).collect();
+    RefineError::Law(format!(
+        "the coefficients of the axes {} of law `{}` cannot be told from their common regression: \
+         the mass matrix with the scales of these axes is singular; check the scales in the law, \
+         and mass, inertia and added masses of the ship",
+        axes.join(", "),
+        law.name
+    ))
+}
+
 /// `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the regressors. `None`
 /// where it is not constant.
 fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
@@ -227,4 +254,27 @@ fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
         return None;
     }
     mass.lu().solve(&DMatrix::from_diagonal(&here))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use super::*;
+
+    #[test]
+    fn a_mixture_that_cannot_be_undone_is_refused_with_its_axes() {
+        let regular = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]);
+        let one = inverse(&regular).unwrap() * &regular;
+        assert!((one - DMatrix::identity(2, 2)).amax() < 1e-12);
+        assert!(inverse(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
+        assert!(inverse(&DMatrix::from_row_slice(1, 1, &[f64::NAN])).is_none());
+        let zoo = Zoo::embedded().unwrap();
+        let law = zoo.law("abkowitz").unwrap();
+        let blocks = Blocks::new(&zoo.model("mariner").unwrap(), law).unwrap();
+        let coupled = blocks.blocks.iter().find(|block| block.axes.len() == 2).unwrap();
+        let refusal = singular(law, coupled).to_string();
+        assert!(refusal.contains("axes Y, N of law `abkowitz`"), "{refusal}");
+    }
 }

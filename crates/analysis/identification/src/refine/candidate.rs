@@ -1,7 +1,8 @@
 //! A candidate: a fit with its errors on trials left out, and which of several is best.
 
 use sistership_model::Model;
-use sistership_simulation::error::{SquaredError, standardised_mse};
+use sistership_simulation::error::SquaredError;
+use sistership_simulation::horizons::{HorizonErrors, combined};
 
 use super::cma_es::SearchReport;
 use super::errors::CoefficientErrors;
@@ -58,8 +59,11 @@ impl Solution for UnchangedSource {
 pub(super) struct CandidateFit {
     pub option: StepOption,
     pub solution: Box<dyn Solution>,
+    /// Squared errors at the shortest restart interval.
     pub errors: SquaredError,
-    /// Standardised errors by trial.
+    /// Standardised errors by restart interval, the shortest first.
+    pub horizons: Vec<HorizonErrors>,
+    /// Standardised errors by trial, over every restart interval.
     pub each: Vec<f64>,
     /// Whether those are parts of so few trials that even the source gives way to what is clearly
     /// better only.
@@ -82,10 +86,9 @@ impl CandidateFit {
         size: usize,
         simulated: Simulated,
     ) -> Self {
-        let deviations = &problem.deviations;
-        let Simulated { total: errors, each, reason } = simulated;
-        let error = reason.is_none().then(|| standardised_mse(&errors, deviations));
-        let each = each.iter().map(|error| standardised_mse(error, deviations)).collect();
+        let Simulated { total: errors, horizons, reason } = simulated;
+        let (error, each) = combined(&horizons);
+        let error = reason.is_none().then_some(error);
         let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
             solution
                 .ridge()
@@ -100,12 +103,20 @@ impl CandidateFit {
             option,
             solution: Box::new(solution),
             errors,
+            horizons,
             each,
             few: problem.settings.in_parts,
             size,
             left_out: Vec::new(),
             search: None,
         }
+    }
+
+    /// Counts errors at further restart intervals, too.
+    pub fn add_horizons(&mut self, horizons: Vec<HorizonErrors>) {
+        self.horizons.extend(horizons);
+        let (error, each) = combined(&self.horizons);
+        (self.option.error, self.each) = (Some(error), each);
     }
 }
 

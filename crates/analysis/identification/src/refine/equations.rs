@@ -31,7 +31,9 @@ impl Equations {
     pub fn tables(self, blocks: &Blocks, part: &Trial) -> Result<Vec<Table>, RefineError> {
         match self {
             Self::Windows(windows) => weak_tables(blocks, part, windows),
-            Self::Differences(difference_s) => trial_tables(blocks, part, difference_s),
+            Self::Differences(difference_s) => {
+                trial_tables(blocks, part, difference_s, &|_, _| 0.0)
+            }
         }
     }
 

@@ -21,6 +21,10 @@ pub enum Family {
     /// law's factors can spell and that has the symmetry of its axis; roll rate and the moment of
     /// heel linearly.
     ThirdOrder,
+    /// Those, the source's own, and terms that break the symmetry of port and starboard, up to
+    /// second order: forces of a propeller to one side, a rudder that is not amidships, a hull that
+    /// is not symmetric.
+    Asymmetric,
 }
 
 /// Factors that may enter powers and products on an axis.
@@ -31,7 +35,8 @@ const LINEAR: [&str; 2] = ["p", "heel"];
 
 impl Family {
     /// Every family, from the source's terms outwards.
-    pub(super) const ALL: [Self; 3] = [Self::Own, Self::Symmetric, Self::ThirdOrder];
+    pub(super) const ALL: [Self; 4] =
+        [Self::Own, Self::Symmetric, Self::ThirdOrder, Self::Asymmetric];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
@@ -39,6 +44,7 @@ impl Family {
             Self::Own => "own terms",
             Self::Symmetric => "symmetric terms",
             Self::ThirdOrder => "third order",
+            Self::Asymmetric => "asymmetric terms",
         }
     }
 
@@ -46,13 +52,16 @@ impl Family {
     /// nothing.
     pub fn of(self, model: &Model, law: &Law) -> Option<Model> {
         let mut changed = model.clone();
-        if self != Self::Own {
+        if matches!(self, Self::Symmetric | Self::ThirdOrder) {
             changed.coefficients.retain(|name, _| !breaks_symmetry(name, law));
         }
-        if self == Self::ThirdOrder {
-            for name in third_order(law) {
-                changed.coefficients.entry(name).or_insert_with(added);
-            }
+        let terms = match self {
+            Self::Own | Self::Symmetric => Vec::new(),
+            Self::ThirdOrder => third_order(law),
+            Self::Asymmetric => third_order(law).into_iter().chain(asymmetric(law)).collect(),
+        };
+        for name in terms {
+            changed.coefficients.entry(name).or_insert_with(added);
         }
         (self == Self::Own || changed != *model).then_some(changed)
     }
@@ -90,12 +99,32 @@ fn third_order(law: &Law) -> Vec<String> {
     let known = |symbol: &&&str| law.factors.contains_key(**symbol);
     let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
     let linear: Vec<&str> = LINEAR.iter().filter(known).copied().collect();
+    spelled(law, |axis| match axis.is_odd() {
+        true => odd_terms(&products, &linear),
+        false => even_terms(&products),
+    })
+}
+
+/// Terms that break the symmetry of port and starboard, which an open axis can have: of sway, roll
+/// and yaw a constant, with the speed, and the even products; of surge what is odd.
+fn asymmetric(law: &Law) -> Vec<String> {
+    let known = |symbol: &&&str| law.factors.contains_key(**symbol);
+    let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
+    spelled(law, |axis| match axis.is_odd() {
+        true => {
+            let constant = ["0", "u"].into_iter().map(str::to_owned);
+            constant.chain(monomials(&products, 2)).collect()
+        }
+        false => monomials(&products, 1),
+    })
+}
+
+/// The names, for each open axis, of the terms that the law can spell.
+fn spelled(law: &Law, terms: impl Fn(Axis) -> Vec<String>) -> Vec<String> {
     let open = law.axes.iter().filter(|(_, axis)| axis.open).map(|(axis, _)| *axis);
     let of_axis = |axis: Axis| {
-        let terms =
-            if axis.is_odd() { odd_terms(&products, &linear) } else { even_terms(&products) };
-        let spelled = terms.into_iter().map(move |factors| format!("{axis}_{factors}"));
-        spelled.filter(|name| law.term(name).is_ok()).collect::<Vec<_>>()
+        let names = terms(axis).into_iter().map(move |factors| format!("{axis}_{factors}"));
+        names.filter(|name| law.term(name).is_ok()).collect::<Vec<_>>()
     };
     open.flat_map(of_axis).collect()
 }
@@ -148,6 +177,25 @@ mod tests {
             assert!(third.coefficients.contains_key(name), "{name}");
         }
         assert!(third.coefficients.iter().all(|(name, q)| q.value == model.coefficient(name)));
+    }
+
+    #[test]
+    fn asymmetric_terms_are_added_to_those_of_third_order() {
+        let zoo = Zoo::embedded().unwrap();
+        let (model, law) = (zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let [third, asymmetric] =
+            [Family::ThirdOrder, Family::Asymmetric].map(|f| f.of(&model, law).unwrap());
+        assert!(third.coefficients.keys().all(|name| asymmetric.coefficients.contains_key(name)));
+        let more: Vec<&String> = asymmetric
+            .coefficients
+            .keys()
+            .filter(|name| !third.coefficients.contains_key(*name))
+            .collect();
+        assert!(more.iter().all(|name| breaks_symmetry(name, law)), "{more:?}");
+        for name in ["Y_0", "N_0", "Y_vr", "N_rr", "N_deltadelta", "X_delta"] {
+            assert!(asymmetric.coefficients.contains_key(name), "{name}");
+        }
+        assert_eq!(asymmetric.coefficient("N_0"), model.coefficient("N_0"), "the source's own");
     }
 
     #[test]

@@ -4,13 +4,13 @@
 use sistership_model::Model;
 use sistership_model::posterior::Posterior;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
-use sistership_simulation::validity::covered;
 
 use super::blocks::Blocks;
 use super::candidate::{CandidateFit, Solution, best};
 use super::family::Family;
 use super::gathered::{ChosenCandidate, refinement};
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
+use super::mixture;
 use super::outcome::{Manoeuvres, RefineError, Refinement};
 use super::problem::Problem;
 use super::progress::{Progress, step};
@@ -20,6 +20,7 @@ use super::variant::Variant;
 use crate::constraints::LimitError;
 use sistership_assessment::uncertainty::{FoldQuantile, bands, fold_factor};
 use sistership_numerics::RidgeChoice;
+use sistership_propulsion::{Context, PropulsionFault};
 
 /// Why a candidate may not be taken.
 #[derive(Debug, thiserror::Error)]
@@ -34,13 +35,18 @@ enum CandidateRefusal {
 const NO_MODEL: &str = "a law without coefficients is no model";
 
 /// Whether a law's coefficients are all zero: what stands for the source where there is none.
-fn is_empty(model: &Model) -> bool {
+pub(super) fn is_empty(model: &Model) -> bool {
     let mut values = model.coefficients.values().peekable();
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
 }
 
-/// What a candidate gives with its standard manoeuvres, or why it may not be taken.
-type Accepted = Result<(Option<Fit>, StandardManoeuvres), CandidateRefusal>;
+struct FittedCandidate {
+    fit: Option<Fit>,
+    model: Model,
+    manoeuvres: StandardManoeuvres,
+}
+
+type Accepted = Result<FittedCandidate, CandidateRefusal>;
 
 /// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres
 /// that the source sails.
@@ -78,21 +84,29 @@ pub(super) fn finish(
             None => sailed(problem, candidates[best].solution.as_ref(), variants),
         };
         match accepted(sailed?, &before) {
-            Ok((fitted, after)) => {
-                return take(
-                    problem,
-                    (candidates, best),
-                    (fitted, variants),
-                    (before, after),
-                    progress,
-                );
+            Ok(fitted) => {
+                return take(problem, (candidates, best), (fitted, variants), before, progress);
             }
             Err(refusal) => {
-                (candidates[best].option.reason, candidates[best].option.error) =
-                    (Some(refusal.to_string()), None)
+                let option = &mut candidates[best].option;
+                (option.reason, option.error) = (Some(refusal.to_string()), None);
             }
         }
     }
+}
+
+/// The model of the best candidate, fitted on all trials.
+///
+/// # Errors
+/// No candidate's simulations go on to their end, or the constraints cannot be kept.
+pub(super) fn best_model(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    variants: &[Variant],
+) -> Result<Model, RefineError> {
+    let reasons = || candidates.iter().filter_map(|one| one.option.reason.as_deref());
+    let best = best(candidates).ok_or_else(|| RefineError::diverged(reasons()))?;
+    Ok(model_of(problem, candidates[best].solution.fit(variants)?.as_ref()))
 }
 
 /// What a candidate gives on all trials with its standard manoeuvres, where it keeps the
@@ -108,41 +122,46 @@ fn sailed(
         }
         fitted => fitted?,
     };
-    let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
-    Ok(Ok((fitted, after)))
+    let model = context(problem).with_propulsion(model_of(problem, fitted.as_ref()));
+    let manoeuvres = standard_manoeuvres(&model, problem.law);
+    Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
 }
 
 /// What a candidate gives, where it sails what the source sails.
 fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
-    let (fitted, after) = sailed?;
-    let worse =
-        after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+    let fitted = sailed?;
+    let failures = &fitted.manoeuvres.failures;
+    let worse = failures.iter().find(|one| before.failures.is_empty() && !one.is_empty());
     match worse {
         Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
-        None => Ok((fitted, after)),
+        None => Ok(fitted),
     }
+}
+
+fn context<'a>(problem: &'a Problem<'_>) -> Context<'a> {
+    let of_ship = |target| mixture::estimated(target, problem.transferred.speed_m_s).ok();
+    let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
+    Context { law: problem.law, trials: &problem.whole, estimate }
 }
 
 /// The refined model; the source where nothing was fitted.
 fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
-    let mut model = fitted
-        .map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients));
-    model.validity = covered(&problem.whole, problem.law);
-    model
+    fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients))
 }
 
 /// The refinement by a candidate, with its errors.
 fn take(
     problem: &Problem<'_>,
     (mut candidates, best): (Vec<CandidateFit>, usize),
-    (fitted, variants): (Option<Fit>, &[Variant]),
-    (before, after): (StandardManoeuvres, StandardManoeuvres),
+    (taken, variants): (FittedCandidate, &[Variant]),
+    before: StandardManoeuvres,
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
     candidates[best].option.chosen = true;
     let errors = candidates[best].solution.errors(problem, variants)?;
-    let mut fitted = fitted.map(|fit| fit.with_errors(errors));
-    let mut model = model_of(problem, fitted.as_ref());
+    let mut fitted = taken.fit.map(|fit| fit.with_errors(errors));
+    let coefficients = model_of(problem, fitted.as_ref()).coefficients;
+    let mut model = Model { coefficients, ..taken.model };
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
     if problem.settings.posterior_by_folds {
         let quantile = match problem.settings.folds_pooled {
@@ -153,12 +172,17 @@ fn take(
         let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
         widen(&mut model, fitted.as_mut(), factor);
     }
+    let propulsion = context(problem);
+    let model = propulsion.with_posterior(model);
+    let fault = propulsion.fault(&model).filter(|fault| *fault != PropulsionFault::NoRevolutions);
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;
     let bands =
         bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
-    let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
-    refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
+    let manoeuvres = Manoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
+    let propulsion_fault = fault.map(|fault| fault.to_string());
+    let chosen = ChosenCandidate { candidates, best, model, fitted, propulsion_fault };
+    refinement(problem, chosen, manoeuvres)
 }
 
 /// Makes every standard error so many times as large.

@@ -1,6 +1,7 @@
 //! Everything of a refinement that its user must be able to defend.
 
 use sistership_model::Model;
+use sistership_model::estimated_particulars::estimated_words;
 use sistership_model::quantity::Quantity;
 
 use super::candidate::CandidateFit;
@@ -11,7 +12,7 @@ use super::ridge::Fit;
 use super::settings::Settings;
 use super::simulated::simulate_all;
 use super::thresholds::SELECTION;
-use sistership_priors::rolling::HYDROSTATICS;
+use sistership_priors::rolling::roll_words;
 
 /// The candidate that was taken among all, its model and its fit; none where the source was kept.
 pub(super) struct ChosenCandidate {
@@ -19,6 +20,8 @@ pub(super) struct ChosenCandidate {
     pub best: usize,
     pub model: Model,
     pub fitted: Option<Fit>,
+    /// What the model does wrong with the propeller stopped or reversed.
+    pub propulsion_fault: Option<String>,
 }
 
 /// The refinement by what was taken.
@@ -30,13 +33,16 @@ pub(super) fn refinement(
     taken: ChosenCandidate,
     manoeuvres: Manoeuvres,
 ) -> Result<Refinement, RefineError> {
-    let ChosenCandidate { candidates, best, model, fitted } = taken;
+    let ChosenCandidate { candidates, best, model, fitted, propulsion_fault } = taken;
     let held_out = held_out(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
     let (condition_number, collinear_groups) = fitted
         .as_ref()
         .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
     let mut remarks = remarks(problem, best, &lambdas);
+    remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::words));
+    remarks
+        .extend(propulsion_fault.map(|fault| format!("WITHOUT propulsion like a ship's: {fault}")));
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }
@@ -133,15 +139,6 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
     model.coefficients.iter().map(one).collect()
 }
 
-/// What stands for a source's roll, of which it says nothing.
-fn roll_words(carried: &Model) -> Option<String> {
-    let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
-    carried.coefficients.values().find(is_hydrostatic)?;
-    let what = "the source says nothing of roll: the prior has the stiffness of the ship's \
-        metacentric height and a tenth of the critical damping";
-    Some(what.to_owned())
-}
-
 fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     let mut remarks = Vec::new();
     let strongest =
@@ -162,18 +159,7 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     if problem.training.len() == 1 {
         remarks.push("a single trial: only the most conservative range was tried".to_owned());
     }
-    let scaled = problem
-        .transferred
-        .particulars
-        .iter()
-        .filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
-    let names: Vec<&str> = scaled.map(|(name, _)| name.as_str()).collect();
-    if !names.is_empty() {
-        remarks.push(format!(
-            "the ship does not state {}: scaled from the source ship",
-            names.join(", ")
-        ));
-    }
+    remarks.extend(estimated_words(&problem.transferred.particulars));
     remarks
 }
 

@@ -14,7 +14,6 @@ use super::blocks::Blocks;
 use super::envelope::OperatingEnvelope;
 use super::measure::PriorMeasure;
 use super::outcome::RefineError;
-use super::settings::{Prior, Settings};
 use super::thresholds::{MIXTURE, Misfit};
 
 /// What estimates are made of.
@@ -90,17 +89,6 @@ pub(super) fn mixed(
     let shares = MIXTURE.misfit.map(|misfit| misfit.map_or(0.0, |misfit| at(position, misfit)));
     let moved = envelope.moved_to((&estimated, law), &shares, trials)?;
     Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
-}
-
-/// What a source is called: the estimate, or a population, where that stands in its place.
-pub(super) fn source_name<'a>(settings: &Settings, source: &'a str) -> &'a str {
-    match settings.prior {
-        Prior::Mixture if settings.mixture_positions == [ESTIMATE] => {
-            "the estimate from particulars"
-        }
-        Prior::Population => "a population of ships",
-        Prior::Mixture | Prior::Source => source,
-    }
 }
 
 /// What the estimate says, named as such.

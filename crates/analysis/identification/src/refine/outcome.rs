@@ -106,8 +106,8 @@ pub struct StepOption {
     pub lambda: Vec<f64>,
     /// Chosen alpha likewise.
     pub alpha: Vec<f64>,
-    /// Standardised mean squared error of simulated manoeuvres left out; none where a simulation
-    /// diverged.
+    /// Standardised mean squared error of simulated manoeuvres left out, the geometric mean over
+    /// restart intervals; none where a simulation diverged at the shortest.
     pub error: Option<f64>,
     /// Whether this option was taken.
     pub chosen: bool,

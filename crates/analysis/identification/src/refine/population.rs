@@ -140,10 +140,9 @@ impl<'a> PopulationRegression<'a> {
 fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model, usize)) {
     let (model, count) = of;
     let solved: Vec<DVector<f64>> = means.iter().map(|mean| metric.back() * mean).collect();
-    let mixing = block.mixing.clone().lu();
     for place in 0..block.regressors() {
         let seen = DVector::from_iterator(means.len(), solved.iter().map(|one| one[place]));
-        let own = mixing.solve(&seen).unwrap_or(seen);
+        let own = &block.unmixing * seen;
         for (names, value) in block.names.iter().zip(&own) {
             let source = format!("mean of what {count} ships say");
             model.coefficients.insert(names[place].clone(), Quantity::new(*value, source));

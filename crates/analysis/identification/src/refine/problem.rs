@@ -6,7 +6,7 @@ use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Status;
-use sistership_model::{Model, particulars};
+use sistership_model::{Model, Vessel, particulars};
 use sistership_simulation::error::standard_deviations;
 
 use super::measure::PriorMeasure;
@@ -18,6 +18,7 @@ use super::settings::Settings;
 /// What does not change while candidates are compared.
 pub(super) struct Problem<'a> {
     pub law: &'a Law,
+    pub target: Option<&'a Vessel>,
     /// The source's name.
     pub source: &'a str,
     /// What is fitted and left out: the trials, or parts of them.
@@ -51,6 +52,7 @@ impl<'a> Problem<'a> {
         let deviations = standard_deviations(&training);
         Self {
             law,
+            target: None,
             source: &model.name,
             training,
             replayed,

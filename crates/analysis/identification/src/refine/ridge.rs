@@ -9,9 +9,10 @@ use sistership_model::coefficient::Axis;
 
 use super::blocks::{Block, Blocks};
 use super::errors::CoefficientErrors;
+use super::outcome::RefineError;
 use super::settings::Range;
 use super::thresholds::SELECTION;
-use sistership_numerics::{Moments, RidgeChoice, RidgePath, Validation};
+use sistership_numerics::{AlphaError, Moments, RidgeChoice, RidgePath, Validation};
 
 /// A coefficient as fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +60,11 @@ impl<'a> PreparedRegression<'a> {
             self.path.solve(target, *choice, &self.source[target])
         };
         choices.iter().enumerate().map(one).collect()
+    }
+
+    /// The error on held-out samples as a function of alpha.
+    fn error_by_alpha(&self, target: usize, lambda: f64, held_out: &Validation) -> AlphaError {
+        self.path.error_by_alpha(target, lambda, &self.source[target], held_out)
     }
 }
 
@@ -117,13 +123,7 @@ impl Fold<'_> {
     pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
         let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
             let one = |(target, axis): (usize, &Axis)| {
-                let (_, error) = prepared.path.best_alpha(
-                    target,
-                    lambda,
-                    &prepared.source[target],
-                    validation,
-                    (0.0, 0.0),
-                );
+                let error = prepared.error_by_alpha(target, lambda, validation).at(0.0);
                 (*axis, error / prepared.path.target_variance(target).max(f64::MIN_POSITIVE))
             };
             prepared.block.axes.iter().enumerate().map(one).collect::<Vec<_>>()
@@ -147,48 +147,48 @@ impl PreparedRegression<'_> {
     }
 }
 
-/// The best choices of a range by one-step error on left-out samples, for each target of each
+/// The best choices of a range by one-step error on held-out samples, for each target of each
 /// regression.
-pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Choices {
-    let Some(first) = folds.first() else { return Choices::new() };
+///
+/// # Errors
+/// Names the axis whose error is not finite at any strength of the range.
+pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Result<Choices, RefineError> {
+    let Some(first) = folds.first() else { return Ok(Choices::new()) };
     let of_block = |b: usize| {
         let pairs: Vec<(&PreparedRegression<'_>, &Validation)> =
             folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
-        (0..first.prepared[b].source.len())
-            .map(|target| tune_target(target, &pairs, range, count))
-            .collect()
+        let axes = first.prepared[b].block.axes.iter().enumerate();
+        let of_axis = |(target, axis): (usize, &Axis)| {
+            tune_target(target, &pairs, range, count).ok_or_else(|| {
+                RefineError::Data(format!(
+                    "the error on held-out samples of the {axis:?} axis is not finite at any \
+                     strength of the prior: check the trials for values that are not finite"
+                ))
+            })
+        };
+        axes.map(of_axis).collect()
     };
     (0..first.prepared.len()).map(of_block).collect()
 }
 
-/// The lambda and alpha with the least error, summed over the folds.
+/// The lambda and alpha with the least error, each pair scored by the sum over the folds. None
+/// where no error is finite.
 fn tune_target(
     target: usize,
     folds: &[(&PreparedRegression<'_>, &Validation)],
     range: &Range,
     count: usize,
-) -> RidgeChoice {
-    let mut best = (f64::INFINITY, RidgeChoice { lambda: range.lambda_max, alpha: 0.0 });
-    for lambda in log_spaced(range.lambda_min, range.lambda_max, count) {
-        let mut error = 0.0;
-        let mut alpha = 0.0;
-        for (prepared, validation) in folds {
-            let source = &prepared.source[target];
-            let (a, e) = prepared.path.best_alpha(
-                target,
-                lambda,
-                source,
-                validation,
-                (0.0, range.alpha_max),
-            );
-            error += e;
-            alpha += a / folds.len() as f64;
-        }
-        if error < best.0 {
-            best = (error, RidgeChoice { lambda, alpha });
-        }
-    }
-    best.1
+) -> Option<RidgeChoice> {
+    let scored = |lambda: f64| {
+        let of_fold = |(prepared, held_out): &(&PreparedRegression<'_>, &Validation)| {
+            prepared.error_by_alpha(target, lambda, held_out)
+        };
+        let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least(range.alpha_max);
+        (error, RidgeChoice { lambda, alpha })
+    };
+    let all = log_spaced(range.lambda_min, range.lambda_max, count).map(scored);
+    let finite = all.filter(|(error, _)| error.is_finite());
+    finite.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, choice)| choice)
 }
 
 /// The strengths with the greatest marginal likelihood, for each target of each regression, on the
@@ -290,15 +290,10 @@ fn unmix(
         .collect();
     let deviations: Vec<Vec<(f64, f64)>> =
         choices.iter().map(|choice| prepared.path.deviations(choice.lambda)).collect();
-    let unmixing = block
-        .mixing
-        .clone()
-        .lu()
-        .solve(&DMatrix::identity(q, q))
-        .unwrap_or_else(|| DMatrix::identity(q, q));
+    let unmixing = &block.unmixing;
     for i in 0..block.regressors() {
         let solved = DVector::from_iterator(q, solutions.iter().map(|solution| solution[i]));
-        let own = &unmixing * solved;
+        let own = unmixing * solved;
         for axis in 0..q {
             let spread = |of: &dyn Fn(usize) -> f64| {
                 (0..q)
@@ -318,3 +313,7 @@ fn unmix(
         }
     }
 }
+
+#[cfg(test)]
+#[path = "ridge_tests.rs"]
+mod tests;

@@ -23,19 +23,16 @@ pub fn trial_moments(
     trial: &Trial,
     difference_s: Option<f64>,
 ) -> Result<Vec<Moments>, RefineError> {
-    let tables = trial_tables(blocks, trial, difference_s)?;
-    Ok(blocks
-        .blocks
-        .iter()
-        .zip(&tables)
-        .map(|(block, table)| Moments::of_columns(table, block.regressors()))
-        .collect())
+    let tables = trial_tables(blocks, trial, difference_s, &|_, _| 0.0)?;
+    let pairs = blocks.blocks.iter().zip(&tables);
+    Ok(pairs.map(|(block, table)| Moments::of_columns(table, block.regressors())).collect())
 }
 
 /// The columns of each regression over the samples of a trial: regressors, then targets.
 pub type Table = Vec<Vec<f64>>;
 
-/// The samples behind [`trial_moments`].
+/// The samples behind [`trial_moments`], less accelerations that something beside the law gives:
+/// `known` has those of an axis at a sample, m/s2 (rad/s2).
 ///
 /// # Errors
 /// As [`trial_moments`].
@@ -43,10 +40,12 @@ pub fn trial_tables(
     blocks: &Blocks,
     trial: &Trial,
     difference_s: Option<f64>,
+    known: &dyn Fn(Axis, usize) -> f64,
 ) -> Result<Vec<Table>, RefineError> {
     let record = RegressionRecord::new(blocks, trial)?;
-    let difference = |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair);
-    Ok(tables(blocks, &record, &pairs(trial, difference_s), &difference))
+    let left =
+        |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair) - known(axis, pair.0);
+    Ok(tables(blocks, &record, &pairs(trial, difference_s), &left))
 }
 
 /// The columns of each regression over the samples of a trial where the accelerations are known;
@@ -202,19 +201,18 @@ fn target(
 ) -> nalgebra::DVector<f64> {
     let read = |output: usize| blocks.tape.read(output, work)[lane];
     let q = block.axes.len();
+    let added = |place: usize| block.additions[place].map_or(0.0, read);
+    let moved = |place: usize| acceleration(block.columns[place], pair) - added(place);
     let rests = nalgebra::DVector::from_iterator(q, block.rests.iter().map(|&rest| read(rest)));
     if q == 1 {
         let inertia: f64 = block.mass[0]
             .iter()
-            .zip(&block.columns)
-            .filter_map(|(mass, &axis)| Some(read((*mass)?) * acceleration(axis, pair)))
+            .enumerate()
+            .filter_map(|(place, mass)| Some(read((*mass)?) * moved(place)))
             .sum();
         return nalgebra::DVector::from_element(1, inertia - rests[0]);
     }
-    let accelerations = nalgebra::DVector::from_iterator(
-        q,
-        block.axes.iter().map(|&axis| acceleration(axis, pair)),
-    );
+    let accelerations = nalgebra::DVector::from_iterator(q, (0..q).map(moved));
     if rests.iter().all(|rest| *rest == 0.0) {
         return accelerations;
     }

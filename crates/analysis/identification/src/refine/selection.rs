@@ -9,7 +9,8 @@ use sistership_simulation::error::standard_deviations;
 use super::across::SourceEnvelopes;
 use super::candidate::CandidateFit;
 use super::estimators::estimator;
-use super::finish::finish;
+use super::finish::{best_model, finish, is_empty};
+use super::longer::compare_longer;
 use super::mixture;
 use super::mixture_position::chosen;
 use super::outcome::{RefineError, Refinement};
@@ -99,6 +100,19 @@ pub fn refine_wanted(
     with_candidates((request, known), Extent::Estimator, progress, &|_| (), both)
 }
 
+/// The model that a refinement gives, without standard manoeuvres, bands and what they refuse.
+///
+/// # Errors
+/// As [`refine`].
+pub fn fit_model(request: &Request<'_>) -> Result<Model, RefineError> {
+    let known = SourceEnvelopes::default();
+    let fitted = |problem: &Problem<'_>,
+                  fits: Vec<CandidateFit>,
+                  variants: &[Variant],
+                  _: Progress<'_>| best_model(problem, &fits, variants);
+    with_candidates((request, &known), Extent::Estimator, &|_, _| true, &|_| (), fitted)
+}
+
 /// Sets the problem up, gives its candidates to the extent asked for, and does with them what
 /// `then` does.
 fn with_candidates<T>(
@@ -136,13 +150,15 @@ fn with_candidates<T>(
         steer_as_recorded(&mut transferred, request.target, &whole, window);
     }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
-    let source = mixture::source_name(&settings, &request.source.name);
+    let named = Some(&*request.source.name).filter(|_| !is_empty(request.source));
+    let source = settings.origin(named).to_owned();
     let (law, watch) = (request.law, Some(watch));
     let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
     let deviations = standard_deviations(&training);
     let problem = Problem {
         law,
-        source,
+        target: Some(request.target),
+        source: &source,
         training,
         replayed,
         whole,
@@ -159,6 +175,7 @@ fn with_candidates<T>(
     if extent == Extent::Estimator {
         estimator.candidates(&problem, &variants, &mut candidates, progress)?;
     }
+    compare_longer(&problem, &mut candidates)?;
     step(progress, 0.8, "fitting all trials")?;
     then(&problem, candidates, &variants, progress)
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cma_es::CmaEs;
 use super::family::Family;
+use super::mixture::ESTIMATE;
 use crate::constraints::Constraints;
 use sistership_assessment::uncertainty::Sampling;
 
@@ -74,6 +75,9 @@ pub enum Prior {
 /// Positions of a mixture among which trials choose where an order says nothing else: source,
 /// learned shares and estimate, and halfway between.
 const MIXTURE_POSITIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// What a refinement without a source is from.
+pub const TRIALS_ALONE: &str = "the trials alone";
 
 impl Prior {
     /// Every prior.
@@ -186,6 +190,13 @@ pub struct Settings {
     /// longer than a trial runs it whole.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
+    /// Longer restart intervals, s, at which manoeuvres left out are simulated, too: the error by
+    /// which candidates are compared is the geometric mean over all intervals. A simulation that
+    /// stops early counts there with what an unrelated motion would have. Where empty, `restart_s`
+    /// alone. The default search sets it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 10), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
+    pub longer_restarts_s: Vec<f64>,
     /// Such simulations start in, and are compared with, motions that are smoothed over so many
     /// seconds: what one noisy reading does at the start of a simulation grows where a ship is
     /// unstable on her course. Where absent, motions as recorded. The default search sets it.
@@ -299,6 +310,7 @@ impl Default for Settings {
             families: Vec::new(),
             strengths: Vec::new(),
             restart_s: None,
+            longer_restarts_s: Vec::new(),
             smoothing_s: None,
             folds: 8,
             part_s: None,
@@ -347,9 +359,40 @@ impl Settings {
         }
     }
 
+    /// What a refinement by these settings is from, for people: the source by its name, or what
+    /// stands in its place; [`TRIALS_ALONE`] where there is no source.
+    pub fn origin<'a>(&self, source: Option<&'a str>) -> &'a str {
+        match self.prior {
+            Prior::Mixture if self.mixture_positions == [ESTIMATE] => {
+                "the estimate from particulars"
+            }
+            Prior::Population => "a population of ships",
+            Prior::Mixture | Prior::Source => source.unwrap_or(TRIALS_ALONE),
+        }
+    }
+
     /// Window in which motions are smoothed that errors on manoeuvres left out are against, s; those
     /// on trials that are kept out are against motions as recorded.
     pub fn compared_smoothing_s(&self) -> Option<f64> {
         self.smoothing_s.filter(|_| self.held_out.is_empty())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_in_the_place_of_a_source_is_named() {
+        let of = |prior, positions: &[f64], source: Option<&str>| {
+            let mixture_positions = positions.to_vec();
+            let settings = Settings { prior, mixture_positions, ..Settings::default() };
+            settings.origin(source).to_owned()
+        };
+        assert_eq!(of(Prior::Source, &[], Some("wpcc/1")), "wpcc/1");
+        assert_eq!(of(Prior::Source, &[], None), TRIALS_ALONE);
+        assert_eq!(of(Prior::Population, &[], Some("wpcc/1")), "a population of ships");
+        assert_eq!(of(Prior::Mixture, &[0.5], Some("wpcc/1")), "wpcc/1");
+        assert_eq!(of(Prior::Mixture, &[1.0], Some("wpcc/1")), "the estimate from particulars");
     }
 }

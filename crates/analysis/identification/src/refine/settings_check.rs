@@ -87,7 +87,10 @@ impl Settings {
         let rule = |(field, time): (_, Option<f64>)| {
             (field, "must be above 0 s", time.iter().all(is_positive))
         };
-        times.into_iter().map(rule).collect()
+        let longer_s = &self.longer_restarts_s;
+        let are_usable = longer_s.len() <= 10 && longer_s.iter().all(is_positive);
+        let longer = ("longer_restarts_s", "give at most 10, each above 0 s", are_usable);
+        times.into_iter().map(rule).chain([longer]).collect()
     }
 }
 

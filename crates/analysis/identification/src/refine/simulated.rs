@@ -5,6 +5,7 @@ use sistership_model::Model;
 use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
+use sistership_simulation::horizons::HorizonErrors;
 use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
 
 use super::outcome::RefineError;
@@ -15,9 +16,12 @@ use sistership_priors::transfer::ready_for_sisters;
 const TOGETHER: usize = 8;
 
 /// The errors of simulated trials.
+#[derive(Default)]
 pub(super) struct Simulated {
+    /// Squared errors over all trials.
     pub total: SquaredError,
-    pub each: Vec<SquaredError>,
+    /// Standardised errors at that interval; none of what cannot be simulated at all.
+    pub horizons: Vec<HorizonErrors>,
     /// The first divergence.
     pub reason: Option<String>,
 }
@@ -25,10 +29,10 @@ pub(super) struct Simulated {
 impl Simulated {
     /// Of an option that is out of the question.
     pub fn refused(reason: String) -> Self {
-        Self { total: SquaredError::default(), each: Vec::new(), reason: Some(reason) }
+        Self { reason: Some(reason), ..Self::default() }
     }
 
-    fn of(trials: &[&Trial], runs: &[Replay]) -> Self {
+    fn new(problem: &Problem<'_>, trials: &[&Trial], runs: &[Replay]) -> Self {
         let mut total = SquaredError::default();
         let each: Vec<SquaredError> =
             trials.iter().zip(runs).map(|(trial, run)| SquaredError::of(trial, run)).collect();
@@ -36,11 +40,14 @@ impl Simulated {
         let stopped = |(trial, run): (&&Trial, &Replay)| {
             Some(format!("{} {}", trial.name, run.stopped.as_ref()?))
         };
-        Self { total, each, reason: trials.iter().zip(runs).find_map(stopped) }
+        let reason = trials.iter().zip(runs).find_map(stopped);
+        let horizons = vec![HorizonErrors::new(&total, &each, &problem.deviations)];
+        Self { total, horizons, reason }
     }
 }
 
-/// Simulates what is fitted and left out, each with its model, at no finer steps than it takes.
+/// Simulates what is fitted and left out, each with its model, at no finer steps than it takes and
+/// at the shortest restart interval; the first divergence is the reason against the candidate.
 ///
 /// # Errors
 /// A trial lacks a channel, or the models differ in more than their coefficients.
@@ -50,10 +57,33 @@ pub(super) fn simulate_training(
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Simulated, RefineError> {
     let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
-    simulate(problem, (&trials, problem.replayed.step_s), models, model_of)
+    let how = (problem.settings.restart_s, problem.replayed.step_s);
+    simulate(problem, (&trials, how), models, model_of)
 }
 
-/// Simulates trials, each with its model; the first divergence is the reason against the candidate.
+/// Simulates the same at the longer restart intervals, where a simulation that stops counts.
+///
+/// # Errors
+/// As [`simulate_training`], and the models cannot be simulated.
+pub(super) fn simulate_longer(
+    problem: &Problem<'_>,
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Vec<HorizonErrors>, RefineError> {
+    let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
+    let one = |&restart_s: &f64| {
+        let how = (Some(restart_s), problem.replayed.step_s);
+        let runs = match runs(problem, (&trials, how), models, model_of)? {
+            Ok(runs) => runs,
+            Err(reason) => return Err(RefineError::Diverged(reason)),
+        };
+        Ok(HorizonErrors::with_stops(&trials, &runs, &problem.deviations))
+    };
+    problem.settings.longer_restarts_s.iter().map(one).collect()
+}
+
+/// Simulates trials, each with its model, at the shortest restart interval; the first divergence is
+/// the reason against the candidate.
 ///
 /// # Errors
 /// As [`simulate_training`].
@@ -63,29 +93,44 @@ pub(super) fn simulate_all(
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Simulated, RefineError> {
-    simulate(problem, (trials, ReplaySettings::default().step_s), models, model_of)
+    let how = (problem.settings.restart_s, ReplaySettings::default().step_s);
+    simulate(problem, (trials, how), models, model_of)
 }
 
-/// Simulates trials by steps of at most so many seconds.
+/// Trials with the restart interval and the longest step, s.
+type Simulation<'a> = (&'a [&'a Trial], (Option<f64>, f64));
+
 fn simulate(
     problem: &Problem<'_>,
-    (trials, step_s): (&[&Trial], f64),
+    simulation: Simulation<'_>,
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Simulated, RefineError> {
+    Ok(match runs(problem, simulation, models, model_of)? {
+        Ok(runs) => Simulated::new(problem, simulation.0, &runs),
+        Err(reason) => Simulated::refused(reason),
+    })
+}
+
+/// The simulations, or why the models cannot be simulated at all.
+fn runs(
+    problem: &Problem<'_>,
+    (trials, (restart_s, step_s)): Simulation<'_>,
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Result<Result<Vec<Replay>, String>, RefineError> {
     let Some(first) = models.first().filter(|_| !trials.is_empty()) else {
-        return Ok(Simulated::of(&[], &[]));
+        return Ok(Ok(Vec::new()));
     };
     let ship = match ready_for_sisters(first, problem.law, trials) {
         Ok(ship) => ship,
-        Err(error) => return Ok(Simulated::refused(error.to_string())),
+        Err(error) => return Ok(Err(error.to_string())),
     };
     let coefficients = sisters(&ship, models)?;
     let numbered = trials.iter().enumerate();
     let all: Vec<_> = numbered
         .map(|(k, trial)| Recorded { trial, coefficients: &coefficients[model_of(k)] })
         .collect();
-    let restart_s = problem.settings.restart_s;
     let settings = ReplaySettings { restart_s, step_s, ..ReplaySettings::default() };
     let together = |some: &[Recorded<'_>]| {
         replay_all(&ship, some, &settings)
@@ -93,7 +138,7 @@ fn simulate(
     };
     let runs: Vec<Vec<Replay>> =
         all.par_chunks(TOGETHER).map(together).collect::<Result<_, _>>()?;
-    Ok(Simulated::of(trials, &runs.concat()))
+    Ok(Ok(runs.concat()))
 }
 
 /// The coefficients of models, as a ship with their law takes them.

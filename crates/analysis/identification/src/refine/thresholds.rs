@@ -37,6 +37,14 @@ pub(super) struct SelectionThresholds {
     /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
     /// decision 2.
     pub restart: f64,
+    /// `g_s`: error at the shortest restart interval by the least of it up to which longer
+    /// simulations are made, dimensionless. Source: chosen: a ratio that trials tell apart; errors
+    /// on trials left out have standard errors of a tenth to a third of them.
+    pub near_least: f64,
+    /// `r_lambda`: how far strengths that asymmetric terms are tried with are from the best of
+    /// other terms, to both sides, dimensionless. Source: chosen: a decade, the next strengths of
+    /// those that the default search tries.
+    pub near_strength: f64,
     /// `n_h`: steps of the classical Runge-Kutta method in `L/U`, and samples that a simulation
     /// needs, a count. Source: derived: natural periods of roll are from half of `L/U` on, and a
     /// step is then a fifteenth of one.
@@ -63,6 +71,8 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     samples_a_coefficient: 4.0,
     alternatives: [10.0, 1.0, 0.3, 0.1, 0.03, 0.01],
     restart: 10.0,
+    near_least: 1.5,
+    near_strength: 10.0,
     steps_a_length: 30.0,
     steps_a_length_economical: 18.0,
     roll_strengths: [1e-9, 1.0],

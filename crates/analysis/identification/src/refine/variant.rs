@@ -106,7 +106,7 @@ impl Variant {
         choices: &Choices,
     ) -> Result<Option<CoefficientErrors>, RefineError> {
         let Some(all) = merged(&self.moments, |_| true) else { return Ok(None) };
-        Ok(errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices))
+        errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices).map(Some)
     }
 
     /// The rows behind the statistics. Differences of neighbouring samples share most of what they

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use sistership_model::Model;
 use sistership_model::trial::Trial;
 
 use super::candidate::{CandidateFit, best};
@@ -26,8 +27,11 @@ pub enum Extent {
 pub struct Weighed {
     /// What it is, for people.
     pub step: String,
-    /// Standardised mean squared error; none where a simulation diverged.
+    /// Standardised mean squared error, the geometric mean over restart intervals; none where a
+    /// simulation diverged at the shortest.
     pub error: Option<f64>,
+    /// That at the shortest restart interval.
+    pub shortest: Option<f64>,
     /// The same by trial.
     pub each: BTreeMap<String, f64>,
     /// Jackknife variance of what is simulated under rudders that no trial had, on the same scales:
@@ -38,8 +42,20 @@ pub struct Weighed {
     pub coefficients: usize,
     /// Of a ridge, its family of terms and the strength of its prior.
     pub ridge: Option<(Family, f64)>,
+    /// The model of each fold, fitted without it; none of the source as carried over, and where
+    /// trials were held out in parts.
+    pub folds: Vec<FoldModel>,
     /// Why it cannot be taken, if so.
     pub reason: Option<String>,
+}
+
+/// A model with the trials that it was fitted without.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoldModel {
+    /// The model.
+    pub model: Model,
+    /// The places of those trials among the ones that have a say.
+    pub held_out: Vec<usize>,
 }
 
 impl Weighed {
@@ -48,10 +64,12 @@ impl Weighed {
         Self {
             step: String::new(),
             error: None,
+            shortest: None,
             each: BTreeMap::new(),
             variance: None,
             coefficients: 0,
             ridge: None,
+            folds: Vec::new(),
             reason: Some(reason),
         }
     }
@@ -74,6 +92,7 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
     Weighed {
         step: candidate.option.step.clone(),
         error: candidate.option.error.filter(|error| error.is_finite()),
+        shortest: candidate.horizons.first().map(|horizon| horizon.mean),
         each: by_trial(problem, &candidate.each),
         variance: match candidate.size {
             0 => Some(0.0),
@@ -81,8 +100,21 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
         },
         coefficients: candidate.size,
         ridge: candidate.solution.ridge().and_then(ridge),
+        folds: folds(problem, &candidate.left_out),
         reason: candidate.option.reason.clone(),
     }
+}
+
+fn folds(problem: &Problem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
+    if problem.training.len() != problem.whole.len() || problem.training.len() < 2 {
+        return Vec::new();
+    }
+    let one = |(fold, model): (usize, &Model)| {
+        let trials = 0..problem.training.len();
+        let held_out = trials.filter(|trial| problem.fold_of(*trial) == fold).collect();
+        FoldModel { model: model.clone(), held_out }
+    };
+    left_out.iter().enumerate().map(one).collect()
 }
 
 /// Means by trial: parts of one count together, for they depend on each other; of one or two trials

@@ -95,3 +95,7 @@ fn quartiles(costs: &[f64]) -> f64 {
     let at = |k: usize| sorted.get(k.min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0);
     at(3 * (sorted.len() + 1) / 4) - at((sorted.len() + 1) / 4)
 }
+
+#[cfg(test)]
+#[path = "bounds_tests.rs"]
+mod tests;

@@ -203,3 +203,7 @@ fn converged(recent: &VecDeque<f64>, patience: usize) -> bool {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(*c), high.max(*c)));
     recent.len() >= patience && high - low <= 1e-12 + 1e-9 * low.abs()
 }
+
+#[cfg(test)]
+#[path = "restarts_tests.rs"]
+mod tests;

@@ -185,3 +185,7 @@ impl Strategy {
         still || !self.sigma.is_finite() || high >= 1e7 * low
     }
 }
+
+#[cfg(test)]
+#[path = "strategy_tests.rs"]
+mod tests;

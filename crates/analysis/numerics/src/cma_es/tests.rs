@@ -122,3 +122,22 @@ fn time_ends_a_search_too() {
     let by_cpu = least(&CmaEsSearch { budget, ..search(5, 5.0, 0) }, &rosenbrock);
     assert!(by_wall.spent.wall_s() < 10.0 && by_cpu.spent.wall_s() < 10.0);
 }
+
+/// The share of a budget that is gone is the largest of its parts.
+#[test]
+fn a_budget_is_gone_by_what_is_scarcest() {
+    let mut spent = Spent::nothing();
+    spent.evaluations = 30;
+    let budget = |evaluations, wall_s, cpu_s| Budget { evaluations, wall_s, cpu_s };
+    assert_eq!(spent.share(&budget(120, None, None)), 0.25);
+    assert_eq!(spent.share(&budget(120, Some(1e9), Some(1e9))), 0.25);
+    std::thread::sleep(std::time::Duration::from_millis(5));
+    assert!(spent.wall_s() >= 0.005 && spent.wall_s() < 5.0);
+    assert!(spent.share(&budget(120, Some(0.002), None)) > 2.0);
+    let begun = spent.cpu_s();
+    while begun.zip(spent.cpu_s()).is_some_and(|(from, now)| now - from < 0.01) {}
+    if let Some(cpu_s) = spent.cpu_s() {
+        assert!((0.01..5.0).contains(&cpu_s), "{cpu_s}");
+        assert!(spent.share(&budget(120, None, Some(0.005))) >= 2.0);
+    }
+}

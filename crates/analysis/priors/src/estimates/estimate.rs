@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
+use sistership_model::estimated_particulars::ESTIMATED;
 use sistership_model::law::Law;
 use sistership_model::model::{DERIVED, ModelKind};
 use sistership_model::particulars::Particulars;
@@ -19,6 +20,7 @@ use crate::estimates::error::EstimateError;
 use crate::estimates::inputs::Inputs;
 use crate::estimates::library::Library;
 use crate::estimates::limits;
+use crate::estimates::particulars::complete_particulars;
 use crate::estimates::propeller::Thrust;
 
 /// Particulars that regressions replace where the ship does not state them.
@@ -30,6 +32,8 @@ const REPLACED: [&str; 6] = [
     "yaw_gyradius_ratio",
     "propeller_pitch_ratio",
 ];
+/// The particular that follows from the speed where nothing gives it.
+const FULLNESS: &str = "block_coefficient";
 /// What other formulas need.
 const FIRST: [&str; 5] = ["m_x", "m_y", "J_z", "w_P0", "t_P"];
 const PARAMETERS: [&str; 12] = [
@@ -93,8 +97,45 @@ pub fn estimate(
     speed_m_s: f64,
 ) -> Result<Estimate, EstimateError> {
     let ship = vessel.name();
-    let mut inputs = Inputs::new(ship, &vessel.particulars, speed_m_s)?;
-    let mut around = Vec::new();
+    let mut particulars = vessel.particulars.clone();
+    complete_particulars(&mut particulars, [FULLNESS]);
+    let at = |particulars: &Particulars| regress(library, ship, particulars, speed_m_s);
+    let Regressed { around, coefficients, blades } = at(&particulars)?;
+    let [by_around, by_coefficients] = fullness_effect(&particulars, &at)?;
+    let spread = |values: &[Combined], effect: &DVector<f64>| {
+        covariance(values) + effect * effect.transpose()
+    };
+    let mut estimate = Estimate {
+        model: empty(library, vessel, speed_m_s),
+        around_covariance: spread(&around, &by_around),
+        coefficients_covariance: spread(&coefficients, &by_coefficients),
+        around,
+        coefficients,
+        thrust: ThrustCurve { series: library.series.clone(), blades },
+    };
+    estimate.fill(&particulars)?;
+    estimate
+        .model
+        .check(law)
+        .map_err(|(field, message)| EstimateError::Law(format!("{ship}: {field}: {message}")))?;
+    Ok(estimate)
+}
+
+/// What all regressions give for a ship.
+struct Regressed {
+    around: Vec<Combined>,
+    coefficients: Vec<Combined>,
+    blades: Option<f64>,
+}
+
+fn regress(
+    library: &Library,
+    ship: &str,
+    particulars: &Particulars,
+    speed_m_s: f64,
+) -> Result<Regressed, EstimateError> {
+    let mut inputs = Inputs::new(ship, particulars, speed_m_s)?;
+    let (mut around, mut coefficients) = (Vec::new(), Vec::new());
     for name in REPLACED {
         if inputs.get(name).is_none() {
             take(library, ship, &mut inputs, &mut around, name)?;
@@ -104,26 +145,31 @@ pub fn estimate(
     for name in FIRST.into_iter().chain(PARAMETERS) {
         take(library, ship, &mut inputs, &mut around, name)?;
     }
-    let mut coefficients = Vec::new();
     for name in COEFFICIENTS {
         take(library, ship, &mut inputs, &mut coefficients, name)?;
     }
-    let thrust =
-        ThrustCurve { series: library.series.clone(), blades: inputs.get("propeller_blades") };
-    let mut estimate = Estimate {
-        model: empty(library, vessel, speed_m_s),
-        around_covariance: covariance(&around),
-        coefficients_covariance: covariance(&coefficients),
-        around,
-        coefficients,
-        thrust,
+    Ok(Regressed { around, coefficients, blades: inputs.get("propeller_blades") })
+}
+
+/// What one standard error of an estimated block coefficient changes in what is around the
+/// coefficients, and in these; nothing where it is stated.
+fn fullness_effect(
+    particulars: &Particulars,
+    at: &dyn Fn(&Particulars) -> Result<Regressed, EstimateError>,
+) -> Result<[DVector<f64>; 2], EstimateError> {
+    let estimated = particulars.get(FULLNESS).filter(|one| one.source.starts_with(ESTIMATED));
+    let error = estimated.and_then(|one| one.standard_error).unwrap_or(0.0);
+    let moved = |by: f64| {
+        let mut other = particulars.clone();
+        other.get_mut(FULLNESS).into_iter().for_each(|one| one.value += by);
+        at(&other)
     };
-    estimate.fill(&vessel.particulars)?;
-    estimate
-        .model
-        .check(law)
-        .map_err(|(field, message)| EstimateError::Law(format!("{ship}: {field}: {message}")))?;
-    Ok(estimate)
+    let (fuller, finer) = (moved(error)?, moved(-error)?);
+    let half = |more: &[Combined], less: &[Combined]| {
+        let pairs = more.iter().zip(less).map(|(a, b)| 0.5 * (a.mean - b.mean));
+        DVector::from_iterator(more.len(), pairs)
+    };
+    Ok([half(&fuller.around, &finer.around), half(&fuller.coefficients, &finer.coefficients)])
 }
 
 fn take(
@@ -175,6 +221,7 @@ fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
         uncertainty: None,
         posterior: None,
         validity: None,
+        propulsion: None,
         branch: None,
     }
 }
@@ -295,7 +342,9 @@ fn with_around(
             "C_2" => both(&mut model, ["C_2_plus", "C_2_minus"], &of),
             "gamma_R" => both(&mut model, ["gamma_R_plus", "gamma_R_minus"], &of),
             name if REPLACED.contains(&name) => {
-                model.particulars.insert(name.to_owned(), of());
+                let mut quantity = of();
+                quantity.source = format!("{ESTIMATED}{}", quantity.source);
+                model.particulars.insert(name.to_owned(), quantity);
             }
             name => {
                 model.parameters.insert(name.to_owned(), of());

@@ -14,6 +14,7 @@ mod estimate;
 pub mod inputs;
 mod library;
 mod limits;
+pub mod particulars;
 mod propeller;
 mod regression;
 

@@ -3,6 +3,7 @@
 use askama::Template;
 use sistership_model::source::Source;
 use sistership_model::vessel::Status;
+use sistership_model_selection::Ladder;
 
 use super::coefficients::Coefficients;
 use super::content::RefinementContent;
@@ -39,6 +40,8 @@ struct RefinementPage<'a> {
     sailed: Table,
     why: Option<SourceChoice>,
     ladder: Option<Table>,
+    /// What the most similar ship leaves, refined with the l2 prior.
+    reference: Option<String>,
     /// Whether a learned branch was taken, and why.
     branch: Option<&'a str>,
     /// What to know first where the trials leave much open.
@@ -104,6 +107,7 @@ pub(crate) fn page(
         sailed: tables::sailed(&content.sailed),
         why: why(content),
         ladder: content.ladder.map(ladder::table),
+        reference: content.ladder.map(Ladder::reference),
         branch: content.ladder.and_then(|ladder| Some(ladder.branch.as_ref()?.reason.as_str())),
         wide: content.wide.clone(),
         particulars: tables::particulars(&provenance.particulars),

@@ -25,7 +25,11 @@ fn row(line: &Line) -> Row {
     let source = Cell::new(line.source.as_deref().unwrap_or("none"));
     let figure = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 3)));
     let cells = vec![
-        if line.chosen { source.mark("taken", "chosen") } else { source },
+        match (line.chosen, line.reference) {
+            (true, _) => source.mark("taken", "chosen"),
+            (false, true) => source.mark("reference", "note"),
+            (false, false) => source,
+        },
         Cell::new(&line.law),
         Cell::new(estimator(line.rung)),
         Cell::new(line.coefficients.to_string()),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use sistership_identification::refine::Settings;
+use sistership_model::estimated_particulars::{EstimatedParticular, SCALED, estimated_particulars};
 use sistership_model::law::Parameter;
 use sistership_model::model::DERIVED;
 use sistership_model::quantity::Quantity;
@@ -17,6 +18,7 @@ use crate::words;
 #[derive(Debug, Serialize)]
 pub(crate) struct Provenance<'a> {
     pub particulars: Vec<StatedQuantity<'a>>,
+    pub estimated_particulars: Vec<EstimatedParticular>,
     pub parameters: Vec<StatedQuantity<'a>>,
     pub steering: &'a Steering,
     pub ship_sources: &'a BTreeMap<String, Source>,
@@ -50,6 +52,7 @@ impl<'a> Provenance<'a> {
                 .iter()
                 .map(|(name, quantity)| particular(name, quantity))
                 .collect(),
+            estimated_particulars: estimated_particulars(&model.particulars),
             parameters: model
                 .parameters
                 .iter()
@@ -94,7 +97,7 @@ fn kind(source: &str) -> Option<&'static str> {
     match source {
         DERIVED => Some("derived"),
         "approach-speed" => Some("from trials"),
-        _ if source.starts_with("scaled from") => Some("scaled"),
+        _ if source.starts_with(SCALED) => Some("scaled"),
         _ if is_estimated(source) => Some("estimated"),
         _ if source.starts_with("mean of what") => Some("of a population"),
         _ => None,

@@ -1,6 +1,7 @@
 //! The headline and the errors before and after.
 
 use serde::Serialize;
+use sistership_identification::refine::TRIALS_ALONE;
 use sistership_model::vessel::Status;
 
 use super::input::RefinementInput;
@@ -88,8 +89,8 @@ impl<'a> HeldOutErrors<'a> {
 /// What such a comparison is worth: of a law that lists no coefficient a source says something only
 /// where it is fitted.
 fn without_coefficients(input: &RefinementInput<'_>) -> String {
-    let (source, ship) = (&input.refinement.source, &input.refinement.ship);
-    let who = match source.strip_prefix(ship.as_str()).is_some_and(|rest| rest.starts_with('/')) {
+    let source = &input.refinement.source;
+    let who = match source == TRIALS_ALONE {
         true => "No ship was the source".to_owned(),
         false => format!("What {source} says is the prior, not what is compared"),
     };

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use sistership_jobs::derive::corrected_with_uncertainty;
 use sistership_learned::{
-    BranchChoice, BranchKind, BranchSettings, Judgement, Kinds, Training, Weights, choose, judge,
-    train, with_branch,
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Judgement, Kinds,
+    Training, attach, choose, judge, train, with_branch,
 };
 use sistership_model::branch::BranchMode;
 use sistership_model::{Law, Model, Trial, Zoo};
@@ -118,7 +119,7 @@ impl From<Mode> for BranchMode {
 /// A branch with what it was trained by and what it is worth.
 struct Trained {
     model: Model,
-    weights: Weights,
+    weights: Vec<u8>,
     training: Training,
     judgement: Option<Judgement>,
 }
@@ -140,11 +141,11 @@ pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     let mut files = WrittenFiles { out: arguments.out.as_deref(), report: None };
     guard(&files, &read)?;
     note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
-    let (choice, trained) = trained(&model, &law, &trials::trials(&read), &settings)?;
+    let (choice, trained) = trained((zoo, &model, &law), &trials::trials(&read), &settings)?;
     match (out, beside_file, &trained) {
         (Some(out), Some(beside), Some(trained)) => {
             // Weights first: a model that is there has them.
-            beside.write(&trained.weights.bytes().map_err(refused)?)?;
+            beside.write(&trained.weights)?;
             out.write(model_file(zoo, &trained.model, "with a learned branch")?.as_bytes())?;
         }
         (Some(_), ..) => note("no branch is taken, and --out writes nothing"),
@@ -179,8 +180,7 @@ fn refused(error: impl std::fmt::Display) -> Failure {
 
 /// The branch that is asked for, or the one that trials left out take.
 fn trained(
-    model: &Model,
-    law: &Law,
+    (zoo, model, law): (&Zoo, &Model, &Law),
     trials: &[&Trial],
     settings: &BranchSettings,
 ) -> Result<(Option<BranchChoice>, Option<Trained>), Failure> {
@@ -189,8 +189,9 @@ fn trained(
             note(&format!("trying {} on trials left out", kind.name()));
             true
         };
-        let choice =
-            choose(model, law, trials, (settings, Kinds::Every), &told).map_err(refused)?;
+        let folds = HeldOutFold::of_one(model, trials.len());
+        let on = HeldOutTrials { law, trials, folds: &folds };
+        let choice = choose(model, &on, (settings, Kinds::Every), &told).map_err(refused)?;
         match choice.as_ref().and_then(|choice| choice.taken) {
             Some(kind) => (choice, settings.of(kind)),
             None => return Ok((choice, None)),
@@ -202,7 +203,12 @@ fn trained(
     note("training the branch, and judging it on trials left out");
     let (branch, weights) = train(model, law, trials, &training).map_err(refused)?;
     let judgement = judge(model, law, trials, &training).map_err(refused)?;
-    let model = with_branch(model, branch);
+    let weights = weights.bytes().map_err(refused)?;
+    let mut model = with_branch(model, branch);
+    attach(&mut model, &weights).map_err(refused)?;
+    note("learning what these trials leave open beside it");
+    let effects: Vec<_> = zoo.effects().cloned().collect();
+    let model = corrected_with_uncertainty(model, law, &effects, trials);
     Ok((choice, Some(Trained { model, weights, training, judgement })))
 }
 

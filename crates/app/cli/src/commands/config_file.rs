@@ -40,6 +40,10 @@ pub struct ConfigFile {
     pub connections: Option<u32>,
     /// `--connections-per-address`
     pub connections_per_address: Option<u32>,
+    /// `--trusted-proxy`, all of them
+    pub trusted_proxies: Option<Vec<String>>,
+    /// `--forwarded-header`
+    pub forwarded_header: Option<String>,
     /// `--lease-s`
     pub lease_s: Option<f64>,
     /// `--drain-s`

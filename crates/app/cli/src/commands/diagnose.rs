@@ -1,6 +1,6 @@
 //! `sistership diagnose`: what a model lacks, by the trials that it has not seen.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
@@ -9,7 +9,6 @@ use serde_json::Value;
 use sistership_diagnosis::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_report::{DiagnosisInput, render_diagnosis};
-use sistership_simulation::PlantError;
 
 use super::diagnose_text;
 use super::written::{WrittenFiles, guard, model_file, promised};
@@ -19,6 +18,7 @@ use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
 use crate::values::{odds, positive};
+use crate::weights;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -87,19 +87,25 @@ struct DiagnoseDocument<'a> {
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let named: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
+    let beside = arguments.out.as_deref().map(weights::beside);
     let files = both(
-        promised(arguments.out.as_deref(), &named),
+        both(promised(arguments.out.as_deref(), &named), promised(beside.as_deref(), &named)),
         promised(arguments.report.as_deref(), &named),
     );
-    let asked = both(settings(zoo, arguments), model(zoo, &arguments.model));
+    let asked = both(settings(zoo, arguments), named::model(zoo, &arguments.model));
     let read = both(files, trials::read(&arguments.trials));
-    let ((settings, (model, law)), ((out, report), read)) = both(asked, read)?;
+    let ((settings, (model, law)), (((out, beside), report), read)) = both(asked, read)?;
     trials::remark_other_ship(&read, &model.ship);
     note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
     let mut files =
         WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
     guard(&files, &read)?;
     let diagnosis = diagnosed(zoo, &model, &law, &settings, &read)?;
+    if let (Some(found), Some(_), Some(file)) = (&diagnosis.model, &out, beside) {
+        // Weights first: a model that is there has them.
+        let kept = weights::read_beside(Path::new(&arguments.model), found)?;
+        kept.map_or(Ok(()), |bytes| file.write(&bytes))?;
+    }
     let kept = written(zoo, out, &diagnosis)?;
     if let Some(report) = report {
         report.write(&report_html(&model, &law, &diagnosis, &read)?)?;
@@ -107,16 +113,6 @@ pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     files.out = files.out.filter(|_| kept);
     let document = DiagnoseDocument { diagnosis: printed(&diagnosis)?, files };
     output::print(arguments.json, &document, || diagnose_text::text(&diagnosis, &model, &files))
-}
-
-/// A model without a learned branch.
-fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
-    let (model, law) = named::model(zoo, name)?;
-    if model.branch.is_some() {
-        let error = PlantError::Branch(model.name);
-        return Err(Failure::Refused(format!("{name}: {error}")));
-    }
-    Ok((model, law))
 }
 
 /// What can be seen in the call alone is a call that is wrong.

@@ -6,8 +6,12 @@ use std::sync::Arc;
 use clap::Args;
 use serde::Serialize;
 use sistership_assessment::uncertainty::Band;
+use sistership_model::estimated_particulars::{
+    EstimatedParticular, estimated_particulars, estimated_words,
+};
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_priors::estimates::particulars::complete_particulars;
 use sistership_priors::estimates::{
     Estimate, EstimateBands, LAW, Library, Spread, estimate as estimated, estimate_bands,
 };
@@ -24,9 +28,9 @@ Examples:
   sistership estimate --ship pcc --out pcc-estimate.yaml
   sistership manoeuvre --model pcc-estimate.yaml --all
 
-The ship needs lpp_m, beam_m, draught_m, and displacement_m3, mass_kg or block_coefficient; rudder,
-propeller and the rest are taken from the medians of the zoo where it does not state them. What
-comes out is an estimate by published regressions (models/regressions), not a measurement.";
+The ship needs lpp_m, beam_m and draught_m. What else it does not state (block coefficient, speed,
+centre of gravity, rudder, propeller) is estimated and named with its band. What comes out is an
+estimate by published regressions (models/regressions), not a measurement.";
 
 /// Estimate a model of a ship from its particulars, with uncertainty bands of the standard
 /// manoeuvres.
@@ -36,7 +40,8 @@ pub struct EstimateArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long, value_name = "SHIP")]
     ship: String,
-    /// Approach speed; by default that of the ship's first model, else its service speed.
+    /// Approach speed; by default that of the ship's first model, else its service speed, stated or
+    /// estimated.
     #[arg(long, value_name = "U")]
     speed_m_s: Option<f64>,
     /// Write the model to a file.
@@ -62,6 +67,7 @@ struct EstimateDocument<'a> {
     manoeuvres: &'a StandardManoeuvres,
     bands: &'a [Band],
     values: &'a [Spread],
+    estimated_particulars: Vec<EstimatedParticular>,
     model: &'a Model,
     #[serde(skip_serializing_if = "Option::is_none")]
     out: Option<&'a PathBuf>,
@@ -73,6 +79,7 @@ struct EstimateDocument<'a> {
 /// Names the particulars that are missing; the model cannot be written.
 pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
     let vessel = named::ship(zoo, &asked.ship)?;
+    let vessel = with_speed(&vessel, asked.speed_m_s);
     let inputs = [PathBuf::from(&asked.ship)];
     let file = promised(asked.out.as_deref(), &inputs)?;
     let (estimate, law) = estimate_of(zoo, &vessel, asked.speed_m_s)?;
@@ -95,10 +102,22 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
         manoeuvres: &bands.manoeuvres,
         bands: &bands.figures,
         values: &values,
+        estimated_particulars: estimated_particulars(&estimate.model.particulars),
         model: &estimate.model,
         out: asked.out.as_ref(),
     };
     output::print(asked.json, &document, || text(&vessel, &document, &bands))
+}
+
+/// The ship with a service speed that is estimated where nothing says how fast it sails.
+pub(super) fn with_speed(vessel: &Vessel, asked: Option<f64>) -> Vessel {
+    let mut vessel = vessel.clone();
+    let own = vessel.file.models.first().and_then(|model| model.speed_m_s);
+    if asked.or(own).is_none() {
+        let needed = ["block_coefficient", "service_speed_m_s"];
+        complete_particulars(&mut vessel.particulars, needed);
+    }
+    vessel
 }
 
 /// The estimate of a ship, and its law.
@@ -128,7 +147,7 @@ fn speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {
             Err(Failure::Call(format!("--speed-m-s {speed} should be above 0 and below 50 m/s")))
         }
         None => Err(Failure::Refused(format!(
-            "{}: give `service_speed_m_s` among its particulars, or --speed-m-s",
+            "{}: give `lpp_m` among its particulars, or --speed-m-s",
             vessel.name()
         ))),
     }
@@ -144,9 +163,11 @@ fn text(vessel: &Vessel, document: &EstimateDocument<'_>, bands: &EstimateBands)
     );
     let written =
         document.out.map_or(String::new(), |out| format!("\nmodel written to {}\n", out.display()));
+    let estimated = estimated_words(&document.model.particulars);
+    let estimated = estimated.map(|words| format!("remark: {words}\n")).unwrap_or_default();
     format!(
-        "{head}\n{}\n{}\nBands hold 95 % of {} models drawn from the estimate's covariance; {} of \
-         them left the physical range in some manoeuvre.\n{written}",
+        "{head}\n{}\n{}\n{estimated}Bands hold 95 % of {} models drawn from the estimate's \
+         covariance; {} of them left the physical range in some manoeuvre.\n{written}",
         manoeuvres(bands),
         values(document.values),
         document.draws,

@@ -24,8 +24,8 @@ Examples:
   sistership export my-ship --format bundle --sign-key key.pem --data-dir here --out my-ship.bundle
   sistership import --bundle my-ship.bundle --signed-by key.pub.pem --data-dir there
 
-The export contains what `sistership manoeuvre` simulates: the law with the effects of the model, the
-steering gear, and a current as an input. A model with a learned branch is refused.
+The export contains what `sistership manoeuvre` simulates: the law with the effects and the learned
+correction of the model, the steering gear, and a current as an input.
 
 A bundle holds a ship of a store: its versions with all inputs, trials and reports. Another store
 imports it with all hashes and the whole lineage.";

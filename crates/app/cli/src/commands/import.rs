@@ -6,27 +6,32 @@ use clap::Args;
 use serde::Serialize;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
-use sistership_trials::{Guess, Loaded, lacking, load_path, propose};
+use sistership_trials::{
+    Exclusion, GivenColumn, Guess, Loaded, ManifestFile, ProposalRequest, Role, find_faults,
+    lacking, load_path, propose_files,
+};
 
 use super::import_bundle;
 use super::import_log::{SearchedLog, searched};
+use super::import_text;
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::files::PromisedFile;
-use crate::output::{self, count, note};
-use crate::table::TextTable;
+use crate::output;
 use crate::trials::place;
 use crate::values::positive;
 
 const EXAMPLES: &str = "\
 Examples:
-  sistership import log/*.csv --ship my-ship
+  sistership import log/*.csv
   sistership import voyage.nmea --ship my-ship --out trials.yaml
-  sistership import month.parquet --ship mariner --out trials.yaml
+  sistership import runs/*/*.csv --column 'Azi=delta:deg:reversed' --explain
   sistership import --bundle my-ship.bundle --data-dir sistership-data
 
-Every guess is shown with its reason; those marked `look` are to be read over. The manifest is then
-used in place of the files: sistership refine --trials trials.yaml
+Columns are identified by their names (in nine languages), their values and the relations between
+them; what was settled by those is said, and where two readings are nearly as likely one question is
+asked, with the `--column` that answers it. Faulty values are excluded in the manifest, which may be
+edited. It is then used in place of the files: sistership refine --trials trials.yaml
 
 Of a log of many hours the stretches in which rudder or propeller move beyond course keeping become
 trials, each with the reason; the table also says what is left, steady course keeping.
@@ -37,17 +42,24 @@ Exit status 1 when a file cannot be read, or is refused by the manifest that was
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ImportArguments {
-    /// Files of one folder: CSV, Parquet, Excel, MATLAB 5, NMEA 0183.
+    /// Files: CSV and its kin, Parquet, Excel, MATLAB 5, NMEA 0183.
     #[arg(required_unless_present = "bundle")]
     files: Vec<PathBuf>,
-    /// The ship that the trials are of.
-    #[arg(long, value_name = "NAME", required_unless_present = "bundle")]
-    ship: Option<String>,
-    /// Where the manifest goes; `trials.yaml` beside the files where absent.
+    /// The ship that the trials are of; `refine --ship` may name it instead.
+    #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true)]
+    ship: String,
+    /// Where the manifest goes; by default `trials.yaml` in the folder that all files are in.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// What a column is, where import asks or errs: HEADER=CHANNEL[:UNIT[:reversed]], nothing after
+    /// `=` for a column that is left out; `#3` is the third column of a file without a header.
+    #[arg(long = "column", value_name = "COLUMN", value_parser = given_column)]
+    columns: Vec<GivenColumn>,
+    /// Every column of every file with its reason.
+    #[arg(long)]
+    explain: bool,
     /// The ship's length between perpendiculars: stretches of a long log are told by lengths
-    /// sailed. Where absent, that of the zoo's ship of this name, or else one that suits the speed.
+    /// sailed. By default that of the zoo's ship of this name, or else one that suits the speed.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     length: Option<f64>,
     /// Take a ship that `sistership export --format bundle` wrote into a store.
@@ -63,48 +75,77 @@ pub struct ImportArguments {
     json: bool,
 }
 
-impl ImportArguments {
-    /// The ship's name; clap has seen that there is one.
-    fn ship(&self) -> &str {
-        self.ship.as_deref().unwrap_or_default()
-    }
-}
-
 /// What was made of the files.
 #[derive(Serialize)]
-struct Import {
-    manifest: PathBuf,
-    guesses: Vec<GuessRow>,
+pub(super) struct Import {
+    pub manifest: PathBuf,
+    pub guesses: Vec<GuessRow>,
+    /// Remarks on columns together.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Files of which stretches were taken.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    logs: Vec<SearchedLog>,
-    trials: Vec<String>,
-    errors: Vec<String>,
+    pub logs: Vec<SearchedLog>,
+    /// What is left out of the files as faulty.
+    pub excluded: Vec<Exclusion>,
+    pub trials: Vec<String>,
+    pub errors: Vec<String>,
     /// By law, what the trials do not have; laws for which nothing is missing are empty.
-    lacking: Vec<LawNeeds>,
+    pub lacking: Vec<LawNeeds>,
+    #[serde(skip)]
+    pub explain: bool,
 }
 
 #[derive(Serialize)]
-struct GuessRow {
-    file: String,
-    column: String,
-    channel: Option<String>,
-    unit: Option<String>,
-    certain: bool,
-    why: String,
+pub(super) struct GuessRow {
+    pub file: String,
+    pub column: String,
+    pub channel: Option<String>,
+    pub unit: Option<String>,
+    pub reversed: bool,
+    pub certain: bool,
+    pub why: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub question: Option<String>,
 }
 
 #[derive(Serialize)]
-struct LawNeeds {
-    law: String,
-    lacks: Vec<String>,
+pub(super) struct LawNeeds {
+    pub law: String,
+    pub lacks: Vec<String>,
 }
 
 impl From<Guess> for GuessRow {
     fn from(guess: Guess) -> Self {
-        let Guess { file, column, channel, unit, why, certain } = guess;
-        Self { file, column, channel, unit, certain, why }
+        let Guess { file, column, channel, unit, reversed, why, certain, question } = guess;
+        Self { file, column, channel, unit, reversed, certain, why, question }
     }
+}
+
+/// A column as the user settles it.
+fn given_column(text: &str) -> Result<GivenColumn, String> {
+    let (header, rest) = text
+        .rsplit_once('=')
+        .ok_or("write HEADER=CHANNEL[:UNIT[:reversed]], or HEADER= to leave the column out")?;
+    let mut parts = rest.split(':');
+    let name = parts.next().unwrap_or_default().trim();
+    let role = match name {
+        "" => None,
+        name => Some(Role::by_name(name).ok_or_else(|| format!("`{name}` is not a channel"))?),
+    };
+    let unit = parts.next().map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty());
+    if let (Some(role), Some(unit)) = (role, &unit) {
+        let known: Vec<&str> = role.kind().units().iter().map(|unit| unit.name).collect();
+        if !known.contains(&unit.as_str()) {
+            return Err(format!("`{unit}` does not fit {name}; use one of {}", known.join(", ")));
+        }
+    }
+    let is_reversed = match parts.next() {
+        None => unit.as_ref().map(|_| false),
+        Some("reversed") => Some(true),
+        Some(other) => return Err(format!("`{other}` is not known; write `reversed` or nothing")),
+    };
+    Ok(GivenColumn { header: header.to_owned(), role, unit, is_reversed })
 }
 
 /// Runs the command.
@@ -121,28 +162,57 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     }
     let promised = PromisedFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let mut proposal = propose(arguments.ship(), &files).map_err(all)?;
-    let logs = searched(&mut proposal.manifest, folder(&arguments.files), length(zoo, arguments));
+    let folder = out.parent().unwrap_or(Path::new(""));
+    let request = ProposalRequest {
+        ship: &arguments.ship,
+        files: &files,
+        folder: Some(folder),
+        given: &arguments.columns,
+    };
+    let mut proposal = propose_files(&request).map_err(all)?;
+    let logs = searched(&mut proposal.manifest, folder, length(zoo, arguments));
+    let excluded = cleaned(&mut proposal.manifest, folder)?;
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
-    let guesses = proposal.guesses.into_iter().map(GuessRow::from).collect();
-    let import = Import { logs, ..checked(zoo, out, guesses)? };
-    output::print(arguments.json, &import, || text_of(&import))?;
+    let (guesses, notes) = (proposal.guesses, proposal.notes);
+    let guesses = guesses.into_iter().map(GuessRow::from).collect();
+    let explain = arguments.explain;
+    let import = Import { logs, notes, guesses, excluded, explain, ..checked(zoo, out)? };
+    output::print(arguments.json, &import, || import_text::text(&import))?;
     if import.errors.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Faults of the files, which the manifest then excludes. They are looked for in a copy beside its
+/// place, as the files are read from there.
+fn cleaned(manifest: &mut ManifestFile, folder: &Path) -> Result<Vec<Exclusion>, Failure> {
+    let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let draft = tempfile::Builder::new().prefix(".import").suffix(".yaml").tempfile_in(place);
+    let draft = draft.map_err(|error| about_file(place, error))?;
+    let text = manifest.to_yaml().map_err(|error| about_file(draft.path(), error))?;
+    std::fs::write(draft.path(), text).map_err(|error| about_file(draft.path(), error))?;
+    let excluded = find_faults(draft.path())?;
+    manifest.declarations.exclude.clone_from(&excluded);
+    Ok(excluded)
 }
 
 fn beside(files: &[PathBuf]) -> PathBuf {
     folder(files).join("trials.yaml")
 }
 
-fn folder(files: &[PathBuf]) -> &Path {
-    files.first().and_then(|file| file.parent()).unwrap_or_else(|| Path::new(""))
+/// The folder that all files are in, at some depth.
+fn folder(files: &[PathBuf]) -> PathBuf {
+    let mut folders = files.iter().map(|file| file.parent().unwrap_or(Path::new("")));
+    let first = folders.next().unwrap_or(Path::new("")).to_path_buf();
+    folders.fold(first, |common, folder| {
+        let shared = common.components().zip(folder.components()).take_while(|(a, b)| a == b);
+        shared.map(|(part, _)| part).collect()
+    })
 }
 
 /// The ship's length: as given, or of the ship of that name in the zoo.
 fn length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
     let known =
-        || zoo.vessel(arguments.ship())?.particulars.get("lpp_m").map(|quantity| quantity.value);
+        || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
     arguments.length.or_else(known)
 }
 
@@ -152,7 +222,7 @@ fn all(errors: Vec<FileError>) -> Failure {
 }
 
 /// The manifest held against its files, and their trials against the laws.
-fn checked(zoo: &Zoo, manifest: PathBuf, guesses: Vec<GuessRow>) -> Result<Import, Failure> {
+fn checked(zoo: &Zoo, manifest: PathBuf) -> Result<Import, Failure> {
     let Loaded { trials: read, .. } = load_path(&manifest)?;
     let (mut trials, mut errors) = (Vec::new(), Vec::new());
     for one in read {
@@ -166,14 +236,19 @@ fn checked(zoo: &Zoo, manifest: PathBuf, guesses: Vec<GuessRow>) -> Result<Impor
             ),
         }
     }
-    for warning in trials.iter().flat_map(|trial| {
-        trial.warnings.iter().map(move |warning| format!("{}: {}", trial.name, place(warning)))
-    }) {
-        note(&format!("note: {warning}"));
-    }
     let needs = trials.first().map_or_else(Vec::new, |trial| needs(zoo, trial));
     let names = trials.into_iter().map(|trial| trial.name).collect();
-    Ok(Import { manifest, guesses, logs: Vec::new(), trials: names, errors, lacking: needs })
+    Ok(Import {
+        manifest,
+        guesses: Vec::new(),
+        notes: Vec::new(),
+        logs: Vec::new(),
+        excluded: Vec::new(),
+        trials: names,
+        errors,
+        lacking: needs,
+        explain: false,
+    })
 }
 
 fn needs(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
@@ -182,36 +257,4 @@ fn needs(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
         lacks: lacking(law, trial).iter().map(ToString::to_string).collect(),
     };
     zoo.laws().map(of).collect()
-}
-
-fn text_of(import: &Import) -> String {
-    let mut table = TextTable::new(["file", "column", "read as", "unit", "", "why"]);
-    for guess in &import.guesses {
-        let channel = guess.channel.clone().unwrap_or_else(|| "-".into());
-        let unit = guess.unit.clone().unwrap_or_default();
-        let look = if guess.certain { "" } else { "look" };
-        let cells = [&guess.file, &guess.column, &channel, &unit];
-        let cells = cells.into_iter().cloned();
-        table.row(cells.chain([look.to_owned(), guess.why.clone()]));
-    }
-    let logs: String = import.logs.iter().map(ToString::to_string).collect();
-    let errors: String = import.errors.iter().map(|error| format!("error: {error}\n")).collect();
-    let trials = count(import.trials.len(), "trial");
-    format!(
-        "{table}\n{logs}{errors}{}\n{}: {trials} read\n",
-        laws(&import.lacking),
-        import.manifest.display()
-    )
-}
-
-/// Which laws can be fitted, and what the others lack.
-fn laws(needs: &[LawNeeds]) -> String {
-    let (ready, lacking): (Vec<&LawNeeds>, Vec<&LawNeeds>) =
-        needs.iter().partition(|need| need.lacks.is_empty());
-    let names: Vec<&str> = ready.iter().map(|need| need.law.as_str()).collect();
-    let can = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-    let lines: String =
-        lacking.iter().map(|need| format!("  {}: {}\n", need.law, need.lacks.join("; "))).collect();
-    let others = if lines.is_empty() { String::new() } else { format!("Others:\n{lines}") };
-    format!("Laws that these trials can be fitted with: {can}\n{others}")
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use sistership_assessment::uncertainty::{Bands, Sampling, bands};
+use sistership_model::environment::Environment;
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, further};
@@ -91,7 +92,9 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
     let file = manoeuvre.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
-    let remarks = remarks(manoeuvre, &mut model, &law);
+    let mut remarks = remarks(manoeuvre, &mut model, &law);
+    let environment = Environment { depth_m: manoeuvre.depth_m, ..Environment::default() };
+    remarks.extend(environment.uncovered(&model).into_iter().map(|one| one.message));
     let ship = ship(manoeuvre, &model, &law)?;
     let settings = settings(manoeuvre);
     let usual = manoeuvre.turn.is_empty() && manoeuvre.zigzag.is_empty();

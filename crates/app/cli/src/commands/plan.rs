@@ -7,7 +7,7 @@ use clap::Args;
 use sistership_model::{Effect, Law, Model, Zoo, particulars};
 use sistership_trial_design::{Instruments, Plan, PlanError, PlanRequest, plan};
 
-use super::estimate::estimate_of;
+use super::estimate::{estimate_of, with_speed};
 use super::plan_text;
 use crate::failure::{Failure, both};
 use crate::trials::{self, ReadTrial};
@@ -62,10 +62,11 @@ pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
 fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     match named::ship(zoo, name) {
         Ok(vessel) if vessel.file.models.is_empty() => {
+            let vessel = with_speed(&vessel, None);
             let (estimate, law) = estimate_of(zoo, &vessel, None)?;
             Ok((estimate.model, law))
         }
-        _ => named::foundation(zoo, name),
+        _ => named::model(zoo, name),
     }
 }
 

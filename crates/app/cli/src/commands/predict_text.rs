@@ -34,7 +34,8 @@ pub(super) fn text(answer: &Value) -> String {
     for at in (0..samples(answer)).step_by(every) {
         table.row(cells(&answer["trajectory"], at));
     }
-    format!("{head}{table}{}{}{}", band(answer), stopped(answer), outside(answer))
+    let ends = [band(answer), stopped(answer), outside(answer), outside_trials(answer)];
+    format!("{head}{table}{}", ends.concat())
 }
 
 fn samples(answer: &Value) -> usize {
@@ -81,6 +82,14 @@ fn stopped(answer: &Value) -> String {
         Some(reason) => format!("STOPPED after {} s: {reason}\n", stopped["t_s"]),
         None => String::new(),
     }
+}
+
+/// A line for each of wind, current and depth that the model's trials did not have.
+fn outside_trials(answer: &Value) -> String {
+    let inputs = answer["outside_trials"].as_array().into_iter().flatten();
+    let line =
+        |input: &Value| Some(format!("OUTSIDE the trials: {}\n", input["message"].as_str()?));
+    inputs.filter_map(line).collect()
 }
 
 fn outside(answer: &Value) -> String {

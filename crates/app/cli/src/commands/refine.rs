@@ -9,6 +9,7 @@ use sistership_identification::refine::{
     Constraints, Method, Prior, Refinement, Request, Settings, StraightLine, refine,
 };
 use sistership_jobs::derive::with_uncertainty;
+use sistership_model::estimated_particulars::{EstimatedParticular, estimated_particulars};
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_model_selection::{Ladder, population};
 use sistership_priors::similarity::RankedSource;
@@ -134,6 +135,7 @@ impl Constrain {
 struct RefineDocument<'a> {
     #[serde(flatten)]
     refinement: &'a Refinement,
+    estimated_particulars: Vec<EstimatedParticular>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ranking: Option<&'a [RankedSource]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -179,7 +181,7 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         None => refined(zoo, (&target, &source), laws, &settings, &read)?,
     };
     let refinement = calibrated(zoo, refinement, &law, &read);
-    let branch = TrainedBeside::new(&refinement, &law, ladder.as_ref(), &read)?;
+    let branch = TrainedBeside::new((zoo, &law), &refinement, ladder.as_ref(), &read)?;
     if let Some(out) = out {
         let model = branch.as_ref().map_or(&refinement.model, |branch| &branch.model);
         // Weights first: a model that is there has them.
@@ -194,7 +196,14 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
     let weights = beside.as_deref().filter(|_| branch.is_some());
     let ladder = ladder.as_ref();
-    let document = RefineDocument { refinement: &refinement, ranking, ladder, files, weights };
+    let document = RefineDocument {
+        refinement: &refinement,
+        estimated_particulars: estimated_particulars(&refinement.model.particulars),
+        ranking,
+        ladder,
+        files,
+        weights,
+    };
     output::print(arguments.json, &document, || {
         let tried = ladder.map_or(String::new(), refine_text::ladder);
         let text = refine_text::text(&refinement, &source, ranking, &files);

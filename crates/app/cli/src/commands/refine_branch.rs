@@ -1,8 +1,9 @@
 //! The learned branch beside a refinement that names nothing, where one wins on trials left out.
 
 use sistership_identification::refine::Refinement;
-use sistership_learned::{BranchSettings, Weights, train, with_branch};
-use sistership_model::{Law, Model, Trial};
+use sistership_jobs::derive::corrected_with_uncertainty;
+use sistership_learned::{BranchSettings, Weights, attach, train, with_branch};
+use sistership_model::{Law, Model, Trial, Zoo};
 use sistership_model_selection::Ladder;
 
 use crate::failure::Failure;
@@ -14,7 +15,7 @@ use crate::trials::{self, ReadTrial};
 pub struct TrainedBeside {
     /// The model.
     pub model: Model,
-    weights: Weights,
+    weights: Vec<u8>,
 }
 
 impl TrainedBeside {
@@ -23,8 +24,8 @@ impl TrainedBeside {
     /// # Errors
     /// It cannot be trained.
     pub fn new(
+        (zoo, law): (&Zoo, &Law),
         refinement: &Refinement,
-        law: &Law,
         ladder: Option<&Ladder>,
         read: &[ReadTrial],
     ) -> Result<Option<Self>, Failure> {
@@ -40,7 +41,18 @@ impl TrainedBeside {
         let settings = BranchSettings::default().of(kind);
         let training = settings.training(model, law, &fitted).map_err(refused)?;
         let (branch, weights) = train(model, law, &fitted, &training).map_err(refused)?;
-        Ok(Some(Self { model: with_branch(model, branch), weights }))
+        let beside = Self::attached(with_branch(model, branch), &weights)?;
+        note("learning what these trials leave open beside it");
+        let effects: Vec<_> = zoo.effects().cloned().collect();
+        let model = corrected_with_uncertainty(beside.model, law, &effects, &fitted);
+        Ok(Some(Self { model, weights: beside.weights }))
+    }
+
+    /// A model with the weights that it names.
+    fn attached(mut model: Model, weights: &Weights) -> Result<Self, Failure> {
+        let weights = weights.bytes().map_err(refused)?;
+        attach(&mut model, &weights).map_err(refused)?;
+        Ok(Self { model, weights })
     }
 
     /// Writes the weights.
@@ -48,7 +60,7 @@ impl TrainedBeside {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, file: PromisedFile) -> Result<(), Failure> {
-        file.write(&self.weights.bytes().map_err(refused)?)
+        file.write(&self.weights)
     }
 }
 

@@ -81,14 +81,19 @@ pub fn ladder(ladder: &Ladder) -> String {
             Rung::Trajectory => "trajectory",
         };
         let figures = [line.error, line.standard_error, line.variance].map(optional);
-        let taken = if line.chosen { "yes" } else { "" };
+        let taken = match (line.chosen, line.reference) {
+            (true, _) => "yes",
+            (false, true) => "reference",
+            (false, false) => "",
+        };
         let names = [source, line.law.clone(), rung.to_owned(), line.coefficients.to_string()];
         let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
         table.row(names.into_iter().chain(figures).chain(end));
     }
     let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
     let branch = ladder.branch.as_ref().map_or("", |choice| &choice.reason);
-    format!("Tried: {what}\n{table}\nLearned branch: {branch}\n\n")
+    let reference = ladder.reference();
+    format!("Tried: {what}\n{table}\n{reference}\n\nLearned branch: {branch}\n\n")
 }
 
 /// A law without roll leaves roll where it was: its errors would say nothing.

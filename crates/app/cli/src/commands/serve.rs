@@ -4,7 +4,9 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_api::{Config, DEFAULT_LISTEN, Limits, Running, Server, StartError};
+use sistership_api::{
+    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, Running, Server, StartError, TrustedProxies,
+};
 use sistership_auth::openid::OpenIdArguments;
 
 use super::config_file::ConfigFile;
@@ -66,6 +68,13 @@ pub struct ServeArguments {
     /// connections].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
     connections_per_address: Option<u32>,
+    /// A proxy, by its address or network such as 10.0.0.0/8, whose word for the address of a client
+    /// is taken; may be given several times. Limits and the audit then know the client's.
+    #[arg(long, value_name = "CIDR", env = "SISTERSHIP_TRUSTED_PROXIES", value_delimiter = ',')]
+    trusted_proxy: Vec<String>,
+    /// The header in which these write it, x-forwarded-for or forwarded [default: x-forwarded-for].
+    #[arg(long, value_name = "NAME", env = "SISTERSHIP_FORWARDED_HEADER")]
+    forwarded_header: Option<String>,
     /// Allow webhooks to addresses of private networks and over plain http; administrators set the
     /// addresses.
     #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
@@ -121,11 +130,29 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
     limits.job_memory =
         memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
+    config.proxies = proxies(serve, file)?;
     config.accounts = serve.accounts || file.accounts.unwrap_or(false);
     config.openid =
         serve.openid.settings(&file.oidc).map_err(|error| Failure::Call(error.to_string()))?;
     config.check().map_err(refused)?;
     Ok(config)
+}
+
+/// The proxies of the flags, else of the file.
+fn proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, Failure> {
+    let named = match serve.trusted_proxy.is_empty() {
+        true => file.trusted_proxies.as_deref().unwrap_or_default(),
+        false => &serve.trusted_proxy,
+    };
+    let wrong = |field: &str, message: String| Failure::Call(format!("{field}: {message}"));
+    let network = |text: &String| text.parse().map_err(|why| wrong("trusted_proxy", why));
+    let header = serve.forwarded_header.as_ref().or(file.forwarded_header.as_ref());
+    Ok(TrustedProxies {
+        networks: named.iter().map(network).collect::<Result<_, _>>()?,
+        header: header
+            .map_or(Ok(ForwardedHeader::default()), |name| name.parse())
+            .map_err(|why| wrong("forwarded_header", why))?,
+    })
 }
 
 /// Bounds on connections.

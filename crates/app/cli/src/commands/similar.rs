@@ -1,12 +1,18 @@
-//! `sistership similar`: the zoo ranked by likeness to a ship.
+//! `sistership similar`: the ships of the zoo or of a store, ranked by similarity to a ship.
 
 use std::path::PathBuf;
 
 use clap::Args;
+use sistership_jobs::Archive;
+use sistership_jobs::archive::vessel;
+use sistership_jobs::catalogue::{Catalogue, MOST};
+use sistership_jobs::champions::SourceModels;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::{Definition, RankedSource};
 use sistership_priors::source::{Similarity, similar};
+use sistership_store::StoreError;
 
+use super::store::{StoreArguments, with_archive};
 use crate::failure::{Failure, both};
 use crate::table::{TextTable, number};
 use crate::values::definition;
@@ -16,14 +22,18 @@ const EXAMPLES: &str = "\
 Examples:
   sistership similar kvlcc2
   sistership similar my-ship.yaml --vector kanazawa-2023 --json
-  sistership similar esso-osaka-3m --trials zigzags.yaml";
+  sistership similar esso-osaka-3m --trials zigzags.yaml
+  sistership similar my-ship --data-dir sistership-data
 
-/// Rank the ships of the zoo by similarity to a ship, and say which may be the source of a
-/// refinement.
+Where a store is named, its ships are ranked in place of those of the zoo, each by its champion where
+that may serve as a source.";
+
+/// Rank the ships of the zoo or of a store by similarity to a ship, and say which may be the source
+/// of a refinement.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SimilarArguments {
-    /// The ship: a name in the zoo or a vessel file.
+    /// The ship: a name in the zoo or the store, or a vessel file.
     ship: String,
     /// Definition of the characteristic vector; by default mei-2019 if the ship has all of its
     /// components.
@@ -32,6 +42,8 @@ pub struct SimilarArguments {
     /// Trials of the ship, with which source models are compared as well.
     #[arg(long, value_name = "TRIALS", num_args = 1..)]
     trials: Vec<PathBuf>,
+    #[command(flatten)]
+    store: StoreArguments,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -42,11 +54,44 @@ pub struct SimilarArguments {
 /// # Errors
 /// The ship or a trial is refused.
 pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
+    if similar_to.store.is_named() {
+        return of_store(zoo, similar_to);
+    }
     let asked = both(named::ship(zoo, &similar_to.ship), trials::read(&similar_to.trials));
     let (target, read) = asked?;
     trials::remark_other_ship(&read, target.name());
     let similarity = similar(zoo, &target, similar_to.vector, &trials::trials(&read));
     output::print(similar_to.json, &similarity, || text(&target, &similarity))
+}
+
+/// Ranks the ships of a store.
+fn of_store(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
+    let read = trials::read(&similar_to.trials)?;
+    let fitted = trials::trials(&read);
+    let (target, similarity) = with_archive(&similar_to.store, async |archive| {
+        let target = stored_ship(zoo, archive, &similar_to.ship).await?;
+        let near = Catalogue::default().around(archive, &target, MOST).await.map_err(in_words)?;
+        let models = SourceModels::read(archive, &near).await.map_err(in_words)?;
+        let similarity = models.rank(&near, &target, similar_to.vector, &fitted);
+        Ok::<_, String>((target, similarity))
+    })?;
+    trials::remark_other_ship(&read, target.name());
+    output::print(similar_to.json, &similarity, || text(&target, &similarity))
+}
+
+/// The ship of a store, else of a file.
+async fn stored_ship(zoo: &Zoo, archive: &Archive, name: &str) -> Result<Vessel, String> {
+    match archive.store.ships().get(name).await {
+        Ok(ship) => vessel(&ship.name, &ship.document).map_err(in_words),
+        Err(StoreError::NotFound { .. }) => named::ship(zoo, name)
+            .map(|vessel| Vessel::clone(&vessel))
+            .map_err(|failure| failure.message().unwrap_or_default().to_owned()),
+        Err(error) => Err(in_words(error)),
+    }
+}
+
+fn in_words(error: impl std::fmt::Display) -> String {
+    error.to_string()
 }
 
 fn text(target: &Vessel, similarity: &Similarity) -> String {

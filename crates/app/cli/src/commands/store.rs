@@ -102,8 +102,12 @@ impl StoreArguments {
     /// Whether somebody named a store, or there is one where it would be.
     pub fn is_there(&self) -> bool {
         let place = self.file().and_then(|file| self.place(&file));
-        let named = self.database_url.is_some() || self.data_dir.is_some() || self.config.is_some();
-        named || place.is_ok_and(|place| place.must_exist().is_ok())
+        self.is_named() || place.is_ok_and(|place| place.must_exist().is_ok())
+    }
+
+    /// Whether somebody named a store.
+    pub fn is_named(&self) -> bool {
+        self.database_url.is_some() || self.data_dir.is_some() || self.config.is_some()
     }
 }
 

@@ -204,8 +204,8 @@ async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
 
 /// Says which source was selected, and why others fell.
 fn chosen(result: &Value) -> Result<Value, Failure> {
-    let source = result["source"].as_str().unwrap_or("none; the trials suffice without one");
-    output::note(&format!("6/8  selected source: {source}"));
+    let from = result["from"].as_str().unwrap_or_default();
+    output::note(&format!("6/8  refined from {from}"));
     for ranked in result["ranking"]
         .as_array()
         .into_iter()

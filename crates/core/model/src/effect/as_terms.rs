@@ -42,7 +42,7 @@ impl AsTerms {
         {
             return Ok(None);
         }
-        let bare = Model { effects: Vec::new(), ..model.clone() };
+        let bare = Model { effects: Vec::new(), propulsion: None, ..model.clone() };
         let mut as_terms =
             Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
         for (place, effect) in model.effects.iter().enumerate() {

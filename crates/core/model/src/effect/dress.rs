@@ -165,7 +165,7 @@ impl Dresser<'_> {
 impl Law {
     /// Replaces a state or an input by another name in everything that makes forces; kinematics
     /// stay.
-    fn rename_in_forces(&mut self, name: &str, by: &str) {
+    pub(crate) fn rename_in_forces(&mut self, name: &str, by: &str) {
         let rename = |expr: &mut Expr| {
             *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())))
         };
@@ -177,5 +177,6 @@ impl Law {
             rename(&mut axis.scale);
             rename(&mut axis.rest);
         }
+        self.dressing.straight.iter_mut().for_each(|straight| straight.follow(name, by));
     }
 }

@@ -20,7 +20,7 @@ const GIVEN: [&str; 7] = ["u", "v", "r", "psi", "delta", "x", "y"];
 /// The dimension of a name that every effect may use; `measuring` adds positions and rates of
 /// change.
 pub fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
-    let further = || if measuring { position_or_rate(name) } else { None };
+    let further = || if measuring { position_or_rate(name).or_else(|| log(name)) } else { None };
     seen(name)
         .or_else(|| formula::builtin(name).map(|(_, dimension)| dimension))
         .or_else(|| (name == TIME).then_some(Dimension::TIME))
@@ -47,8 +47,14 @@ fn state(name: &str) -> Option<Dimension> {
 /// The dimension of a channel that reaches a law from outside.
 pub fn input(name: &str) -> Option<Dimension> {
     let channel = Channel::by_name(name)?;
-    let from_outside = state(name).is_none() && !matches!(channel, Channel::X | Channel::Y);
+    let from_outside = state(name).is_none()
+        && !matches!(channel, Channel::X | Channel::Y | Channel::UWater | Channel::VWater);
     from_outside.then(|| channel.dimension())
+}
+
+/// A speed through the water that is recorded beside that over the ground.
+fn log(name: &str) -> Option<Dimension> {
+    matches!(name, "u_water" | "v_water").then_some(Dimension::SPEED)
 }
 
 fn position_or_rate(name: &str) -> Option<Dimension> {

@@ -11,8 +11,9 @@ use super::form::EffectParameter;
 use sistership_formula::{self as formula, Expr};
 
 /// What changes its sign in the mirror.
-const ODD: [&str; 15] = [
+const ODD: [&str; 16] = [
     "v",
+    "v_water",
     "r",
     "p",
     "phi",

@@ -170,7 +170,9 @@ impl Law {
         };
         let term = submodel.map_or(Ok(term.clone()), |submodel| self.under(submodel, term))?;
         let factors = self.dressing.coefficients.iter().filter(|(of, _)| of == shared);
-        Ok((parsed.axis, factors.fold(term, |term, (_, factor)| term.times(factor.clone()))))
+        let term = factors.fold(term, |term, (_, factor)| term.times(factor.clone()));
+        let straight = self.dressing.straight.as_ref();
+        Ok((parsed.axis, straight.map_or(term.clone(), |of| of.blended(term, &axis.scale))))
     }
 
     /// The regressor that a name spells: the product of what its factors stand for.

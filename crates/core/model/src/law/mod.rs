@@ -12,7 +12,7 @@ mod symmetry;
 
 pub use definition::{AxisLaw, Input, Law, Parameter, Submodel, indicator};
 pub use dimension::{STATES, acceleration_dimension, axis_dimension};
-pub use dressing::Dressing;
+pub use dressing::{Dressing, Straight};
 pub use error::TermError;
 pub use file::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};

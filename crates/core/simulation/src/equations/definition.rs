@@ -64,7 +64,7 @@ impl<'a> EquationsOfMotion<'a> {
     /// # Errors
     /// Says which effect cannot be used, and why.
     pub fn of_foundation(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
-        if model.effects.is_empty() {
+        if model.effects.is_empty() && model.propulsion.is_none() {
             return Ok(Self::of_law(model, Cow::Borrowed(law)));
         }
         let dressed = law

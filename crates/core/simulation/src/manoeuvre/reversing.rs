@@ -60,11 +60,24 @@ pub enum NotReversing {
 /// Checks that a model is told of a propeller that is reversed, and that it brakes by it.
 ///
 /// A law is told where its formulas branch on the sign of the revolutions; where coefficients
-/// multiply the revolutions themselves, they are told by trials with the propeller reversed.
+/// multiply the revolutions themselves, they are told by trials with the propeller reversed. A model
+/// with a propulsion of its own is told by that.
 ///
 /// # Errors
 /// Says why not.
 pub fn check_reversing(model: &Model, law: &Law, ship: &Ship) -> Result<(), NotReversing> {
+    if model.propulsion.is_none() {
+        is_told(model, law)?;
+    }
+    let ahead_rps = ship.revolutions_at(ship.approach_speed_m_s());
+    if ahead_rps <= 0.0 {
+        return Err(NotReversing::NoApproach { model: model.name.clone() });
+    }
+    brakes(model, ship, ahead_rps)
+}
+
+/// Whether a law says what a reversed propeller does.
+fn is_told(model: &Model, law: &Law) -> Result<(), NotReversing> {
     let (of_law, of_model) = (|| law.name.clone(), || model.name.clone());
     if !law.inputs.contains_key("n") {
         return Err(NotReversing::NoRevolutions { law: of_law() });
@@ -77,11 +90,7 @@ pub fn check_reversing(model: &Model, law: &Law, ship: &Ship) -> Result<(), NotR
     } else if !branches_on_revolutions(law) {
         return Err(NotReversing::FirstQuadrant { law: of_law() });
     }
-    let ahead_rps = ship.revolutions_at(ship.approach_speed_m_s());
-    if ahead_rps <= 0.0 {
-        return Err(NotReversing::NoApproach { model: of_model() });
-    }
-    brakes(model, ship, ahead_rps)
+    Ok(())
 }
 
 /// From the approach speed to rest, revolutions astern slow down more than a stopped propeller.

@@ -20,6 +20,9 @@ pub struct Listed<'a> {
     pub kinematics: [Option<Slot>; 4],
     /// What effects add to the accelerations, m/s2 and rad/s2.
     pub accelerations: [Option<Slot>; 4],
+    /// How far the motion is outside of what trials covered, by half ranges; none where that is not
+    /// known.
+    pub distance: Option<Slot>,
 }
 
 impl Plant {
@@ -36,6 +39,7 @@ impl Plant {
             mobility: self.mobility.as_ref().map(rows),
             kinematics: self.layout.kinematics.map(slot),
             accelerations: self.layout.accelerations.map(slot),
+            distance: slot(self.layout.distance),
         }
     }
 }

@@ -215,7 +215,7 @@ impl<'a> TapeBuilder<'a> {
         slot
     }
 
-    /// `x * 1`, `x + 0`, `x / 1`: the operand itself; `x * 0` is zero.
+    /// `x * 1`, `x + 0`, `x / 1`: the operand itself; `x * 0` and `0 / x` are zero.
     fn neutral(&self, op: Op) -> Option<Slot> {
         let is = |slot: Slot, value: f64| self.constant(slot) == Some(value);
         match op {
@@ -223,7 +223,7 @@ impl<'a> TapeBuilder<'a> {
             Op::Multiply(a, b) if is(b, 1.0) || is(a, 0.0) => Some(a),
             Op::Add(a, b) if is(a, 0.0) => Some(b),
             Op::Add(a, b) | Op::Subtract(a, b) if is(b, 0.0) => Some(a),
-            Op::Divide(a, b) if is(b, 1.0) => Some(a),
+            Op::Divide(a, b) if is(b, 1.0) || is(a, 0.0) => Some(a),
             _ => None,
         }
     }

@@ -34,7 +34,7 @@ pub enum Op {
 
 impl Op {
     /// The results it needs.
-    pub(crate) fn operands(&self) -> [Option<Slot>; 4] {
+    pub fn operands(&self) -> [Option<Slot>; 4] {
         match *self {
             Self::Constant(_) | Self::Input(_) => [None; 4],
             Self::Negate(a) | Self::Call1(_, a) => [Some(a), None, None, None],

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use sistership_formula::{Comparison, Function};
 use sistership_simulation::tape::{Instruction, Op, Slot};
 
-use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE};
+use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE, distance_reference};
 use crate::plan::{Operand, Plan};
 
 /// The file: whole numbers, and doubles by their bits.
@@ -14,7 +14,7 @@ pub fn text(plan: &Plan) -> String {
     let (tape, moving) = (listed.tape, plan.states().collect::<Vec<_>>());
     let starts = variables::starts(plan);
     let counts = [starts.len(), tape.len(), tape.terms().len(), moving.len()];
-    let mut lines = vec![format!("sistership-fmu-1 {}", plan.sha256), whole(counts), whole(moving)];
+    let mut lines = vec![format!("sistership-fmu-2 {}", plan.sha256), whole(counts), whole(moving)];
     lines.push(bits(&starts));
     lines.extend(tape.instructions().iter().map(|one| instruction(plan, one)));
     lines.push(whole(tape.terms().iter().flatten().copied()));
@@ -22,6 +22,7 @@ pub fn text(plan: &Plan) -> String {
     lines.push(places(listed.mass.as_flattened()));
     lines.push(places(&listed.accelerations));
     lines.push(places(&listed.kinematics));
+    lines.push(places(&[listed.distance, distance_reference(plan)]));
     let flags = [plan.gear.is_some(), plan.has_roll, listed.mobility.is_some()];
     lines.push(whole(flags.map(usize::from)));
     lines.push(bits(listed.mobility.unwrap_or_default().as_flattened()));
@@ -29,12 +30,13 @@ pub fn text(plan: &Plan) -> String {
     lines.join("\n") + "\n"
 }
 
-fn figures(plan: &Plan) -> [f64; 6] {
+fn figures(plan: &Plan) -> [f64; 7] {
     let gear = plan
         .gear
         .map_or([0.0; 3], |gear| [gear.limit_rad(), gear.rate_rad_s(), gear.time_constant_s()]);
     let most = &plan.envelope;
-    [gear[0], gear[1], gear[2], most.speed_m_s(), most.yaw_rate_rad_s(), most.roll_rad()]
+    let most = [most.speed_m_s(), most.yaw_rate_rad_s(), most.roll_rad()];
+    [gear[0], gear[1], gear[2], most[0], most[1], most[2], plan.band_rad]
 }
 
 fn whole<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {

@@ -2,6 +2,7 @@
 
 use crate::header::remark;
 use crate::plan::{Coefficient, DELTA, Plan, STATES};
+use crate::range;
 
 /// The value reference of the first state; that of time is zero.
 pub const FIRST_STATE: u32 = 1;
@@ -25,6 +26,8 @@ pub enum Role {
     Input,
     /// A parameter that can be set before the simulation.
     Parameter,
+    /// What follows from states and inputs.
+    Output,
 }
 
 /// A variable.
@@ -74,13 +77,40 @@ pub fn all(plan: &Plan) -> Vec<Variable> {
     }));
     let first = FIRST_OUTSIDE + plan.outside.len() as u32;
     all.extend(plan.coefficients.iter().zip(first..).map(coefficient));
-    all.push(step(plan, first + plan.coefficients.len() as u32));
+    let last = first + plan.coefficients.len() as u32;
+    if let Some(distance) = distance_reference(plan) {
+        all.push(distance_variable(distance));
+        all.push(step(plan, last + 1));
+    } else {
+        all.push(step(plan, last));
+    }
     all
+}
+
+/// The value reference of how far the motion is outside of what trials covered; none where that is
+/// not known.
+pub fn distance_reference(plan: &Plan) -> Option<u32> {
+    plan.listed().distance?;
+    Some(FIRST_OUTSIDE + (plan.outside.len() + plan.coefficients.len()) as u32)
+}
+
+fn distance_variable(reference: u32) -> Variable {
+    Variable {
+        reference,
+        name: range::NAME.to_owned(),
+        unit: None,
+        description: range::MEANING.to_owned(),
+        role: Role::Output,
+        start: None,
+        range: [None, None],
+    }
 }
 
 /// What every variable is where nobody says, by value reference.
 pub fn starts(plan: &Plan) -> Vec<f64> {
-    let count = FIRST_OUTSIDE as usize + plan.outside.len() + plan.coefficients.len() + 1;
+    let distance = usize::from(distance_reference(plan).is_some());
+    let count =
+        FIRST_OUTSIDE as usize + plan.outside.len() + plan.coefficients.len() + distance + 1;
     let mut starts = vec![0.0; count];
     for variable in all(plan) {
         starts[variable.reference as usize] = variable.start.unwrap_or(0.0);

@@ -10,11 +10,12 @@ use crate::plan::Plan;
 pub fn description(plan: &Plan) -> String {
     let variables = all(plan);
     let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
-    let places = |role: Role| -> String {
-        let of = variables.iter().zip(1..).filter(|(variable, _)| variable.role == role);
+    let places = |roles: &[Role]| -> String {
+        let of = variables.iter().zip(1..).filter(|(variable, _)| roles.contains(&variable.role));
         of.map(|(_, index)| format!("      <Unknown index=\"{index}\"/>\n")).collect()
     };
-    let (outputs, rates) = (places(Role::State), places(Role::Rate));
+    let (outputs, rates) = (places(&[Role::State, Role::Output]), places(&[Role::Rate]));
+    let unknown = places(&[Role::Rate, Role::Output]);
     let (name, model, summary) = (escaped(&plan.name), &plan.identifier, summary(plan));
     let sources = "<SourceFiles><File name=\"model.c\"/><File name=\"fmi2.c\"/></SourceFiles>";
     let can = "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" \
@@ -34,7 +35,7 @@ pub fn description(plan: &Plan) -> String {
          <ModelVariables>\n{listed}  </ModelVariables>\n  \
          <ModelStructure>\n    <Outputs>\n{outputs}    </Outputs>\n    \
          <Derivatives>\n{rates}    </Derivatives>\n    \
-         <InitialUnknowns>\n{rates}    </InitialUnknowns>\n  </ModelStructure>\n\
+         <InitialUnknowns>\n{unknown}    </InitialUnknowns>\n  </ModelStructure>\n\
          </fmiModelDescription>\n",
         guid = plan.sha256,
         tool = code_revision(),
@@ -49,6 +50,7 @@ fn variable(variable: &Variable, all: &[Variable]) -> String {
         Role::Rate => "causality=\"local\" variability=\"continuous\" initial=\"calculated\"",
         Role::Input => "causality=\"input\" variability=\"continuous\"",
         Role::Parameter => "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"",
+        Role::Output => "causality=\"output\" variability=\"continuous\" initial=\"calculated\"",
     };
     let derivative = match variable.role {
         Role::Rate => {

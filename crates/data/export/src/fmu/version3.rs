@@ -10,8 +10,8 @@ use crate::plan::Plan;
 pub fn description(plan: &Plan) -> String {
     let variables = all(plan);
     let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
-    let structure = |role: Role, element: &str| -> String {
-        let of = variables.iter().filter(|variable| variable.role == role);
+    let structure = |roles: &[Role], element: &str| -> String {
+        let of = variables.iter().filter(|variable| roles.contains(&variable.role));
         of.map(|one| format!("    <{element} valueReference=\"{}\"/>\n", one.reference)).collect()
     };
     let (name, model, summary) = (escaped(&plan.name), &plan.identifier, summary(plan));
@@ -36,9 +36,9 @@ pub fn description(plan: &Plan) -> String {
         tool = code_revision(),
         units = units(),
         step = plan.step_s(),
-        outputs = structure(Role::State, "Output"),
-        rates = structure(Role::Rate, "ContinuousStateDerivative"),
-        unknown = structure(Role::Rate, "InitialUnknown"),
+        outputs = structure(&[Role::State, Role::Output], "Output"),
+        rates = structure(&[Role::Rate], "ContinuousStateDerivative"),
+        unknown = structure(&[Role::Rate, Role::Output], "InitialUnknown"),
     )
 }
 
@@ -48,6 +48,7 @@ fn variable(variable: &Variable, all: &[Variable]) -> String {
         Role::Rate => "causality=\"local\" variability=\"continuous\" initial=\"calculated\"",
         Role::Input => "causality=\"input\" variability=\"continuous\"",
         Role::Parameter => "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"",
+        Role::Output => "causality=\"output\" variability=\"continuous\" initial=\"calculated\"",
     };
     let state = variable.name.trim_end_matches("_dot");
     let of = all.iter().find(|one| variable.role == Role::Rate && one.name == state);

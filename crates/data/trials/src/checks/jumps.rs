@@ -25,7 +25,7 @@ const UNUSUAL: f64 = 10.0;
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     position(recording, findings);
     heading(recording, findings);
-    for channel in [Channel::U, Channel::V] {
+    for channel in [Channel::U, Channel::V, Channel::UWater, Channel::VWater] {
         speed(recording, channel, findings);
     }
 }
@@ -36,7 +36,13 @@ fn position(recording: &Recording, findings: &mut Findings) {
     };
     let (t, header) = (recording.time(), recording.header(Channel::X));
     let step = |k: usize| (x[k] - x[k - 1]).hypot(y[k] - y[k - 1]);
-    let hits = recording.hits(1..t.len(), |k| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]));
+    let jumps = |k: usize| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]);
+    let begins = |k: usize| recording.segments.iter().any(|segment| segment.start == k);
+    let gaps = recording.hits(1..t.len(), |k| jumps(k) && begins(k));
+    findings.rows(Severity::Warning, header, &gaps, |k| {
+        format!("the position jumps {:.1} m across a gap; nothing is fitted across it", step(k))
+    });
+    let hits = recording.hits(1..t.len(), |k| jumps(k) && !begins(k));
     findings.rows(Severity::Error, header, &hits, |k| {
         format!(
             "the position jumps {:.1} m in {:.3} s; remove the faulty fix, or split the file there",

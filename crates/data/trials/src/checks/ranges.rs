@@ -13,9 +13,11 @@ use crate::stats::quantile;
 /// The limits hold for a one-metre model as for a tanker: 40 m/s is beyond any displacement ship,
 /// 1.5 rad/s (86 deg/s) beyond a free-running model at full rudder, 200 turns per second beyond a
 /// model's propeller.
-const LIMITS: [(Channel, f64, &str); 9] = [
+const LIMITS: [(Channel, f64, &str); 11] = [
     (Channel::U, 40.0, "no ship is that fast; check the column and its unit"),
     (Channel::V, 40.0, "no ship is that fast; check the column and its unit"),
+    (Channel::UWater, 40.0, "no ship is that fast; check the column and its unit"),
+    (Channel::VWater, 40.0, "no ship is that fast; check the column and its unit"),
     (
         Channel::R,
         1.5,

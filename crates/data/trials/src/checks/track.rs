@@ -162,7 +162,8 @@ impl<'a> Track<'a> {
                 rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;
             let message = format!(
                 "the positions drift {drift:.3} m/s towards {towards:.0} deg beyond what u and v \
-                 say: a current with speeds through the water, or a speed sensor's error"
+                 say: where these are of a log through the water, map them as `u_water` and \
+                 `v_water` and declare `derive: [u, v]`; else a speed sensor errs"
             );
             findings.warning(None, Some(header), message);
         }

@@ -4,7 +4,7 @@ use http::{HeaderMap, StatusCode};
 use std::time::Instant;
 
 use sistership_auth::openid::{Answer, Begun, Failure, Finished, Provider, Purpose};
-use sistership_auth::{Grant, Rights, hex, secret, sha256};
+use sistership_auth::{Attempt, Grant, Rights, hex, secret, sha256};
 use sistership_store::{Actor, SignIn, User};
 use sistership_web_support::problem::{Problem, Result};
 
@@ -90,13 +90,18 @@ impl Accounts<'_> {
 
     async fn admit(&self, provider: &Provider, done: &Finished, from: &str) -> Result<Outcome> {
         let whom = format!("identity {} {}", done.identity.issuer, done.identity.subject);
-        let now = Instant::now();
-        if let Some(wait) = self.credentials.attempts.wait(&whom, now) {
+        let attempts = &self.credentials.attempts;
+        let attempt = Attempt { name: &whom, from: PROVIDER };
+        attempts.begin(attempt, Instant::now()).map_err(|wait| {
             let why = format!("you were refused often; try again in {} s", wait.as_secs().max(1));
-            return Err(Problem::new(StatusCode::TOO_MANY_REQUESTS, why));
-        }
+            Problem::new(StatusCode::TOO_MANY_REQUESTS, why)
+        })?;
         let by_provider = Actor::new(PROVIDER, from);
-        match by_provider.clone().acting(self.user_of(provider, done)).await? {
+        let admitted = by_provider.clone().acting(self.user_of(provider, done)).await;
+        if !matches!(admitted, Ok(Err(_))) {
+            attempts.withdraw(attempt, Instant::now());
+        }
+        match admitted? {
             Ok(user) => {
                 let secret = secret().map_err(Problem::internal)?;
                 let ends = i64::try_from(SESSION.as_micros()).unwrap_or(i64::MAX);
@@ -107,7 +112,6 @@ impl Accounts<'_> {
                 Ok(Outcome::SignedIn { secret, next: done.next.clone() })
             }
             Err(why) => {
-                self.credentials.attempts.wrong(&whom, now);
                 by_provider.acting(self.store.identities().refuse(sign_in(done), &why)).await?;
                 Err(Problem::new(StatusCode::FORBIDDEN, why))
             }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use http::StatusCode;
 use sistership_auth::{
-    Grant, KeyText, check_name, check_password, hash_password, hex, secret, sha256,
+    Attempt, Grant, KeyText, check_name, check_password, hash_password, hex, secret, sha256,
     verify_password, verify_unknown,
 };
 use sistership_jobs::budget;
@@ -103,32 +103,38 @@ impl Accounts<'_> {
     /// # Errors
     /// It is not, which is not told from there being no such user; or too many were wrong of late.
     pub async fn verified(&self, name: &str, password: &str, from: &str) -> Result<()> {
-        let concerned = [format!("name {name}"), format!("from {from}")];
-        let now = Instant::now();
-        if let Some(wait) =
-            concerned.iter().filter_map(|whom| self.credentials.attempts.wait(whom, now)).max()
-        {
-            return Err(Problem::new(
-                StatusCode::TOO_MANY_REQUESTS,
-                format!("too many wrong passwords; try again in {} s", wait.as_secs().max(1)),
-            ));
+        let (attempts, attempt) = (&self.credentials.attempts, Attempt { name, from });
+        attempts.begin(attempt, Instant::now()).map_err(|wait| {
+            let wait = wait.as_secs().max(1);
+            let why = format!("too many wrong passwords; try again in {wait} s");
+            Problem::new(StatusCode::TOO_MANY_REQUESTS, why)
+        })?;
+        match self.is_right(name, password).await {
+            Ok(true) => attempts.right(attempt, Instant::now()),
+            Ok(false) => {
+                tracing::warn!(name, from, "a wrong password");
+                return Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"));
+            }
+            Err(problem) => {
+                attempts.withdraw(attempt, Instant::now());
+                return Err(problem);
+            }
         }
+        Ok(())
+    }
+
+    async fn is_right(&self, name: &str, password: &str) -> Result<bool> {
         let user = self.store.users().find(name).await?.filter(User::is_enabled);
         let hash = user.and_then(|user| user.password_hash);
         budget::take(HASH_BYTES).await?;
         let password = password.to_owned();
-        let right = self.credentials.compute(move || match hash {
+        let compare = move || match hash {
             Some(hash) => verify_password(&password, &hash),
             None => {
                 verify_unknown(&password);
                 false
             }
-        });
-        if right.await? {
-            return Ok(());
-        }
-        concerned.iter().for_each(|whom| self.credentials.attempts.wrong(whom, now));
-        tracing::warn!(name, from, "a wrong password");
-        Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"))
+        };
+        self.credentials.compute(compare).await
     }
 }

@@ -73,7 +73,8 @@ impl Made {
             weights: None,
         };
         let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
-        let mut result = json!({ "source": source, "held_out": refined.refinement.held_out,
+        let from = refined.refinement.settings.origin(source.as_deref()).to_owned();
+        let mut result = json!({ "source": source, "from": from, "held_out": refined.refinement.held_out,
             "ranking": ranking });
         if let Some(ladder) = &prepared.start.ladder {
             result["ladder"] = serde_json::to_value(ladder).map_err(failed)?;
@@ -115,7 +116,7 @@ impl Made {
     ) -> Result<()> {
         let reason = format!(
             "refined from {} in job {}",
-            self.result["source"].as_str().unwrap_or("no source"),
+            self.result["from"].as_str().unwrap_or_default(),
             job.id
         );
         let alias = match &self.comparison {

@@ -7,12 +7,13 @@ use serde_json::{Value, json};
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
 use sistership_store::{
-    AliasMove, Diagnosis, Expect, Job, NewDiagnosed, NewReport, NewVersion, ReportHead, StoreError,
-    VersionHead,
+    AliasMove, Diagnosis, Expect, Job, NewDiagnosed, NewReport, NewVersion, PartDiagnosis,
+    ReportHead, StoreError, VersionHead,
 };
 
 use super::outcome::{JobError, Result, failed};
 use crate::app::App;
+use sistership_jobs::condition::RecentDrift;
 use sistership_jobs::derive::Diagnosed;
 use sistership_jobs::fleet::Drift;
 use sistership_jobs::line::{CANDIDATE, Standing, step};
@@ -21,24 +22,41 @@ use sistership_report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis
 /// The kind of the reports, and the method of the versions.
 const DIAGNOSIS: &str = "diagnosis";
 
-/// A diagnosis that is to be kept.
-struct Made<'a> {
-    diagnosed: Arc<Diagnosed>,
-    of: &'a VersionHead,
-    trials: &'a [String],
-    version: Option<NewVersion>,
+/// A diagnosis with the ids of its trials, in the order of the recipe.
+pub(super) struct TrialsDiagnosis {
+    pub diagnosed: Arc<Diagnosed>,
+    pub trials: Vec<String>,
 }
 
-/// Keeps a diagnosis; where it has found effects, the version with them becomes the candidate.
+impl TrialsDiagnosis {
+    pub fn new(diagnosed: Diagnosed, trials: &[String]) -> Self {
+        Self { diagnosed: Arc::new(diagnosed), trials: trials.to_vec() }
+    }
+}
+
+/// Diagnoses that are to be kept.
+struct Made<'a> {
+    of: &'a VersionHead,
+    all: TrialsDiagnosis,
+    of_new: Option<PartDiagnosis>,
+    version: Option<NewVersion>,
+    drift: Option<RecentDrift>,
+}
+
+/// Keeps a diagnosis, with that of what is new alone where it is of more; where it has found
+/// effects, the version with them becomes the candidate.
 pub(super) async fn commit(
     app: &App,
     job: &Job,
-    diagnosed: Diagnosed,
     of: &VersionHead,
-    trials: &[String],
+    (all, of_new): (TrialsDiagnosis, Option<TrialsDiagnosis>),
 ) -> Result<()> {
-    let made =
-        Made { version: version(&diagnosed, of)?, diagnosed: Arc::new(diagnosed), of, trials };
+    let part = match of_new {
+        Some(part) => Some(of_part(app, of, &part).await?),
+        None => None,
+    };
+    let version = version(&all.diagnosed, of)?;
+    let made = Made { of, all, of_new: part, version, drift: drift(app, of).await };
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &of.model).await?;
         let report = made.report(app, standing.next).await?;
@@ -59,8 +77,60 @@ fn version(diagnosed: &Diagnosed, of: &VersionHead) -> Result<Option<NewVersion>
         law: document.model.law.clone(),
         method: DIAGNOSIS.to_owned(),
         document: document.canonical().map_err(failed)?,
-        weights: None,
+        weights: document.model.branch.as_ref().map(|branch| branch.weights_sha256.clone()),
     }))
+}
+
+/// A diagnosis of which no version comes.
+async fn of_part(app: &App, of: &VersionHead, part: &TrialsDiagnosis) -> Result<PartDiagnosis> {
+    let report = report(app, of, &part.diagnosed, None).await?;
+    Ok(PartDiagnosis { report, found: found(of, part, None)? })
+}
+
+async fn report(
+    app: &App,
+    of: &VersionHead,
+    diagnosed: &Arc<Diagnosed>,
+    made: Option<VersionLabel>,
+) -> Result<NewReport> {
+    let label =
+        VersionLabel { ship: of.model.clone(), number: of.number, sha256: of.sha256.clone() };
+    let diagnosed = Arc::clone(diagnosed);
+    let rendered = app.compute(move || render(&diagnosed, label, made)).await??;
+    let document = serde_json::to_string(&rendered.json).map_err(failed)?;
+    let (kind, ship, html) = (DIAGNOSIS.to_owned(), of.model.clone(), rendered.html);
+    Ok(NewReport { version_id: None, ship, kind, document, html })
+}
+
+fn found(
+    of: &VersionHead,
+    part: &TrialsDiagnosis,
+    drift: Option<&RecentDrift>,
+) -> Result<NewDiagnosed> {
+    Ok(NewDiagnosed {
+        version_id: of.id.clone(),
+        verdict: verdict(&part.diagnosed).as_str().unwrap_or_default().to_owned(),
+        effects: serde_json::to_string(&effects(&part.diagnosed)).map_err(failed)?,
+        trials: serde_json::to_string(&part.trials).map_err(failed)?,
+        unexplained: serde_json::to_string(&unexplained(part)).map_err(failed)?,
+        drift: drift.map(serde_json::to_string).transpose().map_err(failed)?,
+    })
+}
+
+fn verdict(diagnosed: &Diagnosed) -> Value {
+    json!(diagnosed.diagnosis.verdict)
+}
+
+fn effects(diagnosed: &Diagnosed) -> Vec<&str> {
+    diagnosed.diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect()
+}
+
+/// The ids of the trials of which something is left.
+fn unexplained(part: &TrialsDiagnosis) -> Vec<&String> {
+    let left = &part.diagnosed.diagnosis.unexplained;
+    let is_left = |trial: &Trial| left.iter().any(|stretch| stretch.trial == trial.name);
+    let trials = part.diagnosed.trials.iter().zip(&part.trials);
+    trials.filter(|(trial, _)| is_left(trial)).map(|(_, id)| id).collect()
 }
 
 impl Made<'_> {
@@ -69,16 +139,7 @@ impl Made<'_> {
             let sha256 = sha256(version.document.as_bytes());
             VersionLabel { ship: version.model.clone(), number, sha256 }
         };
-        let (diagnosed, made) = (Arc::clone(&self.diagnosed), self.version.as_ref().map(label));
-        let of = VersionLabel {
-            ship: self.of.model.clone(),
-            number: self.of.number,
-            sha256: self.of.sha256.clone(),
-        };
-        let rendered = app.compute(move || render(&diagnosed, of, made)).await??;
-        let document = serde_json::to_string(&rendered.json).map_err(failed)?;
-        let (kind, ship, html) = (DIAGNOSIS.to_owned(), self.of.model.clone(), rendered.html);
-        Ok(NewReport { version_id: None, ship, kind, document, html })
+        report(app, self.of, &self.all.diagnosed, self.version.as_ref().map(label)).await
     }
 
     async fn keep(
@@ -91,9 +152,13 @@ impl Made<'_> {
         let reason = format!("effects found missing from {} in job {}", self.name(), job.id);
         let moves: Vec<AliasMove> =
             vec![step(CANDIDATE, Expect::Any, &reason), standing.follow(&reason)];
-        let version = self.version.clone().map(|version| (version, moves));
-        let drift = drift(app, &self.of.model).await;
-        let diagnosis = Diagnosis { version, report, found: self.found()?, drift };
+        let diagnosis = Diagnosis {
+            version: self.version.clone().map(|version| (version, moves)),
+            report,
+            found: found(self.of, &self.all, self.drift.as_ref())?,
+            of_new: self.of_new.clone(),
+            drift: self.drift.as_ref().map(|drift| drift.ratio),
+        };
         let result =
             |version: Option<&VersionHead>, report: &ReportHead| self.result(version, report);
         app.store().commit_diagnosis(&job.id, job.fence, &diagnosis, result).await?;
@@ -104,31 +169,19 @@ impl Made<'_> {
         format!("{}/{}", self.of.model, self.of.number)
     }
 
-    fn effects(&self) -> Vec<&str> {
-        self.diagnosed.diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect()
-    }
-
-    fn verdict(&self) -> Value {
-        json!(self.diagnosed.diagnosis.verdict)
-    }
-
-    fn found(&self) -> Result<NewDiagnosed> {
-        Ok(NewDiagnosed {
-            version_id: self.of.id.clone(),
-            verdict: self.verdict().as_str().unwrap_or_default().to_owned(),
-            effects: serde_json::to_string(&self.effects()).map_err(failed)?,
-            trials: serde_json::to_string(self.trials).map_err(failed)?,
-        })
-    }
-
     fn result(&self, version: Option<&VersionHead>, report: &ReportHead) -> String {
-        let diagnosis = &self.diagnosed.diagnosis;
+        let diagnosis = &self.all.diagnosed.diagnosis;
         let mut result = json!({
-            "diagnosed": self.name(), "verdict": self.verdict(), "effects": self.effects(),
+            "diagnosed": self.name(),
+            "verdict": verdict(&self.all.diagnosed), "effects": effects(&self.all.diagnosed),
             "report": report.id,
             "before": diagnosis.before, "after": diagnosis.after,
             "next_trial": diagnosis.next_trial,
         });
+        if let Some(of_new) = &self.of_new {
+            result["trials"] = json!(self.all.trials);
+            result["verdict_of_new"] = json!(of_new.found.verdict);
+        }
         if let Some(version) = version {
             result["model"] = json!(version.model);
             result["version"] = json!(version.number);
@@ -139,13 +192,13 @@ impl Made<'_> {
     }
 }
 
-/// How much more the champion leaves of new trials; a diagnosis is kept also where that cannot be
-/// found out.
-async fn drift(app: &App, ship: &str) -> Option<f64> {
-    match Drift::of(app.archive(), ship).await {
-        Ok(drift) => drift?.worst,
+/// How much more the champion leaves of new trials, where that is the version diagnosed; a
+/// diagnosis is kept also where that cannot be found out.
+async fn drift(app: &App, of: &VersionHead) -> Option<RecentDrift> {
+    match Drift::of(app.archive(), &of.model).await {
+        Ok(drift) => drift.filter(|drift| drift.version == of.number)?.recent(),
         Err(error) => {
-            tracing::warn!(ship, %error, "drift could not be measured");
+            tracing::warn!(ship = of.model, %error, "drift could not be measured");
             None
         }
     }

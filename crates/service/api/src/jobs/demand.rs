@@ -5,6 +5,7 @@ use std::time::Duration;
 use sistership_jobs::memory::job_bytes;
 use sistership_store::{Job, StoreError};
 
+use super::diagnosis::with_earlier;
 use super::outcome::{JobError, Result, failed};
 use super::progress::Progress;
 use crate::app::App;
@@ -42,13 +43,15 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
         }
         DIAGNOSIS => {
             let asked = serde_json::from_str::<DiagnosisJob>(&job.request).map_err(failed)?;
-            let law = match app.store().versions().get(&asked.ship, asked.number).await {
-                Ok(version) => Some(version.head.law),
+            match app.store().versions().get(&asked.ship, asked.number).await {
+                Ok(version) => {
+                    let whole = with_earlier(app, &asked, &version).await?;
+                    (Some(version.head.law), whole.unwrap_or(asked.trials))
+                }
                 // The job itself says that it is missing.
-                Err(StoreError::NotFound { .. }) => None,
+                Err(StoreError::NotFound { .. }) => (None, asked.trials),
                 Err(error) => return Err(error.into()),
-            };
-            (law, asked.trials)
+            }
         }
         BRANCH => {
             let asked = serde_json::from_str::<BranchJob>(&job.request).map_err(failed)?;

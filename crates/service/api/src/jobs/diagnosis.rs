@@ -1,37 +1,85 @@
-//! The diagnosis job: its recipe, and what comes of it.
+//! The diagnosis job: its recipes, and what comes of them.
 
 use std::sync::Arc;
 
 use sistership_model::version::SourceVersion;
 use sistership_store::{Job, Version};
 
-use super::commit_diagnosis::commit;
+use super::commit_diagnosis::{TrialsDiagnosis, commit};
 use super::outcome::{Result, failed};
 use super::prepared::trials;
 use super::progress::Progress;
 use super::progress::tell;
 use crate::app::App;
+use sistership_jobs::condition::gathered;
 use sistership_jobs::derive::diagnosed;
+use sistership_jobs::memory::job_bytes;
 use sistership_jobs::recipe::{DiagnosisKind, DiagnosisRecipe};
 use sistership_jobs::request::DiagnosisJob;
 use sistership_jobs::sorted::sorted;
 use sistership_jobs::start::library_of;
 use sistership_model::version::code_revision;
 
-/// Does a diagnosis.
+/// Does a diagnosis, and where that is asked for another one of its trials with those before them.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
     let asked: DiagnosisJob = serde_json::from_str(&job.request).map_err(failed)?;
     tell(&progress, 0.01, "reading the trials")?;
     let version = app.store().versions().get(&asked.ship, asked.number).await?;
-    let recipe = recipe(app, &asked, &version).await?;
-    let step = progress.clone();
-    let scaled = move |fraction: f64, what: &str| step.tell(0.05 + 0.85 * fraction, what);
-    let diagnosed = diagnosed(app.archive(), recipe, Arc::new(scaled)).await?;
+    let whole = with_earlier(app, &asked, &version).await?;
+    // The work on each is in proportion to its trials.
+    let share = whole
+        .as_ref()
+        .map_or(0.0, |whole| whole.len() as f64 / (whole.len() + asked.trials.len()) as f64);
+    let (begin, middle, end) = (0.05, 0.9 - 0.85 * share, 0.9);
+    let new = part(app, &asked, (&version, &asked.trials), (&progress, begin, middle)).await?;
+    let (all, of_new) = match whole {
+        None => (new, None),
+        Some(whole) => {
+            tell(&progress, middle, "with the trials before them")?;
+            let all = part(app, &asked, (&version, &whole), (&progress, middle, end)).await?;
+            (all, Some(new))
+        }
+    };
     tell(&progress, 0.92, "writing the report")?;
-    commit(app, job, diagnosed, &version.head, &asked.trials).await
+    commit(app, job, &version.head, (all, of_new)).await
 }
 
-async fn recipe(app: &App, asked: &DiagnosisJob, version: &Version) -> Result<DiagnosisRecipe> {
+/// The diagnosis of some trials, whose progress goes from `begin` to `end`.
+async fn part(
+    app: &App,
+    asked: &DiagnosisJob,
+    (version, trials): (&Version, &[String]),
+    (progress, begin, end): (&Progress, f64, f64),
+) -> Result<TrialsDiagnosis> {
+    let recipe = recipe(app, asked, version, trials).await?;
+    let step = progress.clone();
+    let scaled = move |fraction: f64, what: &str| step.tell(begin + (end - begin) * fraction, what);
+    let diagnosed = diagnosed(app.archive(), recipe, Arc::new(scaled)).await?;
+    Ok(TrialsDiagnosis::new(diagnosed, trials))
+}
+
+/// The trials of a job with those before them, where these are to be diagnosed, too, and there is
+/// memory for it.
+pub(super) async fn with_earlier(
+    app: &App,
+    asked: &DiagnosisJob,
+    version: &Version,
+) -> Result<Option<Vec<String>>> {
+    if !asked.with_earlier {
+        return Ok(None);
+    }
+    let law = app.law(&version.head.law).await.ok();
+    let most = app.limits().job_memory;
+    let is_affordable = |samples: u64| job_bytes(samples, law.as_deref()) <= most;
+    Ok(gathered(app.archive(), version, &asked.trials, &is_affordable).await?)
+}
+
+async fn recipe(
+    app: &App,
+    asked: &DiagnosisJob,
+    version: &Version,
+    ids: &[String],
+) -> Result<DiagnosisRecipe> {
     let (ship, number, sha256) =
         (version.head.model.clone(), version.head.number, version.head.sha256.clone());
     let law = app.store().laws().get(&version.head.law).await?;
@@ -39,7 +87,7 @@ async fn recipe(app: &App, asked: &DiagnosisJob, version: &Version) -> Result<Di
         kind: DiagnosisKind::Diagnosis,
         diagnosed: SourceVersion { ship, number, sha256 },
         law_sha256: law.sha256,
-        trials: trials(app, &asked.trials).await?,
+        trials: trials(app, ids).await?,
         effects_sha256: library_of(app.archive()).await?.sha256.clone(),
         settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
         code_revision: code_revision().to_owned(),

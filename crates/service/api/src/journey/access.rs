@@ -242,6 +242,85 @@ async fn a_role_for_a_ship_goes_no_further(database: TestDatabase) {
         let (status, problem) = read(request.send().await.unwrap()).await;
         assert!(is_refused(status, &problem), "{path}: {status} {problem}");
     }
+    foreign_trials(&harness, &key).await;
+    let similar = harness.asks(Some(&key), Method::GET, "/v1/ships/mariner/similar").await.1;
+    let ranked = similar["ranking"].as_array().unwrap().iter().map(|one| one["ship"].as_str());
+    assert_eq!(ranked.collect::<Vec<_>>(), [Some("kvlcc2")], "others it has no role for");
+    family_jobs(&harness).await;
+    harness.server.stop().await;
+}
+
+/// A trial of a ship without a role is not there, wherever a request names it.
+async fn foreign_trials(harness: &Harness, key: &str) {
+    let csv = "t_s,u_m_s,v_m_s,r_rad_s,delta_rad\n0,8,0,0,0\n1,8,0,0,0\n2,8,0,0,0\n3,8,0,0,0\n";
+    let post = harness.client.post(harness.url("/v1/trials?ship=kcs&name=a.csv&diagnose=false"));
+    let post = post.bearer_auth(OWNER).header("content-type", "text/csv").body(csv);
+    let (status, uploaded) = read(post.send().await.unwrap()).await;
+    assert_eq!(status, StatusCode::CREATED, "{uploaded}");
+    let id = uploaded["trials"][0]["id"].as_str().unwrap();
+    let compare = format!("/v1/compare?version=mariner&version=mariner/1&trial={id}");
+    let (status, problem) = harness.asks(Some(key), Method::GET, &compare).await;
+    assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY, "{problem}");
+    assert!(problem.to_string().contains("there is no trial"), "{problem}");
+    assert_eq!(harness.asks(Some(OWNER), Method::GET, &compare).await.0, StatusCode::OK);
+    for path in ["/v1/refinements", "/v1/diagnoses", "/v1/branches"] {
+        let model = if path == "/v1/refinements" { "ship" } else { "model" };
+        let body = json!({ model: "mariner", "trials": [id] });
+        let (status, problem) = harness.sends(key, Method::POST, path, &body).await;
+        assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY, "{path}: {problem}");
+        assert!(!problem.to_string().contains("kcs"), "{path} names its ship: {problem}");
+    }
+}
+
+/// Who begins a job of a family can look at it and cancel it; who has no role for it cannot.
+async fn family_jobs(harness: &Harness) {
+    let roles = |family: &str| json!([{ "role": "engineer", "family": family }]);
+    let own = harness.key(&json!({ "title": "own", "roles": roles("tankers") })).await;
+    let other = json!({ "name": "söhne-100%", "foundation": "kcs/1", "members": [] });
+    let post = harness.client.post(harness.url("/v1/families")).bearer_auth(OWNER).json(&other);
+    let made = post.send().await.unwrap();
+    assert_eq!(made.status(), StatusCode::CREATED);
+    assert_eq!(made.headers()["location"], "/v1/families/s%C3%B6hne-100%25");
+    let foreign = harness.key(&json!({ "title": "foreign", "roles": roles("söhne-100%") })).await;
+    let (status, job) =
+        harness.sends(&own, Method::POST, "/v1/families/tankers/prior", &Value::Null).await;
+    assert_eq!(status, StatusCode::ACCEPTED, "{job}");
+    let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+    assert_eq!(harness.asks(Some(&own), Method::GET, &path).await.0, StatusCode::OK);
+    let (status, problem) = harness.asks(Some(&foreign), Method::GET, &path).await;
+    assert!(is_refused(status, &problem), "{status} {problem}");
+    assert_eq!(harness.asks(Some(&own), Method::DELETE, &path).await.0, StatusCode::OK);
+}
+
+/// Behind a trusted proxy wrong passwords count for the client that it names, and the audit has its
+/// address; what the client itself wrote into the header is not believed.
+#[tokio::test(flavor = "multi_thread")]
+async fn one_client_behind_a_proxy_does_not_shut_out_others() {
+    let database = TestDatabase::sqlite();
+    let mut config = config(&database);
+    (config.api_key, config.accounts, config.workers) = (Some(OWNER.into()), true, 0);
+    config.proxies.networks = vec!["127.0.0.0/8".parse().unwrap()];
+    let server = Server::start(config).await.unwrap();
+    let client = Client::builder().redirect(Policy::none()).build().unwrap();
+    let harness = Harness { server, client, database };
+    let user = json!({ "name": "ann", "password": PASSWORD, "roles": [{ "role": "reader" }] });
+    let (status, made) = harness.sends(OWNER, Method::POST, "/v1/users", &user).await;
+    assert_eq!(status, StatusCode::CREATED, "{made}");
+    let sign_in = async |from: &str, password: &str| {
+        let form = [("name", "ann"), ("password", password)];
+        let body = serde_urlencoded::to_string(form).unwrap();
+        let post = harness.client.post(harness.url("/sign-in")).body(body);
+        let post = post.header("content-type", "application/x-www-form-urlencoded");
+        let post = post.header("origin", harness.url(""));
+        post.header("x-forwarded-for", from).send().await.unwrap().status()
+    };
+    for guess in 0..5 {
+        let from = format!("10.9.9.{guess}, 203.0.113.1");
+        assert_ne!(sign_in(&from, "a wrong sentence of mine").await, 429, "{guess}");
+    }
+    let again = sign_in("10.9.9.9, 203.0.113.1", PASSWORD).await;
+    assert_eq!(again, StatusCode::TOO_MANY_REQUESTS, "the same client");
+    assert_eq!(sign_in("203.0.113.2", PASSWORD).await, StatusCode::SEE_OTHER, "another client");
     harness.server.stop().await;
 }
 

@@ -3,7 +3,8 @@
 use axum::extract::RawPathParams;
 use axum::http::{Method, StatusCode, Uri};
 use sistership_auth::{Rights, Role};
-use sistership_store::{MAX_LIMIT, Page, Store};
+use sistership_jobs::fleet::{BULK, Chunk, LEARN, LearnJob};
+use sistership_store::{Job, MAX_LIMIT, Page, Store, StoreError, Trial};
 
 use super::table::{Need, Of, need};
 use crate::app::App;
@@ -63,7 +64,13 @@ async fn by_scope(
         Of::Anything | Of::Body => return Ok(true),
         Of::Ship(name) => asked.param(name).map(str::to_owned),
         Of::ShipOfQuery => asked.query("ship"),
-        Of::Job => store.jobs().get(id).await?.ship,
+        Of::Job => match store.jobs().get(id).await? {
+            Job { ship: None, kind, request, .. } => {
+                let family = family_of_job(store, &kind, &request).await?;
+                return Ok(family.is_some_and(|family| rights.on_family(role, &family)));
+            }
+            Job { ship, .. } => ship,
+        },
         Of::Trial => Some(store.trials().get(id).await?.ship),
         Of::Report => Some(store.reports().get(id).await?.head.ship),
         Of::Family => {
@@ -78,6 +85,18 @@ async fn by_scope(
         Some(ship) => has(store, rights, role, &ship).await,
         None => Ok(false),
     }
+}
+
+/// The family of a job that is of no ship.
+async fn family_of_job(store: &Store, kind: &str, request: &str) -> Result<Option<String>> {
+    Ok(match kind {
+        LEARN => serde_json::from_str::<LearnJob>(request).ok().map(|job| job.family),
+        BULK => match serde_json::from_str::<Chunk>(request) {
+            Ok(chunk) => Some(store.bulks().get(&chunk.bulk).await?.family),
+            Err(_) => None,
+        },
+        _ => None,
+    })
 }
 
 /// Whether a role is given for a ship, by its name or its families.
@@ -102,6 +121,44 @@ pub(crate) async fn on_ship(store: &Store, role: Role, ship: &str) -> Result<()>
         true => Ok(()),
         false => Err(refused(&acting, role, Of::Ship("ship"))),
     }
+}
+
+/// Those of some things that are of ships for which whoever asks has a role.
+///
+/// # Errors
+/// The store does not answer, or nobody asks.
+pub(crate) async fn visible<T>(
+    store: &Store,
+    role: Role,
+    all: Vec<T>,
+    ship: impl Fn(&T) -> &str,
+) -> Result<Vec<T>> {
+    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let rights = &acting.principal.rights;
+    if rights.on_server(role) {
+        return Ok(all);
+    }
+    let mut kept = Vec::new();
+    for one in all {
+        if has(store, rights, role, ship(&one)).await? {
+            kept.push(one);
+        }
+    }
+    Ok(kept)
+}
+
+/// A trial that a query or a body names, for whoever has a role for its ship. To others one of
+/// another ship is not there.
+///
+/// # Errors
+/// The store does not answer.
+pub(crate) async fn readable_trial(store: &Store, id: &str) -> Result<Option<Trial>> {
+    let trial = match store.trials().get(id).await {
+        Err(StoreError::NotFound { .. }) => return Ok(None),
+        trial => trial?,
+    };
+    let mut kept = visible(store, Role::Reader, vec![trial], |trial| &trial.ship).await?;
+    Ok(kept.pop())
 }
 
 fn refused(acting: &Acting, role: Role, of: Of) -> Problem {

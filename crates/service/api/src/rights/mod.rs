@@ -3,7 +3,7 @@
 mod decide;
 mod table;
 
-pub(crate) use decide::{Asked, allowed, on_ship};
+pub(crate) use decide::{Asked, allowed, on_ship, readable_trial, visible};
 pub(crate) use sistership_web_support::acting::{Acting, Kind, carried, current};
 #[cfg(test)]
 pub(crate) use table::{ANYONE, TABLE};

@@ -30,7 +30,7 @@ pub(crate) enum Of {
     Family,
     /// The family of the query; the whole server where it names none.
     FamilyOfQuery,
-    /// The ship of the job.
+    /// The ship of the job, or its family where it is of none.
     Job,
     /// The ship of the trial.
     Trial,

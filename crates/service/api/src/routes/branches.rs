@@ -73,7 +73,7 @@ async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
     let BranchRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
     on_ship(app.store(), Role::Engineer, &version.head.model).await?;
-    without_branch(app, &version).await?;
+    let number = foundation(app, &version.head).await?;
     settings
         .check()
         .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
@@ -85,21 +85,21 @@ async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
     if trials.is_empty() {
         return Err(no_trials(&ship));
     }
-    Ok(BranchJob { ship, number: version.head.number, trials, settings })
+    Ok(BranchJob { ship, number, trials, settings })
 }
 
-/// Refuses a version with a learned branch where only a foundation will do.
-pub(super) async fn without_branch(app: &App, version: &sistership_store::Version) -> Result<()> {
-    let head = &version.head;
-    if document(version)?.model.branch.is_none() {
-        return Ok(());
-    }
-    let foundation = foundation_of(app.archive(), &head.model, head.number).await?;
-    let named = foundation.map_or("another version".to_owned(), |number| {
-        format!("`{}/{number}`, which it was trained beside", head.model)
-    });
-    let message = format!("{}/{} has a learned branch; name {named}", head.model, head.number);
-    Err(Problem::invalid("model", message))
+/// The number of the version beside which a correction is trained: that without one of which a
+/// version came.
+async fn foundation(app: &App, head: &sistership_store::VersionHead) -> Result<i64> {
+    let number = foundation_of(app.archive(), &head.model, head.number).await?;
+    let elsewhere = || {
+        let name = format!("{}/{}", head.model, head.number);
+        let message = format!(
+            "{name} has a learned correction that was not trained here; name a version without one"
+        );
+        Problem::invalid("model", message)
+    };
+    number.ok_or_else(elsewhere)
 }
 
 /// The weights of a version's learned branch

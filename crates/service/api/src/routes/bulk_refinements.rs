@@ -172,9 +172,9 @@ async fn refine(
     let asked: Asked = payload.json()?;
     let work = |app: App| async move {
         let bulk = order_refinement(app.store(), &family, &asked).await?;
-        let location = format!("/v1/bulk-refinements/{}", bulk.id);
+        let id = bulk.id.clone();
         Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?
-            .at(location)
+            .at(&["v1", "bulk-refinements", &id])
             .with_jobs())
     };
     key.once(&app, payload.bytes(), work).await

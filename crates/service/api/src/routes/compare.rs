@@ -4,7 +4,6 @@ use axum::Json;
 use axum::extract::State;
 use sistership_jobs::comparison::stored::{Asked, compared, demand};
 use sistership_jobs::comparison::{BETWEEN, Comparison, MOST_TRIALS};
-use sistership_store::StoreError;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -12,6 +11,7 @@ use utoipa_axum::routes;
 use super::model_ref::resolve;
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use crate::rights::readable_trial;
 use crate::web::{Id, ModelName, Params};
 use sistership_web_support::ship_search::wrong;
 
@@ -47,15 +47,12 @@ async fn compare(
     for name in &names {
         let version = resolve(app.store(), "version", name).await?;
         let law = app.law(&version.head.law).await?;
-        asked.versions.push((name.clone(), version, law));
+        asked.versions.push((name.clone(), app.archive().model(&version).await?, law));
     }
     for id in &ids {
-        asked.trials.push(app.store().trials().get(id).await.map_err(|error| match error {
-            StoreError::NotFound { .. } => {
-                Problem::invalid("trial", format!("there is no trial `{id}`"))
-            }
-            other => other.into(),
-        })?);
+        let missing = || Problem::invalid("trial", format!("there is no trial `{id}`"));
+        let trial = readable_trial(app.store(), id).await?;
+        asked.trials.push(trial.ok_or_else(missing)?);
     }
     let _share = app.job_memory().take(demand(&asked), app.limits().memory_wait).await?;
     let samples = app.archive().trials(&asked.samples()).await?;

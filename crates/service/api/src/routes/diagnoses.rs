@@ -10,7 +10,6 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::branches::without_branch;
 use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::named_trials::{named, no_trials};
@@ -24,7 +23,7 @@ use crate::web::field::RequestKey;
 use crate::web::payload::from_slice;
 use crate::web::{Id, Key, ModelName, Payload, Reply};
 use sistership_auth::Role;
-use sistership_jobs::archive::document;
+use sistership_jobs::condition::fitted_samples;
 use sistership_jobs::schema::described;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -84,7 +83,6 @@ async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
     on_ship(app.store(), Role::Engineer, &version.head.model).await?;
-    without_branch(app, &version).await?;
     settings
         .check()
         .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
@@ -93,31 +91,19 @@ async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
         Some(ids) => named(app, &ship, ids, "those that the version was not made of").await?,
         None => unseen(app, &version).await?,
     };
-    Ok(DiagnosisJob { ship, number: version.head.number, trials, settings, key_sha256: None })
+    let (number, with_earlier, key_sha256) = (version.head.number, false, None);
+    Ok(DiagnosisJob { ship, number, trials, with_earlier, settings, key_sha256 })
 }
 
 /// The trials of the ship that a version was not made of; all of them where none are left.
 async fn unseen(app: &App, version: &Version) -> Result<Vec<String>> {
     let all = all_of_ship(app, &version.head.model).await?;
-    let seen = seen(app, version).await?;
+    let seen = fitted_samples(app.archive(), version).await?;
     let ids = |trials: &[&Trial]| trials.iter().map(|trial| trial.id.clone()).collect::<Vec<_>>();
     let new: Vec<&Trial> = all.iter().filter(|trial| !seen.contains(&trial.sha256)).collect();
     match (all.is_empty(), new.is_empty()) {
         (true, _) => Err(no_trials(&version.head.model)),
         (false, true) => Ok(ids(&all.iter().collect::<Vec<_>>())),
         (false, false) => Ok(ids(&new)),
-    }
-}
-
-/// The hashes of the trials that a version was made of, and of those that went into the versions
-/// that were diagnosed for it.
-async fn seen(app: &App, version: &Version) -> Result<Vec<String>> {
-    let mut recipe = document(version)?.recipe;
-    let mut seen = Vec::new();
-    loop {
-        seen.extend(recipe.trials().iter().map(|trial| trial.sha256.clone()));
-        let Some(earlier) = recipe.diagnosed() else { return Ok(seen) };
-        recipe =
-            document(&app.store().versions().get(&earlier.ship, earlier.number).await?)?.recipe;
     }
 }

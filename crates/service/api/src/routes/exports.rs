@@ -29,7 +29,7 @@ struct Query {
 /// A version as a file for another tool
 ///
 /// It has the law with the model's effects, the steering gear, and a current as an input: what a
-/// prediction sails. A model with a learned branch is refused.
+/// prediction sails. What a model has learned beside its law is written with it.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/export", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),
@@ -44,7 +44,8 @@ async fn export(
     let version = app.store().versions().get(&name, number.get()).await?;
     let law = app.law(&version.head.law).await?;
     let format = query.format.unwrap_or_default();
-    let exported = app.compute(move || format.write(&version, &law)).await?;
+    let model = app.archive().model(&version).await?;
+    let exported = app.compute(move || format.write(&version, (&model, &law))).await?;
     let exported = exported.map_err(|error| Problem::invalid("format", error.to_string()))?;
     let kept = format!("attachment; filename=\"{}\"", exported.file);
     let media = [(header::CONTENT_TYPE, "application/octet-stream")];

@@ -172,8 +172,9 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
         let title = new.title.as_deref().unwrap_or(&new.name);
         let family = app.store().families().create(&new.name, title, &foundation.id).await?;
         app.store().families().add(&family.name, &members).await?;
-        let location = format!("/v1/families/{}", family.name);
-        Ok(Reply::new(StatusCode::CREATED, &FamilyView::of(&app, family).await?)?.at(location))
+        let name = family.name.clone();
+        let reply = Reply::new(StatusCode::CREATED, &FamilyView::of(&app, family).await?)?;
+        Ok(reply.at(&["v1", "families", &name]))
     };
     key.once(&app, payload.bytes(), work).await
 }

@@ -15,6 +15,7 @@ use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{KeyPrefix, MomentUs, Remark, UserName};
 use crate::web::{Listing, Paged, Params, Payload, Place};
+use sistership_web_support::reply::path;
 use sistership_web_support::roles::{RoleRequest, RoleView, grants};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -113,7 +114,7 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
     let KeyRequest { title, user, roles, expires_us } = payload.json()?;
     let (user, ends) = (user.map(UserName::into_string), expires_us.map(MomentUs::get));
     let (text, row) = app.accounts().make_key(&title, user, ends, &grants(roles)?).await?;
-    let location = format!("/v1/keys/{}", row.prefix);
+    let location = path(&["v1", "keys", &row.prefix]);
     let about = KeyView::of(&app, row).await?;
     let view = NewKeyView { key: text.as_str().to_owned(), about };
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];

@@ -72,7 +72,7 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     let name = app.compute(move || Law::parse("body", &parse)).await??.name;
     let work = |app: App| async move {
         let head = LawHead::of(app.store().laws().insert(&name, &text).await?);
-        Ok(Reply::new(StatusCode::CREATED, &head)?.at(format!("/v1/laws/{name}")))
+        Ok(Reply::new(StatusCode::CREATED, &head)?.at(&["v1", "laws", &name]))
     };
     key.once(&app, payload.bytes(), work).await
 }

@@ -1,11 +1,11 @@
 //! Trials that a request names, each of which must be one of the ship's.
 
 use axum::http::StatusCode;
-use sistership_store::StoreError;
 
 use super::trials::bounded;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
+use crate::rights::readable_trial;
 use crate::web::Id;
 
 /// The trials of these ids, checked.
@@ -41,14 +41,11 @@ pub(super) async fn named(
 
 /// Why a trial cannot be one of the ship's.
 async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
-    match app.store().trials().get(id).await {
-        Ok(trial) if trial.ship == ship => Ok(None),
-        Ok(trial) => Ok(Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship))),
-        Err(StoreError::NotFound { .. }) => {
-            Ok(Some(format!("is not there; GET /v1/trials?ship={ship} lists its trials")))
-        }
-        Err(error) => Err(error.into()),
-    }
+    Ok(match readable_trial(app.store(), id).await? {
+        Some(trial) if trial.ship == ship => None,
+        Some(trial) => Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship)),
+        None => Some(format!("is not there; GET /v1/trials?ship={ship} lists its trials")),
+    })
 }
 
 /// The refusal of work on a ship that has none.

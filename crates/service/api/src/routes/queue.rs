@@ -23,6 +23,6 @@ pub(super) async fn enqueue(
 
 /// The answer to a request whose work goes on.
 pub(super) fn accepted(job: Job) -> Result<Reply> {
-    let location = format!("/v1/jobs/{}", job.id);
-    Ok(Reply::new(StatusCode::ACCEPTED, &JobView::of(job))?.at(location).with_jobs())
+    let id = job.id.clone();
+    Ok(Reply::new(StatusCode::ACCEPTED, &JobView::of(job))?.at(&["v1", "jobs", &id]).with_jobs())
 }

@@ -99,8 +99,9 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
     let follow = step(LATEST, Expect::Any, METHOD);
     let versions = app.store().versions();
     let version = versions.create_with_weights(app.objects(), &new, &[follow]).await?;
-    let location = format!("/v1/models/{}/versions/{}", version.model, version.number);
-    Ok(Reply::new(StatusCode::CREATED, &VersionHead::of(version))?.at(location))
+    let (model, number) = (version.model.clone(), version.number.to_string());
+    let reply = Reply::new(StatusCode::CREATED, &VersionHead::of(version))?;
+    Ok(reply.at(&["v1", "models", &model, "versions", &number]))
 }
 
 /// Checks a model against its law, and returns the hash of the law's text.

@@ -62,7 +62,7 @@ async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
     });
     let answer = view(&id, &about, session.view());
     app.sessions().open(&id, &owner, about, session)?;
-    Ok(Reply::new(StatusCode::CREATED, &answer)?.at(format!("/v1/sessions/{id}")))
+    Ok(Reply::new(StatusCode::CREATED, &answer)?.at(&["v1", "sessions", &id]))
 }
 
 /// The sessions of whoever asks

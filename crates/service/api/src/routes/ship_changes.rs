@@ -66,8 +66,8 @@ pub(super) async fn kept(app: &App, vessel: &Vessel) -> Result<Ship> {
 
 async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
     let ship = ShipDetail::of(app, kept(app, vessel).await?).await?;
-    let (location, etag) = (format!("/v1/ships/{}", ship.name), ship.etag());
-    Ok(Reply::new(StatusCode::CREATED, &ship)?.at(location).tagged(etag))
+    let reply = Reply::new(StatusCode::CREATED, &ship)?;
+    Ok(reply.at(&["v1", "ships", &ship.name]).tagged(ship.etag()))
 }
 
 /// Replace a ship's document, as you last read it

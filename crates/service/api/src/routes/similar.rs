@@ -6,7 +6,6 @@ use serde::Deserialize;
 use serde_json::Value;
 use sistership_model::version::RecipeTrial;
 use sistership_priors::similarity::Definition;
-use sistership_priors::source;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -14,9 +13,12 @@ use utoipa_axum::routes;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use crate::rights::visible;
 use crate::web::{Name, Params, Place};
+use sistership_auth::Role;
 use sistership_jobs::archive::vessel;
 use sistership_jobs::budget;
+use sistership_jobs::champions::SourceModels;
 use sistership_jobs::memory::trial_bytes;
 use sistership_web_support::ship_search::vectors;
 
@@ -43,7 +45,7 @@ fn yes() -> bool {
 
 /// Rank the zoo for a ship, and say which ships may be its source
 ///
-/// Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
+/// Ships are those for which you have a role. Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
 /// ranked; `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships",
@@ -64,8 +66,11 @@ async fn similar(
         trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
     let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;
+    let models = SourceModels::read(app.archive(), &zoo).await?;
     let ranked =
-        move || source::similar(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
-    let ranked = app.compute(ranked).await?;
+        move || models.rank(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
+    let mut ranked = app.compute(ranked).await?;
+    ranked.ranking =
+        visible(app.store(), Role::Reader, ranked.ranking, |ranked| &ranked.ship).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

@@ -70,18 +70,18 @@ async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Resp
 async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     let ship = upload.ship().to_owned();
     let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
-    let location = match kept.as_slice() {
-        [only] => format!("/v1/trials/{}", only.row.id),
-        _ => format!("/v1/trials?ship={ship}"),
+    let only = match kept.as_slice() {
+        [only] => Some(only.row.id.clone()),
+        _ => None,
     };
     let new = kept.iter().filter(|trial| trial.new).count();
     let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
-    Ok(Reply::new(
-        StatusCode::CREATED,
-        &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) },
-    )?
-    .at(location)
-    .with_jobs())
+    let uploaded = Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) };
+    let reply = Reply::new(StatusCode::CREATED, &uploaded)?.with_jobs();
+    Ok(match only {
+        Some(id) => reply.at(&["v1", "trials", &id]),
+        None => reply.at_list(&["v1", "trials"], ("ship", &uploaded.ship)),
+    })
 }
 
 /// Check trials without keeping them

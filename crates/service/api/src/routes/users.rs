@@ -177,8 +177,9 @@ async fn created(app: &App, request: UserRequest) -> Result<Reply> {
     let title = title.map_or_else(|| name.to_string(), Remark::into_string);
     let roles = grants(roles)?;
     let user = app.accounts().create_user(&name, &title, password.as_deref(), &roles).await?;
-    let location = format!("/v1/users/{}", user.name);
-    Ok(Reply::new(StatusCode::CREATED, &UserView::of(app, user).await?)?.at(location))
+    let name = user.name.clone();
+    let reply = Reply::new(StatusCode::CREATED, &UserView::of(app, user).await?)?;
+    Ok(reply.at(&["v1", "users", &name]))
 }
 
 /// A user

@@ -16,10 +16,9 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Positive, Remark, WebAddress};
 use crate::web::{Id, Listing, Name, Paged, Params, Payload, Place};
+use sistership_jobs::condition::DRIFT_LIMIT;
 use sistership_jobs::webhooks::check_url;
-
-/// How many times as much a champion leaves of new trials before drift is told, where nobody says.
-const DRIFT_ABOVE: f64 = 2.0;
+use sistership_web_support::reply::path;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -173,11 +172,11 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
         url: url.into_string(),
         secret: secret().map_err(Problem::internal)?,
         ship: ship.map(Name::into_string),
-        drift_above: drift_above.map_or(DRIFT_ABOVE, Positive::get),
+        drift_above: drift_above.map_or(DRIFT_LIMIT, Positive::get),
         events: events.into_iter().map(|event| event.as_str().to_owned()).collect(),
     };
     let row = app.store().webhooks().create(&new).await?;
-    let location = format!("/v1/webhooks/{}", row.id);
+    let location = path(&["v1", "webhooks", &row.id]);
     let about = WebhookView::of(&app, row).await?;
     let view = NewWebhookView { secret: new.secret, about };
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];

@@ -19,7 +19,6 @@ use crate::rights::on_ship;
 use sistership_auth::Role;
 use sistership_jobs::budget;
 use sistership_jobs::line::{CHAMPION, alias};
-use sistership_jobs::training::foundation_of;
 use sistership_web_support::spool::{Spool, temporary};
 use sistership_web_support::upload::{Arrived, Upload};
 
@@ -59,21 +58,19 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
     Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
 }
 
-/// The number of the ship's champion, or of the foundation of its learned branch: a diagnosis looks
-/// at laws.
+/// The number of the ship's champion.
 async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
-    match alias(app.store(), ship, CHAMPION).await? {
-        None => Ok(None),
-        Some(champion) => Ok(foundation_of(app.archive(), ship, champion.version_number).await?),
-    }
+    Ok(alias(app.store(), ship, CHAMPION).await?.map(|champion| champion.version_number))
 }
 
-/// The diagnosis of a champion on what is new.
+/// The diagnosis of a champion on what is new, and on that with what came before.
 fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
     let trials: Vec<String> =
         kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
     let (ship, settings) = (ship.to_owned(), Default::default());
-    let asked = DiagnosisJob { ship: ship.clone(), number, trials, settings, key_sha256: None };
+    let (with_earlier, key_sha256) = (true, None);
+    let asked =
+        DiagnosisJob { ship: ship.clone(), number, trials, with_earlier, settings, key_sha256 };
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
     Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
 }

@@ -1,9 +1,11 @@
 //! Who may ask for what: whoever asks shows who they are, or, on a machine's own interface without
 //! a key, is a program of that machine; then their roles decide.
 
+use std::net::IpAddr;
+
 use axum::RequestExt as _;
 use axum::extract::{MatchedPath, RawPathParams, Request, State};
-use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::http::{Extensions, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Redirect, Response};
 
@@ -20,6 +22,10 @@ const RETRY: u64 = 2;
 /// Lets a request through, or says what it lacks.
 pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let peer = request.extensions().get::<Peer>().cloned();
+    if let Some(peer) = &peer {
+        let client = app.proxies().client(peer.address, request.headers());
+        request.extensions_mut().insert(Client(client));
+    }
     if peer.as_ref().is_some_and(|peer| peer.crowded) {
         let why = "all connections are at work, or those of your address; try again in a moment";
         return later(Problem::new(StatusCode::SERVICE_UNAVAILABLE, why), RETRY);
@@ -29,7 +35,8 @@ pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Ne
         Ok(None) => next.run(request).await,
         Err(Refusal::Problem(problem)) => refused(&app, &request, problem),
         Err(Refusal::WrongKey(problem)) => {
-            match peer.and_then(|peer| app.throttle().wrong(peer.party)) {
+            let client = request.extensions().get::<Client>();
+            match client.and_then(|client| app.throttle().wrong(client.0)) {
                 Some(wait) => {
                     let why = "too many wrong API keys from your address; check the key, and try \
                         again later";
@@ -84,7 +91,7 @@ async fn admitted(app: &App, request: &mut Request) -> Result<Option<Acting>, Re
     let own = !request.uri().path().starts_with("/v1")
         && host::is_same_origin(request.headers(), host.as_ref())?;
     let principal = app.accounts().identify(request.method(), request.headers(), own).await?;
-    let origin = origin(request);
+    let origin = origin_of(request.extensions());
     let acting = Acting { principal, origin };
     let params = request.extract_parts::<RawPathParams>().await;
     let params = params.map_err(|error| Problem::not_found(error.body_text()))?;
@@ -103,8 +110,12 @@ fn as_get(method: &Method) -> &str {
     if *method == Method::HEAD { "GET" } else { method.as_str() }
 }
 
-/// From where somebody asks, as the audit has it.
-fn origin(request: &Request) -> String {
-    let peer = request.extensions().get::<Peer>();
-    peer.map_or_else(|| "unknown".to_owned(), |peer| peer.party.to_string())
+/// The address of whoever asks: of a connection's other end, or what a trusted proxy says.
+#[derive(Debug, Clone, Copy)]
+struct Client(IpAddr);
+
+/// From where a request comes, as the audit has it.
+pub(crate) fn origin_of(extensions: &Extensions) -> String {
+    let client = extensions.get::<Client>();
+    client.map_or_else(|| "unknown".to_owned(), |client| client.0.to_string())
 }

@@ -7,6 +7,7 @@ use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
+use futures::FutureExt as _;
 use sistership_store::{Begun, PROLONG_EVERY, Store, Ticket, UnitOfWork, sha256_hex};
 use tracing::Instrument as _;
 
@@ -81,12 +82,12 @@ fn own(scope: String) -> String {
     }
 }
 
-/// Waits for work that goes on if nobody waits.
-async fn finished<T: Send + 'static>(
+/// Waits for work that goes on if nobody waits. It is boxed before anything moves it: it is large.
+fn finished<T: Send + 'static>(
     work: impl Future<Output = Result<T>> + Send + 'static,
-) -> Result<T> {
-    let work = carried_on(Held::current(), carried(work));
-    tokio::spawn(work.in_current_span()).await.map_err(Problem::internal)?
+) -> impl Future<Output = Result<T>> + Send {
+    let work = carried_on(Held::current(), carried(work.boxed())).in_current_span();
+    async move { tokio::spawn(work).await.map_err(Problem::internal)? }
 }
 
 /// Keeps the work with its answer; a request that came to nothing is forgotten, so that it can be

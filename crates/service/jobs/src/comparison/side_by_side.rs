@@ -60,14 +60,6 @@ pub enum ComparisonError {
     /// One of them is named twice.
     #[error("`{0}` is named twice")]
     Twice(String),
-    /// The document of one of them does not read.
-    #[error("{name}: {reason}")]
-    Document {
-        /// The name by which it was asked for.
-        name: String,
-        /// Why not.
-        reason: String,
-    },
     /// One of them cannot sail.
     #[error("{name}: {reason}")]
     Model {

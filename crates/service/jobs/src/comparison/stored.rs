@@ -4,18 +4,17 @@ use std::sync::Arc;
 
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model, Trial};
-use sistership_store::Version;
 
 use super::compared::Compared;
 use super::side_by_side::{Comparison, ComparisonError, compare};
-use crate::archive::document;
 use crate::memory::trial_bytes;
 
 /// What is to be compared.
 #[derive(Debug, Default)]
 pub struct Asked {
-    /// Versions by the names under which they were asked for, with their laws.
-    pub versions: Vec<(String, Version, Arc<Law>)>,
+    /// Models of versions, with the weights of learned corrections, by the names under which they
+    /// were asked for, with their laws.
+    pub versions: Vec<(String, Model, Arc<Law>)>,
     /// Trials.
     pub trials: Vec<sistership_store::Trial>,
 }
@@ -42,19 +41,9 @@ pub fn demand(asked: &Asked) -> u64 {
 /// # Errors
 /// Says which version cannot be compared, and why.
 pub fn compared(asked: &Asked, samples: &[Trial]) -> Result<Comparison, ComparisonError> {
-    let models: Vec<Model> = asked
-        .versions
-        .iter()
-        .map(|(name, version, _)| match document(version) {
-            Ok(document) => Ok(document.model),
-            Err(error) => {
-                Err(ComparisonError::Document { name: name.clone(), reason: error.to_string() })
-            }
-        })
-        .collect::<Result<_, _>>()?;
-    let versions = asked.versions.iter().zip(&models);
+    let versions = asked.versions.iter();
     let versions: Vec<Compared<'_>> =
-        versions.map(|((name, _, law), model)| Compared { name, model, law }).collect();
+        versions.map(|(name, model, law)| Compared { name, model, law }).collect();
     let ids = asked.trials.iter().map(|trial| trial.id.as_str());
     compare(&versions, &ids.zip(samples).collect::<Vec<_>>())
 }

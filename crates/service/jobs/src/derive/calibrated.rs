@@ -1,12 +1,13 @@
-//! What the trials of a refinement leave open, kept with its model. The command line and the server
-//! both come here, so that a version verifies whoever made it.
+//! What the trials of a refinement or a training leave open, kept with its model. The command line
+//! and the server both come here, so that a version verifies whoever made it.
 
 use std::sync::Arc;
 
 use sistership_diagnosis::{CalibrationSettings, calibrate};
 use sistership_identification::refine::Refinement;
 use sistership_model::trial::Trial;
-use sistership_model::{Effect, Law};
+use sistership_model::{Effect, Law, Model};
+use sistership_model_selection::calibration_samples;
 
 /// Learns what the fitted trials leave open of a refined model; where that fails, the model goes
 /// without and a remark says why.
@@ -32,4 +33,28 @@ pub fn with_uncertainty(
             .push(format!("what these trials leave open could not be learned: {error}")),
     }
     refinement
+}
+
+/// Learns what trials leave open of a model with a learned correction, whose weights are attached,
+/// with the settings of a search; where that fails, the model goes without and its note says why.
+pub fn corrected_with_uncertainty(
+    model: Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Model {
+    let settings = CalibrationSettings {
+        samples: Some(calibration_samples()),
+        economical: true,
+        expected_rates: true,
+        reading_interval: true,
+    };
+    match calibrate(&model, law, effects, trials, settings) {
+        Ok(uncertainty) => Model { uncertainty: Some(uncertainty), ..model },
+        Err(error) => {
+            let note = model.note.clone().unwrap_or_default();
+            let why = format!("what its trials leave open could not be learned: {error}");
+            Model { note: Some(format!("{note}; {why}")), ..model }
+        }
+    }
 }

@@ -53,7 +53,7 @@ pub(super) async fn diagnosed_from(
     recipe: DiagnosisRecipe,
     progress: Progress,
 ) -> Result<Diagnosed, DeriveError> {
-    let model = inputs.source(&recipe.diagnosed).await?;
+    let model = inputs.model(&recipe.diagnosed).await?;
     let law = inputs.law(&model.law, &recipe.law_sha256).await?;
     let library = inputs.effects(&recipe.effects_sha256).await?;
     let trials = inputs.trials(&recipe.trials).await?;

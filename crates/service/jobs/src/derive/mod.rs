@@ -13,7 +13,7 @@ mod trained;
 use sistership_model::version;
 
 pub use crate::error::DeriveError;
-pub use calibrated::with_uncertainty;
+pub use calibrated::{corrected_with_uncertainty, with_uncertainty};
 pub use derived::{Derived, Ingredients, Progress, Refined};
 pub use diagnosed::{Diagnosed, diagnosed};
 pub use published::published_document;

@@ -88,34 +88,6 @@ async fn derived(archive: &Archive, recipe: &Recipe) -> String {
     derived.document.canonical().unwrap()
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn versions_of_the_release_without_named_libraries_verify() {
-    let database = TestDatabase::sqlite();
-    let archive = archive(&database).await;
-    for (number, method) in KINDS {
-        let version = archive.store.versions().get(SHIP, number).await.unwrap();
-        assert_eq!(version.head.method, method);
-        let read = document(&version).unwrap();
-        assert_eq!(
-            read.canonical().unwrap(),
-            version.document,
-            "{method}: reads and writes the same bytes"
-        );
-        let verification = verify(&archive, SHIP, number).await.unwrap();
-        assert!(
-            verification.identical && verification.remarks.is_empty(),
-            "{method}: {verification:?}"
-        );
-    }
-    let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) =
-        stored(&archive, 1).await.recipe
-    else {
-        panic!("a refinement")
-    };
-    assert_eq!(effects_sha256, None, "the fixture must be of the release before");
-    assert!(fsck(&archive).await.unwrap().clean);
-}
-
 /// The library of the recipe is taken, and not the program's.
 #[tokio::test(flavor = "multi_thread")]
 async fn another_library_gives_another_calibration_by_its_own_hash() {

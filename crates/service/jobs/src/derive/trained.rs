@@ -2,14 +2,16 @@
 
 use serde_json::Value;
 use sistership_identification::refine::RefineError;
-use sistership_learned::{Judgement, judge, train, with_branch};
+use sistership_learned::{Judgement, attach, judge, train, with_branch};
 use sistership_model::trial::Trial;
 use sistership_model::version::FORMAT;
 use sistership_model::{Law, Model};
 
+use super::calibrated::corrected_with_uncertainty;
 use super::derived::{Derived, Progress};
 use crate::error::DeriveError;
 use crate::inputs::Inputs;
+use crate::library::Library;
 use crate::recipe::{Recipe, TrainingRecipe};
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
@@ -27,16 +29,17 @@ pub(super) async fn trained(
         return Err(DeriveError::Lost(message));
     }
     let law = inputs.law(&foundation.law, &recipe.law_sha256).await?;
+    let library = inputs.effects(&recipe.effects_sha256).await?;
     let trials = inputs.trials(&recipe.trials).await?;
     let (ship, recipe) = (ship.to_owned(), recipe.clone());
-    let work = move || carry_out(ship, recipe, (&foundation, &law), &trials, &progress);
+    let work = move || carry_out(ship, recipe, (&foundation, &law, &library), &trials, &progress);
     tokio::task::spawn_blocking(work).await?
 }
 
 fn carry_out(
     ship: String,
     recipe: TrainingRecipe,
-    (foundation, law): (&Model, &Law),
+    (foundation, law, library): (&Model, &Law, &Library),
     trials: &[Trial],
     progress: &Progress,
 ) -> Result<Derived, DeriveError> {
@@ -49,14 +52,18 @@ fn carry_out(
     let (branch, weights) = train(foundation, law, &trials, &recipe.settings)?;
     go_on(0.3, "judging it on trials left out")?;
     let judgement = judge(foundation, law, &trials, &recipe.settings)?;
+    go_on(0.8, "learning what the trials leave open")?;
+    let weights = weights.bytes().map_err(sistership_learned::TrainError::from)?;
+    let mut model = with_branch(foundation, branch);
+    attach(&mut model, &weights)?;
+    let model = corrected_with_uncertainty(model, law, &library.effects, &trials);
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship,
         recipe: Recipe::Training(recipe),
-        model: with_branch(foundation, branch),
+        model,
         report: report(judgement.as_ref())?,
     };
-    let weights = weights.bytes().map_err(sistership_learned::TrainError::from)?;
     Ok(Derived { document, refined: None, weights: Some(weights.into()) })
 }
 

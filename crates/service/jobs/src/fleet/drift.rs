@@ -60,7 +60,8 @@ impl Drift {
             Err(StoreError::NotFound { .. }) => return Ok(None),
             Err(error) => return Err(error.into()),
         };
-        let version = document(&store.versions().get(ship, number).await?)?;
+        let mut version = document(&store.versions().get(ship, number).await?)?;
+        archive.attach(&mut version.model).await?;
         let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
         let mut drift = Self {
             ship: ship.to_owned(),

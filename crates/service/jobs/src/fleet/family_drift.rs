@@ -8,6 +8,7 @@ use super::drift::Drift;
 use crate::archive::Archive;
 use crate::condition::{Condition, Standing};
 use crate::error::DeriveError;
+use crate::search::standing::Class;
 
 /// The members of a family, the one whose model holds least first.
 #[derive(Debug, Serialize, ToSchema)]
@@ -25,7 +26,7 @@ pub struct FamilyDrift {
 pub struct MemberDrift {
     /// The ship.
     pub ship: String,
-    /// What the newest diagnosis of its champion found: the effects that it lacks.
+    /// What all diagnoses of its champion say: the effects that it lacks.
     pub condition: Condition,
     /// What its champion leaves of its trials over time.
     pub drift: Option<Drift>,
@@ -40,7 +41,8 @@ impl FamilyDrift {
     pub async fn of(archive: &Archive, name: &str, limit: i64) -> Result<Self, DeriveError> {
         let families = archive.store.families();
         let family = families.get(name).await?;
-        let drifted = families.drifted(&family.name, limit).await?;
+        let faulty = Class::DoesNotHold.range();
+        let drifted = families.within(&family.name, &faulty, limit).await?;
         let others = families.members(&family.name, &Page::first(limit)).await?.items;
         let known: std::collections::BTreeSet<String> =
             drifted.iter().map(|member| member.ship.clone()).collect();

@@ -38,6 +38,9 @@ pub struct Framed {
     pub version_id: Option<String>,
     /// The revision of its champion.
     pub champion: Option<i64>,
+    /// Whether the version has effects or a learned correction, which the model that is refined
+    /// does without.
+    pub is_reduced: bool,
 }
 
 impl Frames<'_> {
@@ -66,11 +69,14 @@ impl Frames<'_> {
             ship_sha256,
             version_id: None,
             champion: revision,
+            is_reduced: false,
         })
     }
 
     fn own(&self, version: Version) -> Result<Framed, DeriveError> {
-        let model = document(&version)?.model;
+        let whole = document(&version)?.model;
+        let is_reduced = whole.branch.is_some() || !whole.effects.is_empty();
+        let model = reduced(whole);
         if model.law != self.model.law
             || !model.coefficients.keys().eq(self.model.coefficients.keys())
         {
@@ -92,8 +98,15 @@ impl Frames<'_> {
             ship_sha256: None,
             version_id: Some(version.head.id),
             champion: None,
+            is_reduced,
         })
     }
+}
+
+/// A model whose coefficients statistics describe: without a learned correction, and without
+/// effects, which belong to its own trials.
+fn reduced(model: Model) -> Model {
+    Model { effects: Vec::new(), ..model.foundation() }
 }
 
 /// Where a member started, as a recipe has it.
@@ -107,6 +120,6 @@ pub(super) async fn recorded(
         Some(hash) => {
             Ok(transfer(&loaded.foundation, &loaded.law, &inputs.ship(ship, hash).await?, None))
         }
-        None => inputs.source(&recipe.start).await,
+        None => Ok(reduced(inputs.source(&recipe.start).await?)),
     }
 }

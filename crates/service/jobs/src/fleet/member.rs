@@ -29,6 +29,8 @@ pub struct Member {
     standing: Standing,
     champion: Option<i64>,
     parent: Option<String>,
+    /// Whether the champion has more than what is refined: effects or a learned correction.
+    is_reduced: bool,
     gathered: std::result::Result<Gathered, String>,
 }
 
@@ -46,6 +48,7 @@ pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Me
         standing,
         champion: None,
         parent: None,
+        is_reduced: false,
         gathered: Err(String::new()),
     };
     match gathered(archive, loaded, &mut member).await {
@@ -74,6 +77,7 @@ async fn gathered(archive: &Archive, loaded: &Loaded, member: &mut Member) -> Re
     };
     let framed = frames.of(&member.ship, order.start).await?;
     (member.champion, member.parent) = (framed.champion, framed.version_id);
+    member.is_reduced = framed.is_reduced;
     let trials = trials_of(archive, &member.ship).await?;
     if trials.is_empty() {
         return Err(DeriveError::Lost("it has no trials".to_owned()));
@@ -125,7 +129,8 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
             document: summary.to_string(),
         });
     }
-    let allowed = !member.standing.second_person;
+    // What is refined without the champion's effects or correction does not replace it by itself.
+    let allowed = !member.standing.second_person && !member.is_reduced;
     let rule = loaded.order.rule.no_worse_than;
     let champion = allowed && rule.is_some_and(|share| worst <= share);
     let reason =

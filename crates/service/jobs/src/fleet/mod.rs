@@ -11,6 +11,7 @@ mod learned;
 mod member;
 mod members;
 mod order;
+mod recent_drift;
 mod refined;
 mod standing;
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde_json::Value;
-use sistership_fleet::bulk::{BulkRefinement, BulkRequest, refine, refined_model};
+use sistership_fleet::bulk::{BulkRefinement, BulkRequest, refine, refined_model, with_balance};
 use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_identification::refine::{Fitted, RefineError};
 use sistership_model::Model;
@@ -52,7 +52,9 @@ pub fn refined(
         };
         (c.name.clone(), fitted)
     });
-    let mut refined = refined_model(&model, &fitted.collect::<BTreeMap<_, _>>(), &loaded.held_by());
+    let coefficients = fitted.collect::<BTreeMap<_, _>>();
+    let refined = refined_model(&model, &coefficients, &loaded.held_by());
+    let mut refined = with_balance(refined, &loaded.law);
     // As versions have it that were kept before ships were "it": their bytes stay.
     refined.note = Some("refined from the statistics of her trials".to_owned());
     let report = sorted(serde_json::to_value(&refinement)?);

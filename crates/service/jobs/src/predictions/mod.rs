@@ -4,11 +4,13 @@ mod error;
 mod horizon;
 mod inputs;
 mod manoeuvre;
+mod outside_trials;
 pub mod session;
 mod track;
 
 use serde::Deserialize;
 use serde_json::Value;
+use sistership_model::environment::Environment;
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
 use utoipa::ToSchema;
@@ -19,6 +21,7 @@ pub use inputs::{InitialState, InputsRequest};
 pub use manoeuvre::{BandsRequest, ManoeuvreRequest, ZigzagRequest};
 
 use manoeuvre::Whose;
+use outside_trials::with_outside_trials;
 use sistership_request_types::{ModelName, Positive};
 
 /// What is to be simulated: a manoeuvre, recorded inputs, or orders to come.
@@ -54,13 +57,16 @@ pub fn predict(
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());
     }
+    let depth_m = request.depth_m.map(Positive::get);
+    let uncovered = Environment { depth_m, ..Environment::default() }.uncovered(model);
     match (&request.manoeuvre, &request.inputs, &request.horizon) {
-        (Some(manoeuvre), None, None) => manoeuvre.sail(
-            &mut ship,
-            Whose { model, law, depth_m: request.depth_m.map(Positive::get) },
-            most,
-        ),
-        (None, Some(inputs), None) => inputs.follow(&mut ship, most),
+        (Some(manoeuvre), None, None) => {
+            let answer = manoeuvre.sail(&mut ship, Whose { model, law, depth_m }, most)?;
+            Ok(with_outside_trials(answer, &uncovered))
+        }
+        (None, Some(inputs), None) => {
+            Ok(with_outside_trials(inputs.follow(&mut ship, most)?, &uncovered))
+        }
         (None, None, Some(horizon)) => {
             horizon.sail((&request.model, request.depth_m), model, law, most)
         }
@@ -151,6 +157,33 @@ mod tests {
         let published =
             ask("mariner", json!({ "model": "m", "manoeuvre": { "all": true, "bands": {} } }));
         assert_eq!(published.map_err(field).unwrap_err(), "manoeuvre.bands");
+    }
+
+    #[test]
+    fn surroundings_that_no_trial_had_are_named_in_the_answer() {
+        let zoo = Zoo::embedded().unwrap();
+        let mut model = zoo.model("mariner").unwrap();
+        let delta = [("delta".to_owned(), vec![-0.2, 0.2])].into();
+        model.validity = Region::of(&delta);
+        let ask = |model: &Model, request: Value| {
+            let request = serde_json::from_value(request).unwrap();
+            let answer = predict(&request, model, zoo.law("abkowitz").unwrap(), 100_000).unwrap();
+            let named = answer["outside_trials"].as_array().cloned().unwrap_or_default();
+            named.iter().map(|one| one["message"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+        };
+        let storm = json!({ "model": "m", "horizon": { "duration_s": 5,
+            "wind": { "speed_m_s": 25, "from_rad": 1.0 },
+            "current": { "speed_m_s": 1, "towards_rad": 0 } } });
+        let named = ask(&model, storm.clone());
+        assert!(named[0].starts_with("wind of 25.0 m/s: no trial"), "{named:?}");
+        assert!(named[1].starts_with("current of 1.0 m/s"), "{named:?}");
+        let calm = json!({ "model": "m", "horizon": { "duration_s": 5 } });
+        assert_eq!(ask(&model, calm), Vec::<String>::new());
+        let shallow = json!({ "model": "m", "depth_m": 12, "manoeuvre": { "turn_deg": 10 } });
+        assert!(ask(&model, shallow)[0].starts_with("water depth of 12.0 m"));
+        let windy = [("wind_speed".to_owned(), [0.0, 30.0])].into();
+        model.validity.as_mut().unwrap().environment = windy;
+        assert_eq!(ask(&model, storm).len(), 1);
     }
 
     #[test]

@@ -4,7 +4,7 @@ mod query;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_jobs::condition::Condition;
+use sistership_jobs::condition::{Condition, trials_of};
 use sistership_jobs::search::standing::{Class, ERROR, LEFT};
 use sistership_jobs::search::{self, KnownVectors, Search};
 use sistership_report::numbers::{significant, stated};
@@ -65,9 +65,11 @@ pub async fn page(
     let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
     let names: Vec<String> = found.items.iter().map(|ship| ship.name.clone()).collect();
     let mut standings = archive.store.standings(&names, ERROR, LEFT).await?;
+    let diagnosed = standings.values().flat_map(|standing| trials_of(&standing.diagnoses));
+    let deleted = archive.store.deleted_trials(&diagnosed.collect::<Vec<_>>()).await?;
     let row = |ship: FoundShip| {
         let standing = standings.remove(&ship.name).unwrap_or_default();
-        row(ship, standing, query.sort)
+        row(ship, standing, &deleted, query.sort)
     };
     let ships = found.items.into_iter().map(row).collect::<Result<_>>()?;
     let page = FleetPage {
@@ -93,9 +95,10 @@ async fn found(
     Ok(search::ships(archive, known, &search, &page).await?)
 }
 
-fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> Result<ShipRow> {
-    let ShipStanding { champion, newest, fact, series, families } = standing;
-    let condition = Condition::by_newest(champion.as_ref(), newest.as_ref());
+fn row(ship: FoundShip, standing: ShipStanding, deleted: &[String], sort: Sort) -> Result<ShipRow> {
+    let ShipStanding { champion, diagnoses, fact, series, families } = standing;
+    let weighed = |champion| Condition::weighed(&champion, &diagnoses, deleted);
+    let condition = champion.map(weighed).unwrap_or_default();
     let class = Class::of(&condition);
     let value = ship.value.filter(|_| matches!(sort, Sort::Value | Sort::Similar));
     let trend = sparkline(series.into_iter().map(|left| (left, false)));
@@ -105,13 +108,21 @@ fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> Result<ShipRow> {
         category: ship.category,
         class: class.name(),
         says: says(class),
-        why: condition.effects.join(", "),
+        why: why(&condition),
         champion: condition.version,
         error: fact.map_or_else(String::new, |error| significant(error, 2)),
         trend: trend.as_ref().map(svg).transpose()?,
         families: families.into_iter().take(FAMILIES).collect(),
         value: value.map_or_else(String::new, |value| stated(value, 4)),
     })
+}
+
+/// The effects that a champion lacks, else that it has drifted.
+fn why(condition: &Condition) -> String {
+    match condition.verdict.as_deref() {
+        Some("drift") => "drift".to_owned(),
+        _ => condition.effects.join(", "),
+    }
 }
 
 /// A class in words.

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use askama::Template;
 use sistership_jobs::Archive;
 use sistership_jobs::archive::vessel;
-use sistership_jobs::condition::Condition;
+use sistership_jobs::champions::most_similar_ships;
+use sistership_jobs::condition::{Condition, SinceTrial, WeighedDiagnosis};
 use sistership_jobs::line::CHAMPION;
 use sistership_jobs::search::standing::Class;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
-use sistership_priors::source;
 use sistership_report::numbers::{significant, stated};
 use sistership_store::{Alias, JobFilter, Note, Page, Ship};
 
@@ -54,6 +54,7 @@ struct ShipPage<'a> {
     shell: &'a Shell,
     class: &'static str,
     since: Option<String>,
+    evidence: Vec<EvidenceRow>,
     revision: Option<i64>,
     particulars: Vec<(String, String, String)>,
     drawing: Option<String>,
@@ -80,6 +81,31 @@ impl NoteRow {
     fn of(note: Note) -> Self {
         Self { made: date(note.at_us), actor: note.actor, text: note.text }
     }
+}
+
+/// A diagnosis that counts for the condition.
+struct EvidenceRow {
+    made: String,
+    what: String,
+    verdict: String,
+    report: String,
+}
+
+impl EvidenceRow {
+    fn of(diagnosis: &WeighedDiagnosis) -> Self {
+        let trials = match diagnosis.trials.len() {
+            1 => "1 trial".to_owned(),
+            count => format!("{count} trials"),
+        };
+        let what = if diagnosis.whole { format!("the whole: {trials}") } else { trials };
+        let (made, report) = (date(diagnosis.by.at_us), diagnosis.by.report.clone());
+        Self { made, what, verdict: diagnosis.verdict.clone(), report }
+    }
+}
+
+/// Since which trial a condition is so.
+fn since(since: &SinceTrial) -> String {
+    format!("{}, uploaded {}", since.name, date(since.at_us))
 }
 
 struct SimilarRow {
@@ -146,11 +172,19 @@ impl Gathered {
         &self.vessel
     }
 
-    /// The page; similar ships are those of `zoo`.
+    /// The ships of a zoo that are most similar, and whether each may be the source.
+    ///
+    /// # Errors
+    /// The store does not answer.
+    pub async fn similar(&self, archive: &Archive, zoo: Arc<Zoo>) -> Result<Vec<RankedSource>> {
+        Ok(most_similar_ships(archive, zoo, self.vessel.clone(), SIMILAR).await?)
+    }
+
+    /// The page with the ships that are most similar.
     ///
     /// # Errors
     /// The page cannot be written.
-    pub fn html(&self, zoo: &Arc<Zoo>) -> Result<String> {
+    pub fn html(&self, similar: Vec<RankedSource>) -> Result<String> {
         let particulars = &self.vessel.particulars;
         let drawing = drawing::drawing(particulars, &self.ship.title);
         let champion = self.aliases.iter().find(|alias| alias.alias == CHAMPION);
@@ -158,14 +192,15 @@ impl Gathered {
             of: self,
             shell: &self.shell,
             class: Class::of(&self.condition).name(),
-            since: self.condition.since.as_ref().map(|since| date(since.at_us)),
+            since: self.condition.since.as_ref().map(since),
+            evidence: self.condition.diagnoses.iter().map(EvidenceRow::of).collect(),
             revision: champion.map(|alias| alias.revision),
             particulars: particulars
                 .iter()
                 .map(|(name, of)| (name.clone(), stated(of.value, 6), of.source.clone()))
                 .collect(),
             drawing: drawing.as_ref().map(svg).transpose()?,
-            similar: similar(zoo, &self.vessel),
+            similar: similar.into_iter().map(SimilarRow::of).collect(),
             compare: compare(&self.ship.name, &self.versions.0),
             methods: METHODS,
         };
@@ -177,11 +212,6 @@ impl Gathered {
 fn compare(ship: &str, versions: &[VersionRow]) -> String {
     let each = versions.iter().take(2).map(|version| format!("v={ship}/{}", version.number));
     format!("/compare?{}", each.collect::<Vec<_>>().join("&"))
-}
-
-fn similar(zoo: &Zoo, target: &Vessel) -> Vec<SimilarRow> {
-    let ranked = source::similar(zoo, target, None, &[]).ranking;
-    ranked.into_iter().take(SIMILAR).map(SimilarRow::of).collect()
 }
 
 impl SimilarRow {

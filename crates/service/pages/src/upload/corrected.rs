@@ -22,7 +22,9 @@ pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
         let columns = by_file.entry(&guess.file).or_default();
         match mapped(fields, key, &guess.column)? {
             None => ignored.push(guess.column.clone()),
-            Some((channel, mapping)) => {
+            Some((channel, mut mapping)) => {
+                // The rudder's sign is a field of its own.
+                mapping.reversed = guess.reversed && !channel.starts_with("delta");
                 if let Some(first) = columns.insert(channel.clone(), mapping) {
                     let message = format!("`{}` is taken for {channel} already", first.column);
                     return Err(PageError::invalid(&format!("channel.{key}"), message));
@@ -55,7 +57,7 @@ fn mapped(fields: &Fields, key: usize, column: &str) -> Result<Option<(String, C
         return Err(PageError::invalid(&field, format!("there is no channel `{channel}`")));
     }
     let unit = fields.needed(&format!("unit.{key}"))?.to_owned();
-    Ok(Some((channel.to_owned(), ColumnMapping { column: column.to_owned(), unit })))
+    Ok(Some((channel.to_owned(), ColumnMapping::new(column, unit))))
 }
 
 fn signs(manifest: &mut ManifestFile, fields: &Fields) -> Result<()> {
@@ -74,9 +76,11 @@ fn signs(manifest: &mut ManifestFile, fields: &Fields) -> Result<()> {
         true => VelocityFrame::Ground,
         false => VelocityFrame::Water,
     };
-    conventions.missing = match one_of("missing", ["drop", "refuse"])? {
-        true => Missing::Drop,
-        false => Missing::Refuse,
+    conventions.missing = match fields.text("missing") {
+        Some("bridge") => Missing::Bridge,
+        Some("drop") => Missing::Drop,
+        Some("refuse") => Missing::Refuse,
+        _ => return Err(PageError::invalid("missing", "is one of bridge, drop and refuse")),
     };
     let wanted =
         DERIVED.into_iter().filter(|(name, _)| fields.text(&format!("derive_{name}")).is_some());

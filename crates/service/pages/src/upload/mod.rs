@@ -43,7 +43,7 @@ pub fn choose(shell: &Shell, ship: &str) -> Result<String> {
 struct MappingPage<'a> {
     shell: &'a Shell,
     of: &'a Proposed,
-    targets: [&'static str; 24],
+    targets: [&'static str; 28],
     units: [&'static str; 17],
     columns: Vec<ColumnRow<'a>>,
     previews: &'a [Preview],
@@ -51,6 +51,7 @@ struct MappingPage<'a> {
     port: bool,
     water: bool,
     refuse: bool,
+    drop: bool,
     derived: [(&'static str, bool); 3],
     manifest: String,
 }
@@ -81,6 +82,7 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
         port: conventions.rudder_positive == RudderSign::PortTurn,
         water: conventions.velocity == VelocityFrame::Water,
         refuse: conventions.missing == Missing::Refuse,
+        drop: conventions.missing == Missing::Drop,
         derived: DERIVED.map(|(name, one)| (name, derive.contains(&one))),
         manifest: of.manifest.to_yaml().unwrap_or_default(),
     };

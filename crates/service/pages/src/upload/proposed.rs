@@ -4,7 +4,7 @@ use sistership_model::manifest::ColumnMapping;
 use sistership_trials::{Derivable, Guess, ManifestFile};
 
 /// Names of what a column may be, as manifests have them.
-pub(super) const TARGETS: [&str; 24] = [
+pub(super) const TARGETS: [&str; 28] = [
     "t",
     "x",
     "y",
@@ -13,6 +13,8 @@ pub(super) const TARGETS: [&str; 24] = [
     "psi",
     "u",
     "v",
+    "u_water",
+    "v_water",
     "r",
     "phi",
     "p",
@@ -24,6 +26,8 @@ pub(super) const TARGETS: [&str; 24] = [
     "n_p",
     "course",
     "speed",
+    "v_north",
+    "v_east",
     "wind_speed",
     "wind_from",
     "apparent_wind_speed",

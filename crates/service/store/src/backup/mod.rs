@@ -34,7 +34,7 @@ impl Store {
         let created_us = self.now_us();
         let taken = match &self.database().write {
             Writer::Sqlite(group) => sqlite::take(group.pool(), folder).await?,
-            Writer::Postgres(pool) => postgres::take(pool, folder).await?,
+            Writer::Postgres(pool) => postgres::take(&pool.lease().pool, folder).await?,
         };
         let copied = objects::copy(objects, &taken.keys, &Objects::local(folder)?).await?;
         let manifest = BackupManifest::new(folder, created_us, taken, copied).await?;

@@ -47,7 +47,7 @@ impl Store {
     async fn scans(&self, statement: Statement) -> sqlx::Result<Vec<String>> {
         match &self.database().write {
             Writer::Sqlite(group) => sqlite(group.pool(), statement.sqlite).await,
-            Writer::Postgres(pool) => postgres(pool, statement.postgres).await,
+            Writer::Postgres(pool) => postgres(&pool.lease().pool, statement.postgres).await,
         }
     }
 }

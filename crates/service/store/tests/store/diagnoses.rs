@@ -1,5 +1,6 @@
 use sistership_store::{
-    CommittedDiagnosis, Diagnosis, Expect, JobState, NewDiagnosed, NewReport, Page, Result,
+    CommittedDiagnosis, Diagnosis, Expect, JobState, NewDiagnosed, NewReport, Page, PartDiagnosis,
+    Result,
 };
 
 use crate::jobs::{claim, let_the_lease_run_out};
@@ -12,12 +13,15 @@ fn diagnosis(version_id: &str, with_version: bool) -> Diagnosis {
         verdict: verdict.into(),
         effects: r#"["current"]"#.into(),
         trials: r#"["a"]"#.into(),
+        unexplained: "[]".into(),
+        drift: Some(r#"{"ratio":3.0}"#.into()),
     };
     let report = NewReport { kind: "diagnosis".into(), ..report("kcs") };
     Diagnosis {
         version: with_version.then(|| (version("kcs"), vec![champion(Expect::Any)])),
         report,
         found,
+        of_new: None,
         drift: Some(3.0),
     }
 }
@@ -75,6 +79,33 @@ async fn diagnoses_are_found_by_version(on: &TestStore) {
     );
 }
 
+/// A diagnosis of the whole is kept with that of what is new, older first.
+async fn what_is_new_is_kept_with_the_whole(on: &TestStore) {
+    let diagnosed = versions(on, "kcs", 1).await.remove(0).id;
+    on.store.jobs().enqueue(&job("kcs")).await.unwrap();
+    let running = claim(on, "a").await.unwrap();
+    let whole = diagnosis(&diagnosed, false);
+    let part = PartDiagnosis {
+        report: NewReport { kind: "diagnosis".into(), ..report("kcs") },
+        found: NewDiagnosed {
+            verdict: "unexplained".into(),
+            unexplained: r#"["b"]"#.into(),
+            trials: r#"["b"]"#.into(),
+            ..whole.found.clone()
+        },
+    };
+    let both = Diagnosis { of_new: Some(part), ..whole };
+    commit(on, &running.id, running.fence, &both).await.unwrap();
+    let kept = on.store.diagnoses().by_version(&diagnosed, &Page::first(9)).await.unwrap().items;
+    let said = |at: usize| (kept[at].verdict.as_str(), kept[at].unexplained.as_str());
+    assert_eq!(
+        (kept.len(), said(0), said(1)),
+        (2, ("complete", "[]"), ("unexplained", r#"["b"]"#))
+    );
+    assert_eq!(kept[0].drift.as_deref(), Some(r#"{"ratio":3.0}"#));
+    assert_ne!(kept[0].report_id, kept[1].report_id);
+}
+
 async fn a_fenced_worker_leaves_no_diagnosis_behind(on: &TestStore) {
     let diagnosed = versions(on, "kcs", 1).await.remove(0).id;
     on.store.jobs().enqueue(&job("kcs")).await.unwrap();
@@ -105,6 +136,7 @@ async fn a_diagnosis_is_of_a_version_that_is_there(on: &TestStore) {
 
 on_both_databases!(
     diagnoses_are_found_by_version,
+    what_is_new_is_kept_with_the_whole,
     a_fenced_worker_leaves_no_diagnosis_behind,
     a_diagnosis_is_of_a_version_that_is_there
 );

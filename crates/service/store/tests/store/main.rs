@@ -22,6 +22,7 @@ mod scale;
 mod schema;
 mod search;
 mod ships;
+mod silent;
 mod standings;
 mod trials;
 mod versions;

@@ -37,6 +37,13 @@ impl From<StoreError> for Problem {
                     "the database did not carry this out; try again in a moment",
                 )
             }
+            StoreError::Objects(error) if error.is_passing() => {
+                tracing::error!(reason = %text, "the object store failed");
+                Self::new(
+                    StatusCode::SERVICE_UNAVAILABLE,
+                    "the object store did not carry this out; try again in a moment",
+                )
+            }
             StoreError::Objects(_) | StoreError::File { .. } => Self::internal(text),
         }
     }
@@ -211,6 +218,7 @@ impl From<BytesRejection> for Problem {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
@@ -248,6 +256,20 @@ mod tests {
         let problem = Problem::from(StoreError::no_room());
         assert_eq!((problem.status, problem.kind), (507, "urn:sistership:problem:no-room"));
         assert!(problem.detail.contains("no room"), "{}", problem.detail);
+    }
+
+    /// What each part fails with, and what becomes of it.
+    #[tokio::test]
+    async fn a_part_that_fails_is_a_503_that_says_when_to_come_again() {
+        let late = tokio::time::timeout(std::time::Duration::ZERO, std::future::pending::<()>());
+        let late = sistership_store::ObjectsError::from(late.await.unwrap_err());
+        let damaged =
+            sistership_store::ObjectsError::Damaged { key: "a".into(), actual: "b".into() };
+        for (error, status) in [(StoreError::from(late), 503), (StoreError::from(damaged), 500)] {
+            let response = axum::response::IntoResponse::into_response(Problem::from(error));
+            assert_eq!(response.status(), status);
+            assert_eq!(response.headers().contains_key("retry-after"), status == 503);
+        }
     }
 
     #[test]

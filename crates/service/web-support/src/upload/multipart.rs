@@ -37,7 +37,14 @@ pub(super) async fn receive(request: Request, place: &UploadPlace) -> Result<Upl
         parts.take(field, place).await?;
     }
     match (parts.manifest.take(), parts.ship.take()) {
-        (Some(manifest), None) => parts.listed(read(&manifest).await?),
+        (Some(manifest), None) => {
+            let manifest = read(&manifest).await?;
+            if manifest.manifest.ship.is_empty() {
+                let message = "the manifest names no ship; add `ship:`";
+                return Err(Problem::invalid("manifest", message));
+            }
+            parts.listed(manifest)
+        }
         (None, Some(ship)) => parts.canonical(ship),
         (Some(_), Some(_)) => {
             Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out"))

@@ -19,9 +19,11 @@ mod thresholds;
 
 use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
+use sistership_model::coefficient::Axis;
 
 use super::blocks::{Block, Blocks};
 use super::errors::CoefficientErrors;
+use super::outcome::RefineError;
 use super::ridge::{Choices, mixed_source};
 use autocovariance::ResidualAutocovariance;
 use equation::RidgeEquation;
@@ -30,36 +32,52 @@ use sistership_numerics::{Metric, Moments, RidgeChoice};
 use spread::spread;
 
 /// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the
-/// source. None where the equations cannot be solved.
+/// source.
+///
+/// # Errors
+/// Names the axis whose equations are not positive definite.
 pub(super) fn errors(
     blocks: &Blocks,
     moments: &[Moments],
     rows: &SequencedRows,
     model: &Model,
     choices: &Choices,
-) -> Option<CoefficientErrors> {
+) -> Result<CoefficientErrors, RefineError> {
     let standard: Vec<(Metric, DMatrix<f64>)> =
         blocks.blocks.iter().zip(moments).map(standardised).collect();
     let mut equations = Vec::new();
     for (b, block) in blocks.blocks.iter().enumerate() {
         let sources = mixed_source(block, model);
         for (target, source) in sources.iter().enumerate() {
-            equations.push(RidgeEquation::new(
+            let equation = RidgeEquation::new(
                 (b, target),
                 &moments[b],
                 &standard[b],
                 source,
                 choices[b][target],
-            )?);
+            );
+            equations.push(equation.ok_or_else(|| not_positive(block.axes[target]))?);
         }
     }
     let residuals: Vec<Vec<DVector<f64>>> =
         equations.iter().map(|equation| equation.residuals(rows)).collect();
     let memory = ResidualAutocovariance::of(&residuals);
     let scatter = scatter(&equations, rows, &memory);
+    let of_equation = |(equation, own): (&RidgeEquation<'_>, &DMatrix<f64>)| {
+        let axis = blocks.blocks[equation.block].axes[equation.target];
+        spread(equation, own).ok_or_else(|| not_positive(axis))
+    };
     let spreads: Vec<DVector<f64>> =
-        equations.iter().zip(&scatter.own).map(|(e, own)| spread(e, own)).collect();
-    Some(gathered(blocks, &equations, &scatter.all, &spreads))
+        equations.iter().zip(&scatter.own).map(of_equation).collect::<Result<_, _>>()?;
+    Ok(gathered(blocks, &equations, &scatter.all, &spreads))
+}
+
+/// The refusal where a matrix of an axis has no root.
+fn not_positive(axis: Axis) -> RefineError {
+    RefineError::Data(format!(
+        "the standard errors of the {axis:?} axis cannot be computed: its normal equations are not \
+         positive definite; check the trials for values that are not finite"
+    ))
 }
 
 /// What standardises a block's coefficients, and the mean products of its regressors so
@@ -170,15 +188,9 @@ fn place(
     map: &mut DMatrix<f64>,
 ) {
     let q = block.axes.len();
-    let unmixing = block
-        .mixing
-        .clone()
-        .lu()
-        .solve(&DMatrix::identity(q, q))
-        .unwrap_or_else(|| DMatrix::identity(q, q));
     for axis in 0..q {
         for target in 0..q {
-            let part = equations[first + target].metric.back() * unmixing[(axis, target)];
+            let part = equations[first + target].metric.back() * block.unmixing[(axis, target)];
             let size = block.regressors();
             map.view_mut((starts[first + axis], starts[first + target]), (size, size))
                 .copy_from(&part);

@@ -11,12 +11,13 @@ use super::thresholds::POSTERIOR;
 /// these are the squares of the mean deviations over both parts' distribution given the trials,
 /// with `1/(1 + x^2)` before them for deviations by their unit (Gelman 2006, Bayesian Analysis 1,
 /// 515-533). Means of the variances themselves are ruled by the far end of what cannot be excluded.
-pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DVector<f64> {
+/// None where a covariance is not positive definite.
+pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> Option<DVector<f64>> {
     let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
     let variances =
         |relative: f64, common: f64| (&own * relative.powi(2)).add_scalar(common.powi(2) * unit);
     let Some(seen) = SpreadLikelihood::new(equation, scatter, &variances(1.0, 1.0)) else {
-        return variances(1.0, 1.0);
+        return Some(variances(1.0, 1.0));
     };
     let before = |x: f64| (x / (1.0 + x * x)).ln();
     let pairs = POSTERIOR
@@ -24,13 +25,13 @@ pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DV
         .values()
         .flat_map(|relative| POSTERIOR.common.values().map(move |common| (relative, common)));
     let weighed: Vec<(DVector<f64>, f64)> = pairs
-        .filter_map(|(relative, common)| {
+        .map(|(relative, common)| {
             let variances = variances(relative, common);
             // Steps are even in the logarithm.
             let weight = seen.log_likelihood(&variances)? + before(relative) + before(common);
             Some((variances, weight))
         })
-        .collect();
+        .collect::<Option<_>>()?;
     let most = weighed.iter().map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max);
     let all: f64 = weighed.iter().map(|(_, weight)| (weight - most).exp()).sum();
     let none = DVector::zeros(own.len());
@@ -38,7 +39,7 @@ pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DV
     let mean = weighed.iter().fold(none, |sum, (variances, weight)| {
         sum + deviations(variances) * ((weight - most).exp() / all)
     });
-    mean.component_mul(&mean)
+    Some(mean.component_mul(&mean))
 }
 
 /// What the trials say in the eigenbasis of the regressors, each direction by its size.

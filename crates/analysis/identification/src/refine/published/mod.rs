@@ -58,7 +58,7 @@ fn by_range(
     for (index, range) in ranges.iter().take(allowed).enumerate() {
         let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
         told(index as f64 / allowed as f64, &what)?;
-        let choices = tune(folds, range, problem.settings.lambda_count);
+        let choices = tune(folds, range, problem.settings.lambda_count)?;
         let name = ((index + 1).to_string(), range.lambda_min);
         candidates.push(ridge_candidate(problem, name, at, choices, folds)?);
     }

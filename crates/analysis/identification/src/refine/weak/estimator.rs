@@ -10,6 +10,7 @@ use super::super::progress::{PartProgress, Progress};
 use super::super::ridge::Fold;
 use super::super::ridge_candidates::{each_variant, ridge_candidate};
 use super::super::settings::Settings;
+use super::super::thresholds::SELECTION;
 use super::super::variant::Variant;
 use super::Windows;
 use super::thresholds::WEAK;
@@ -68,7 +69,7 @@ fn by_strength(
     told: PartProgress<'_>,
     candidates: &mut Vec<CandidateFit>,
 ) -> Result<(), RefineError> {
-    let strengths = &problem.settings.strengths;
+    let strengths = strengths(problem, at.1.family, candidates);
     let allowed = if problem.training.len() == 1 {
         strengths.len().min(WEAK.strengths_of_one_trial)
     } else {
@@ -82,4 +83,17 @@ fn by_strength(
         candidates.push(ridge_candidate(problem, (name, lambda), at, choices, folds)?);
     }
     Ok(())
+}
+
+/// The strengths that a family of terms is tried with: asymmetric terms, of which most ships have
+/// none, with those near the best of other terms.
+fn strengths(problem: &Problem<'_>, family: Family, candidates: &[CandidateFit]) -> Vec<f64> {
+    let all = &problem.settings.strengths;
+    let known =
+        candidates.iter().filter_map(|one| Some((one.option.lambda_min?, one.option.error?)));
+    let best = known.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| family == Family::Asymmetric);
+    let Some((best, _)) = best else { return all.clone() };
+    let far = SELECTION.near_strength * (1.0 + f64::EPSILON.sqrt());
+    let is_near = |strength: &&f64| (*strength / best).max(best / *strength) <= far;
+    all.iter().filter(is_near).copied().collect()
 }

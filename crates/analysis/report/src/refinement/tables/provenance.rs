@@ -50,7 +50,7 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
 
 /// What the settings mean, in the order in which they are shown; one that is not listed comes after
 /// these.
-const MEANINGS: [(&str, &str); 12] = [
+const MEANINGS: [(&str, &str); 13] = [
     ("method", "the estimator"),
     ("ranges", "tuning ranges, from the source outwards"),
     ("lambda_count", "values of λ tried in a range"),
@@ -58,6 +58,10 @@ const MEANINGS: [(&str, &str); 12] = [
     (
         "restart_s",
         "simulations of manoeuvres left out start anew from the measured state every so often, s",
+    ),
+    (
+        "longer_restarts_s",
+        "longer such intervals, s: errors are the geometric mean over all of them",
     ),
     (
         "smoothing_s",

@@ -29,13 +29,25 @@ pub(super) fn unfit(schema: &Value) -> Vec<String> {
     all
 }
 
+/// The longest text that a schema takes: letters without a pattern where it is a password, which may
+/// not be guessed.
+fn longest(schema: &Value, length: usize) -> String {
+    if schema["minLength"].as_u64().is_none_or(|least| least < 12) {
+        return "a".repeat(length);
+    }
+    // Numerical Recipes' congruential generator.
+    let next = |last: &u32| Some(last.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    let numbers = std::iter::successors(Some(1_u32), next).take(length);
+    numbers.map(|number| char::from(b'a' + ((number >> 24) % 26) as u8)).collect()
+}
+
 /// Texts that a schema takes, at its limits where it has some.
 pub(super) fn fitting(schema: &Value) -> Vec<String> {
     let mut all: Vec<String> = SAMPLES.iter().map(|text| (*text).to_owned()).collect();
     all.extend(["true", "false", "0.1", "7"].map(str::to_owned));
     all.extend(schema["minimum"].as_i64().map(|least| least.to_string()));
     all.extend(schema["maximum"].as_i64().map(|most| most.to_string()));
-    all.extend(schema["maxLength"].as_u64().map(|most| "a".repeat(most as usize)));
+    all.extend(schema["maxLength"].as_u64().map(|most| longest(schema, most as usize)));
     all.extend(
         schema["enum"]
             .as_array()

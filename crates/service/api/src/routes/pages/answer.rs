@@ -10,6 +10,7 @@ use sistership_jobs::budget::{Held, carried_on};
 use sistership_pages::from_content;
 
 use crate::problem::Result;
+use crate::rights::carried;
 
 const REFERRER_POLICY: HeaderName = header::REFERRER_POLICY;
 
@@ -19,7 +20,7 @@ pub(super) fn begun(
     beginning: String,
     page: impl Future<Output = Result<String>> + Send + 'static,
 ) -> Response {
-    let content = carried_on(Held::current(), page).map(|page| {
+    let content = carried_on(Held::current(), carried(page.boxed())).map(|page| {
         let page = page.unwrap_or_else(|problem| problem.page().unwrap_or_default());
         from_content(&page).to_owned()
     });

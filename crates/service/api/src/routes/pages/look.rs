@@ -2,6 +2,7 @@
 
 use axum::extract::State;
 use axum::response::Response;
+use sistership_auth::Role;
 use sistership_jobs::budget;
 use sistership_jobs::memory::trial_bytes;
 use sistership_pages as pages;
@@ -10,6 +11,7 @@ use sistership_pages::Fields;
 use super::answer::{answer, begun};
 use crate::app::App;
 use crate::problem::Result;
+use crate::rights::visible;
 use crate::web::form::shell;
 use crate::web::{Id, Name, Number, Params, Place, Word};
 
@@ -25,7 +27,9 @@ pub(super) async fn ship(State(app): State<App>, Place(ship): Place<Name>) -> Re
     let beginning = pages::beginning(shell(&app), &ship, "/")?;
     let page = async move {
         let zoo = app.zoo_shown(gathered.vessel()).await?;
-        Ok(app.compute(move || gathered.html(&zoo)).await??)
+        let similar = gathered.similar(app.archive(), zoo).await?;
+        let similar = visible(app.store(), Role::Reader, similar, |ranked| &ranked.ship).await?;
+        Ok(app.compute(move || gathered.html(similar)).await??)
     };
     Ok(begun(beginning, page))
 }

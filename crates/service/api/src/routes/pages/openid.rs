@@ -9,12 +9,13 @@ use sistership_pages::people::Offered;
 use sistership_pages::{Fields, people};
 
 use super::answer::{answer, own_place, then, with_cookie};
-use super::people::{origin_of, sign_in_page, who, with_session};
+use super::people::{sign_in_page, who, with_session};
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::rights::{Acting, Kind};
 use crate::web::Params;
 use crate::web::form::{PageForm, shell};
+use crate::web::guard::origin_of;
 
 /// The cookie of a sign-in that is under way.
 const TICKET: &str = "sistership_oidc";

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::accounts::{COOKIE, SESSION};
 use axum::extract::{FromRequest as _, Request, State};
-use axum::http::{Extensions, HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::Response;
 use sistership_auth::Grant;
 use sistership_pages::people::{Known, Offered};
@@ -17,8 +17,8 @@ use crate::problem::{Problem, Result};
 use crate::rights::{Acting, Kind, current};
 use crate::web::field::{KeyPrefix, UserName};
 use crate::web::form::{PageForm, shell};
+use crate::web::guard::origin_of;
 use crate::web::{Params, Place};
-use sistership_listener::Peer;
 use sistership_web_support::host;
 
 type Asked = Params<Vec<(String, String)>>;
@@ -67,12 +67,6 @@ pub(super) fn sign_in_page(app: &App, next: &str, why_not: Option<&str>) -> Resu
 pub(super) fn with_session(response: Response, secret: &str, secure: bool) -> Response {
     let (age, secure) = (SESSION.as_secs(), if secure { "; Secure" } else { "" });
     with_cookie(response, &format!("{COOKIE}={secret}; Max-Age={age}; Path=/{secure}"))
-}
-
-/// From where a request comes, as the audit has it.
-pub(super) fn origin_of(extensions: &Extensions) -> String {
-    let peer = extensions.get::<Peer>();
-    peer.map_or_else(|| "unknown".to_owned(), |peer| peer.party.to_string())
 }
 
 /// What keeps the cookie from connections without TLS, where the browser itself has one.

@@ -7,6 +7,7 @@ use super::request::StepsRequest;
 use super::sample::{ENDS, Sample};
 use super::under_way::Session;
 use crate::predictions::error::Result;
+use crate::predictions::outside_trials::with_outside_trials;
 use crate::predictions::track::{COLUMNS, columns, with_share};
 
 impl Session {
@@ -31,7 +32,7 @@ impl Session {
             "stopped": self.stopped(),
             "outside": self.ship.leaves(&track),
         });
-        with_share(answer, &self.ship, &track)
+        with_outside_trials(with_share(answer, &self.ship, &track), &self.uncovered)
     }
 
     /// Of the steps that a request asks for, of which some are `sailed`, the next ones, row by row,
@@ -81,7 +82,7 @@ impl Session {
         row.insert("stopped".into(), self.stopped());
         let track = track(std::slice::from_ref(sample));
         row.insert("outside".into(), json!(self.ship.leaves(&track)));
-        with_share(Value::Object(row), &self.ship, &track)
+        with_outside_trials(with_share(Value::Object(row), &self.ship, &track), &self.uncovered)
     }
 
     fn stopped(&self) -> Value {

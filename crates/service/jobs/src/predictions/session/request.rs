@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
+use sistership_model::environment::Environment;
 use sistership_request_types::{
     DrawCount, ModelName, Positive, StepCount, StepLength, WaterSpeed, WindSpeed,
 };
@@ -56,6 +57,17 @@ pub struct WindRequest {
     speed_m_s: WindSpeed,
     /// Where it comes from, clockwise from north.
     from_rad: f64,
+}
+
+impl SessionRequest {
+    /// The surroundings that are asked for.
+    pub(super) fn environment(&self) -> Environment {
+        Environment {
+            wind_speed_m_s: self.wind.map(|wind| wind.speed_m_s.get()),
+            current_speed_m_s: self.current.map(|current| current.speed_m_s.get()),
+            depth_m: self.depth_m.map(Positive::get),
+        }
+    }
 }
 
 impl CurrentRequest {

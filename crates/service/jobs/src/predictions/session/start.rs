@@ -18,6 +18,7 @@ impl Session {
     /// # Errors
     /// Names the field of the request that is at fault.
     pub fn new(request: &SessionRequest, model: &Model, law: &Law) -> Result<Self> {
+        let uncovered = request.environment().uncovered(model);
         let mut model = model.clone();
         let named = [
             ("current", request.current.map(|current| current.parts())),
@@ -41,6 +42,7 @@ impl Session {
             beside,
             state,
             order,
+            uncovered,
             others: Vec::new(),
             t_s: 0.0,
             stopped: None,

@@ -1,5 +1,6 @@
 //! A ship under way, with the draws of its posterior beside it.
 
+use sistership_model::environment::UncoveredInput;
 use sistership_simulation::integrate::Method;
 use sistership_simulation::plant::{Inputs, Work};
 use sistership_simulation::state::at;
@@ -20,6 +21,8 @@ pub struct Session {
     pub(super) beside: Option<Beside>,
     pub(super) state: StateVector,
     pub(super) order: Order,
+    /// Wind, current and depth of which the model's trials tell nothing.
+    pub(super) uncovered: Vec<UncoveredInput>,
     /// Other inputs of the law, by their places.
     pub(super) others: Vec<(usize, f64)>,
     pub(super) t_s: f64,

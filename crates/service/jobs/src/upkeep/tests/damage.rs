@@ -124,8 +124,8 @@ const DAMAGES: &[(&str, &str, &str)] = &[
 ];
 const REPORT: &str =
     "INSERT INTO reports VALUES ('r', 'none', 'nobody', 'refinement', '{}', '', 0)";
-const DIAGNOSIS: &str =
-    "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0)";
+const DIAGNOSIS: &str = "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0, \
+     '[]', NULL)";
 const FAMILY: &str = "INSERT INTO families VALUES ('f', 'F', 'none', 0)";
 const MEMBER: &str = "INSERT INTO family_members VALUES ('f', 'nobody', 0)";
 const PRIOR: &str = "INSERT INTO family_priors VALUES ('f', 2, '{}', 'x', 0)";

@@ -1,0 +1,98 @@
+//! A learned correction at the samples of a block: what it adds to the law's accelerations, and
+//! what it makes of their derivatives.
+//!
+//! With `a(x)` the law's accelerations and `c(x, a)` the correction, those of the ship are `a + c`.
+//! Their derivative with anything that the law depends on is `(I + dc/da) da`, to which `dc/dx`
+//! comes for states and inputs that the correction sees itself. So coefficients and effects keep
+//! acting on the law around it, and where a correction takes the law's place they act by as much
+//! less.
+
+use std::sync::Arc;
+
+use sistership_simulation::branch::{AdditionGradient, Instant, LearnedBranch};
+use sistership_simulation::tape::Lanes;
+
+use super::lanes::LANES;
+
+/// A learned correction, and where it finds what it sees among the inputs of the law.
+#[derive(Debug, Clone)]
+pub(super) struct Correction {
+    pub learned: Arc<dyn LearnedBranch>,
+    pub delta: Option<usize>,
+    pub n: Option<usize>,
+}
+
+/// Velocities in the order of the axes: what a correction changes.
+const VELOCITIES: usize = 3;
+
+/// The correction at a block of samples.
+pub(super) struct CorrectionBlock<'a> {
+    correction: &'a Correction,
+    gradients: [AdditionGradient; LANES],
+}
+
+impl<'a> CorrectionBlock<'a> {
+    pub fn new(correction: &'a Correction) -> Self {
+        Self { correction, gradients: [AdditionGradient::default(); LANES] }
+    }
+
+    /// Evaluates it where the law gives `rates`, and adds what it adds. `velocities` are u, v, r,
+    /// `inputs` those of the law.
+    pub fn add(
+        &mut self,
+        velocities: [Lanes<LANES>; VELOCITIES],
+        inputs: &[Lanes<LANES>],
+        rates: &mut [Lanes<LANES>],
+    ) {
+        let at = |place: Option<usize>, lane: usize| place.map_or(0.0, |place| inputs[place][lane]);
+        for lane in 0..LANES {
+            let instant = Instant {
+                velocities: velocities.map(|velocity| velocity[lane]),
+                delta_rad: at(self.correction.delta, lane),
+                n_rps: at(self.correction.n, lane),
+                accelerations: [rates[0][lane], rates[1][lane], rates[2][lane]],
+            };
+            let added = self.correction.learned.addition(&instant);
+            self.gradients[lane] = self.correction.learned.gradient(&instant);
+            rates.iter_mut().zip(added).for_each(|(rate, added)| rate[lane] += added);
+        }
+    }
+
+    /// Turns derivatives of the law's accelerations into those of the ship's: rows of `columns`
+    /// numbers, one for each axis.
+    pub fn carry_over(&self, lane: usize, rows: &mut [f64], columns: usize) {
+        let by = &self.gradients[lane].by_acceleration;
+        if by.iter().flatten().all(|slope| *slope == 0.0) {
+            return;
+        }
+        for column in 0..columns {
+            let law: [f64; VELOCITIES] = std::array::from_fn(|axis| rows[axis * columns + column]);
+            for (axis, slopes) in by.iter().enumerate() {
+                let more: f64 = slopes.iter().zip(law).map(|(slope, law)| slope * law).sum();
+                rows[axis * columns + column] += more;
+            }
+        }
+    }
+
+    /// Adds the derivatives of what it adds with the velocities, the first states.
+    pub fn add_states(&self, lane: usize, jacobian: &mut [f64], states: usize) {
+        for (axis, slopes) in self.gradients[lane].by_velocity.iter().enumerate() {
+            let row = &mut jacobian[axis * states..][..VELOCITIES];
+            row.iter_mut().zip(slopes).for_each(|(to, slope)| *to += slope);
+        }
+    }
+
+    /// Its derivatives with an input of the law, by axis; none where it does not see that.
+    pub fn by_input(&self, lane: usize, input: usize) -> Option<[f64; VELOCITIES]> {
+        let Correction { delta, n, .. } = *self.correction;
+        match Some(input) {
+            found if found == delta => Some(self.gradients[lane].by_delta),
+            found if found == n => Some(self.gradients[lane].by_n),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "correction_tests.rs"]
+mod tests;

@@ -1,0 +1,6 @@
+//! Accelerations that no coefficient explains.
+
+use sistership_model::uncertainty::Discrepancy;
+
+/// The discrepancy of each acceleration, in the order of the filter's axes.
+pub type Discrepancies = Vec<Discrepancy>;

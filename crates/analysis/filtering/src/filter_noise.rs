@@ -1,0 +1,89 @@
+//! What a filter assumes of instruments and of accelerations that no model explains.
+
+use sistership_identification::refine::RefineError;
+use sistership_model::trial::Channel;
+use sistership_model::uncertainty::Discrepancy;
+
+use super::discrepancies::Discrepancies;
+use super::linearised::Linearised;
+use super::noise::{Instrument, Noise};
+use super::thresholds::RESIDUAL;
+
+/// Noise by the channels, states and axes of a part.
+pub(super) struct FilterNoise {
+    /// By channel.
+    instruments: Vec<Instrument>,
+    /// By state, the instrument that reads it, if any.
+    readers: Vec<Option<Instrument>>,
+    discrepancies: Discrepancies,
+}
+
+impl FilterNoise {
+    /// For the channels of a part.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known, or says that discrepancies are not as many as
+    /// accelerations.
+    pub fn new(
+        part: &Linearised,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Self, RefineError> {
+        if discrepancies.len() != part.sizes.axes {
+            return Err(RefineError::Law(format!(
+                "the filter has discrepancies of {} accelerations, and the model has {}",
+                discrepancies.len(),
+                part.sizes.axes
+            )));
+        }
+        let known = |(channel, _): &(Channel, usize)| {
+            noise.get(channel).copied().ok_or_else(|| unknown_noise(*channel))
+        };
+        let instruments = part.channels.iter().map(known).collect::<Result<Vec<_>, _>>()?;
+        let reader = |state: usize| {
+            let channel = part.channels.iter().position(|(_, place)| *place == state);
+            channel.map(|channel| instruments[channel])
+        };
+        let readers = (0..part.sizes.states).map(reader).collect();
+        Ok(Self { instruments, readers, discrepancies: discrepancies.clone() })
+    }
+
+    /// Variances before the first reading, of states and then of discrepancies. A state that is
+    /// not read starts on the path.
+    pub fn start_variances(&self) -> impl Iterator<Item = f64> + '_ {
+        let of_state = |reader: &Option<Instrument>| {
+            reader.map_or(RESIDUAL.unread_variance, |instrument| {
+                (RESIDUAL.start * instrument.deviation).powi(2)
+            })
+        };
+        let of_axis = |discrepancy: &Discrepancy| discrepancy.deviation.powi(2);
+        self.readers.iter().map(of_state).chain(self.discrepancies.iter().map(of_axis))
+    }
+
+    /// The variance by which each state drifts in a second.
+    pub fn state_densities(&self) -> impl Iterator<Item = f64> + '_ {
+        let drift = |reader: &Option<Instrument>| {
+            reader.map_or(RESIDUAL.unread_drift, |instrument| instrument.drift).powi(2)
+        };
+        self.readers.iter().map(drift)
+    }
+
+    /// The variance of the readings of a channel.
+    pub fn reading_variance(&self, channel: usize) -> f64 {
+        self.instruments[channel].deviation * self.instruments[channel].deviation
+    }
+
+    /// The discrepancy of each acceleration.
+    pub fn discrepancies(&self) -> &[Discrepancy] {
+        &self.discrepancies
+    }
+}
+
+/// The refusal of readings of a channel of which no noise is known.
+pub fn unknown_noise(channel: Channel) -> RefineError {
+    RefineError::Data(format!(
+        "no noise is known of the channel `{}`: it is told from seven readings that follow each \
+         other without a gap; give a trial that has them, or leave the channel out",
+        channel.name()
+    ))
+}

@@ -1,0 +1,292 @@
+//! The Kalman filter along linearised parts of trials.
+//!
+//! Its state is the deviation from the recorded path, then the discrepancy of each acceleration. It
+//! is one for any number of parts in lockstep ([`FilterValue`]) and of columns.
+//!
+//! Readings are taken one channel after the other (their noises are independent), so that each
+//! prediction error is divided by its own predicted deviation and nothing is inverted: Maybeck
+//! 1979, Stochastic models, estimation and control, vol. 1, section 7.
+
+use nalgebra::{DMatrix, DVector};
+use sistership_identification::refine::RefineError;
+
+use super::discrepancies::Discrepancies;
+use super::filter_noise::FilterNoise;
+use super::filter_value::{FilterValue, axpy};
+use super::linearised::Linearised;
+use super::noise::Noise;
+use super::transition::Transition;
+
+/// Deviations from the paths of some parts with all their columns, and their covariance.
+pub(super) struct KalmanFilter<'p, V> {
+    /// One for each lane; their sizes, channels and readings are alike.
+    parts: Vec<&'p Linearised>,
+    noise: FilterNoise,
+    transition: Transition<V>,
+    /// Number of states.
+    states: usize,
+    /// Number of states with discrepancies.
+    order: usize,
+    width: usize,
+    /// `order` by `width`, row by row; the residual's first, then what each column moves.
+    deviations: Vec<V>,
+    /// `order` by `order`.
+    covariance: Vec<V>,
+    /// Deviations at the next sample.
+    moved: Vec<V>,
+    /// Transition times covariance.
+    product: Vec<V>,
+    error: Vec<V>,
+    gain: Vec<V>,
+    /// Room for rows of all parts side by side.
+    gathered: Vec<V>,
+}
+
+impl<'p, V: FilterValue> KalmanFilter<'p, V> {
+    /// Before the first reading, with the first `width - 1` columns.
+    ///
+    /// # Errors
+    /// Names a channel of which no noise is known.
+    pub fn new(
+        parts: Vec<&'p Linearised>,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+        width: usize,
+    ) -> Result<Self, RefineError> {
+        let noise = FilterNoise::new(parts[0], noise, discrepancies)?;
+        let (states, axes) = (parts[0].sizes.states, parts[0].sizes.axes);
+        let (order, zero) = (states + axes, V::splat(0.0));
+        let mut covariance = vec![zero; order * order];
+        for (row, variance) in noise.start_variances().enumerate() {
+            covariance[row * (order + 1)] = V::splat(variance);
+        }
+        Ok(Self {
+            parts,
+            noise,
+            transition: Transition::new(states, axes),
+            states,
+            order,
+            width,
+            deviations: vec![zero; order * width],
+            covariance,
+            moved: vec![zero; order * width],
+            product: vec![zero; order * order],
+            error: vec![zero; width],
+            gain: vec![zero; order],
+            gathered: Vec::new(),
+        })
+    }
+
+    /// The sample of each lane; a part that is over stays `last` samples from its end.
+    #[inline(always)]
+    fn sample(part: &Linearised, k: usize, last: usize) -> usize {
+        k.min(part.samples.len().saturating_sub(last))
+    }
+
+    /// From sample `k` to the next.
+    #[inline(always)]
+    pub fn predict(&mut self, k: usize) {
+        self.transition.take(&self.parts, k, &self.noise);
+        self.move_deviations(k);
+        self.move_covariance();
+        self.add_noise();
+    }
+
+    /// Deviations at the next sample: what becomes of them, what the model moves more than the
+    /// path, and what columns move.
+    #[inline(always)]
+    fn move_deviations(&mut self, k: usize) {
+        let Self { parts, transition, states, width, deviations, moved, gathered, .. } = self;
+        let (n, width) = (*states, *width);
+        let columns = parts[0].sizes.columns;
+        let block = parts[0].sizes.axes * columns;
+        let caused = V::row(
+            parts,
+            |_, part| &part.accelerations[Self::sample(part, k, 2) * block..][..block],
+            gathered,
+        );
+        for (row, target) in moved.chunks_exact_mut(width).take(n).enumerate() {
+            V::combine(transition.row(row), deviations, width, target);
+            for (lane, part) in parts.iter().enumerate() {
+                *target[0].lane_mut(lane) += part.defect[Self::sample(part, k, 2) * n + row];
+            }
+            if width == 1 {
+                continue;
+            }
+            for (weight, caused) in transition.caused(row).iter().zip(caused.chunks(columns.max(1)))
+            {
+                if !weight.is_idle() {
+                    axpy(*weight, caused, &mut target[1..]);
+                }
+            }
+        }
+        for (axis, kept) in transition.kept().iter().enumerate() {
+            let (from, to) = ((n + axis) * width, &mut moved[(n + axis) * width..][..width]);
+            to.iter_mut().zip(&deviations[from..]).for_each(|(to, from)| *to = *kept * *from);
+        }
+        std::mem::swap(&mut self.moved, &mut self.deviations);
+    }
+
+    /// `F P F'`, made exactly symmetric.
+    #[inline(always)]
+    fn move_covariance(&mut self) {
+        let Self { transition, states, order, covariance, product, .. } = self;
+        let (n, order) = (*states, *order);
+        for (row, target) in product.chunks_exact_mut(order).take(n).enumerate() {
+            V::combine(transition.row(row), covariance, order, target);
+        }
+        for (axis, kept) in transition.kept().iter().enumerate() {
+            let (at, from) = ((n + axis) * order, &covariance[(n + axis) * order..][..order]);
+            let to = &mut product[at..][..order];
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = *kept * *from);
+        }
+        for row in 0..order {
+            let left = &product[row * order..][..order];
+            let target = &mut covariance[row * order..][..=row];
+            let (by_states, by_axes) = target.split_at_mut(n.min(row + 1));
+            V::combine(left, transition.columns(), n, by_states);
+            for ((to, left), kept) in by_axes.iter_mut().zip(&left[n..]).zip(transition.kept()) {
+                *to = *left * *kept;
+            }
+        }
+        for row in 0..order {
+            for column in 0..row {
+                covariance[column * order + row] = covariance[row * order + column];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_noise(&mut self) {
+        let (n, diagonal, dt) = (self.states, self.order + 1, self.transition.dt());
+        for (state, density) in self.noise.state_densities().enumerate() {
+            self.covariance[state * diagonal].add_product(V::splat(density), dt);
+        }
+        for (axis, discrepancy) in self.noise.discrepancies().iter().enumerate() {
+            let white = V::splat(discrepancy.white.powi(2));
+            self.covariance[axis * diagonal].add_product(dt, white);
+            let variance = V::splat(discrepancy.deviation.powi(2));
+            let renewed = self.transition.renewed()[axis];
+            self.covariance[(n + axis) * diagonal].add_product(renewed, variance);
+        }
+    }
+
+    /// Takes the readings of sample `k`; `take` is given each prediction error (the residual's,
+    /// then minus each column's) and its variance.
+    #[inline(always)]
+    pub fn update(&mut self, k: usize, mut take: impl FnMut(&[V], V)) {
+        for channel in 0..self.parts[0].channels.len() {
+            self.read(k, channel);
+            let own = match self.parts[0].by_state {
+                None => self.expect_state(self.parts[0].channels[channel].1),
+                Some(_) => self.expect_states(k, channel),
+            };
+            let variance = own + V::splat(self.noise.reading_variance(channel));
+            take(&self.error, variance);
+            self.correct(variance);
+        }
+    }
+
+    /// Fills the error with the reading of a channel, less what columns and rates make it.
+    #[inline(always)]
+    fn read(&mut self, k: usize, channel: usize) {
+        self.error.fill(V::splat(0.0));
+        for lane in 0..self.parts.len() {
+            let part = self.parts[lane];
+            let at = Self::sample(part, k, 1);
+            let reading = at * part.channels.len() + channel;
+            *self.error[0].lane_mut(lane) = part.reading[reading];
+            let seen = part.measured.len();
+            for (place, &column) in part.measured.iter().enumerate() {
+                if let Some(error) = self.error.get_mut(1 + column) {
+                    *error.lane_mut(lane) -= part.by_column[reading * seen + place];
+                }
+            }
+            for response in part.by_rate.iter().filter(|response| response.channel == channel) {
+                let faster = self.faster(at, lane, response.state);
+                let place = response.column.map_or(0, |column| 1 + column);
+                if let Some(error) = self.error.get_mut(place) {
+                    *error.lane_mut(lane) -= response.by[at] * faster;
+                }
+            }
+        }
+    }
+
+    /// By how much the model has a state change faster where the filter expects the ship than on
+    /// the path. The discrepancy stays out: where it is not what the filter takes it for, its
+    /// estimate runs after the readings, and their prediction errors go with it.
+    #[inline(always)]
+    fn faster(&self, at: usize, lane: usize, state: usize) -> f64 {
+        let (n, part) = (self.states, self.parts[lane]);
+        let interval = Self::sample(part, at, 2);
+        let row = &part.jacobian[(interval * n + state) * n..][..n];
+        let expected = |state: usize| {
+            let mut deviation = self.deviations[state * self.width];
+            *deviation.lane_mut(lane)
+        };
+        row.iter().enumerate().map(|(state, slope)| slope * expected(state)).sum()
+    }
+
+    /// Takes from the error what deviations make a channel say that is a state, and fills `gain`
+    /// with its covariances; returns its variance.
+    #[inline(always)]
+    fn expect_state(&mut self, place: usize) -> V {
+        let own = &self.deviations[place * self.width..][..self.width];
+        axpy(V::splat(-1.0), own, &mut self.error);
+        self.gain.copy_from_slice(&self.covariance[place * self.order..][..self.order]);
+        self.gain[place]
+    }
+
+    /// The same of a channel that says several states at once.
+    #[inline(always)]
+    fn expect_states(&mut self, k: usize, channel: usize) -> V {
+        let Self { parts, states, order, width, deviations, covariance, error, gain, .. } = self;
+        let (n, order, width) = (*states, *order, *width);
+        let channels = parts[0].channels.len();
+        let weights = V::row(
+            parts,
+            |_, part| {
+                let row = (Self::sample(part, k, 1) * channels + channel) * n;
+                part.by_state.as_ref().map_or(&[], |by| &by[row..][..n])
+            },
+            &mut self.gathered,
+        );
+        gain.fill(V::splat(0.0));
+        for (state, weight) in weights.iter().enumerate().filter(|(_, weight)| !weight.is_idle()) {
+            axpy(-*weight, &deviations[state * width..][..width], error);
+            axpy(*weight, &covariance[state * order..][..order], gain);
+        }
+        let mut own = V::splat(0.0);
+        weights.iter().zip(&*gain).for_each(|(weight, gain)| own.add_product(*weight, *gain));
+        own
+    }
+
+    /// Deviations and covariance after a reading.
+    #[inline(always)]
+    fn correct(&mut self, variance: V) {
+        let Self { order, width, deviations, covariance, error, gain, .. } = self;
+        let rows = deviations.chunks_exact_mut(*width).zip(covariance.chunks_exact_mut(*order));
+        for ((deviations, covariance), own) in rows.zip(&*gain) {
+            let by = *own / variance;
+            axpy(by, error, deviations);
+            axpy(-by, gain, covariance);
+        }
+    }
+}
+
+impl KalmanFilter<'_, f64> {
+    /// Deviation of each state and discrepancy; with columns, the residual's.
+    pub fn mean(&self) -> DVector<f64> {
+        DVector::from_fn(self.order, |place, _| self.deviations[place * self.width])
+    }
+
+    /// Covariance of states and discrepancies.
+    pub fn covariance(&self) -> DMatrix<f64> {
+        DMatrix::from_row_slice(self.order, self.order, &self.covariance)
+    }
+
+    /// How deviations have gone from the last sample to this one.
+    pub fn transition(&self) -> DMatrix<f64> {
+        self.transition.matrix()
+    }
+}

@@ -1,0 +1,150 @@
+//! How deviations and discrepancies go from a sample to the next.
+
+use nalgebra::DMatrix;
+
+use super::filter_noise::FilterNoise;
+use super::filter_value::FilterValue;
+use super::linearised::Linearised;
+
+/// The transition matrix of an interval, to second order in its time: rows of states over states
+/// and discrepancies; a discrepancy keeps a share of itself alone.
+pub(super) struct Transition<V> {
+    states: usize,
+    axes: usize,
+    /// States by states and discrepancies.
+    rows: Vec<V>,
+    /// Its transpose, along whose rows products with it are summed in wide instructions.
+    columns: Vec<V>,
+    /// `dt (I + A dt/2)` on the accelerations: states by axes.
+    caused: Vec<V>,
+    /// Of each axis, how much of its discrepancy stays.
+    kept: Vec<V>,
+    /// And how much of its variance is renewed.
+    renewed: Vec<V>,
+    square: Vec<V>,
+    gathered: Vec<V>,
+    dt: V,
+}
+
+impl<V: FilterValue> Transition<V> {
+    pub fn new(states: usize, axes: usize) -> Self {
+        let zeros = |count: usize| vec![V::splat(0.0); count];
+        Self {
+            states,
+            axes,
+            rows: zeros(states * (states + axes)),
+            columns: zeros((states + axes) * states),
+            caused: zeros(states * axes),
+            kept: zeros(axes),
+            renewed: zeros(axes),
+            square: zeros(states),
+            gathered: Vec::new(),
+            dt: V::splat(f64::NAN),
+        }
+    }
+
+    /// Becomes that from sample `k` to the next; a part that is over stays in its last interval.
+    #[inline(always)]
+    pub fn take(&mut self, parts: &[&Linearised], k: usize, noise: &FilterNoise) {
+        self.take_times(parts, k, noise);
+        let Self { states, axes, rows, columns, caused, square, gathered, dt, .. } = self;
+        let (n, axes, dt) = (*states, *axes, *dt);
+        let order = n + axes;
+        let jacobian =
+            V::row(parts, |_, part| &part.jacobian[interval(part, k) * n * n..][..n * n], gathered);
+        let half = V::splat(0.5);
+        for row in 0..n {
+            let slopes = &jacobian[row * n..][..n];
+            V::combine(slopes, jacobian, n, square);
+            for column in 0..n {
+                let unit = V::splat(f64::from(u8::from(row == column)));
+                let mut value = unit;
+                value.add_product(dt, slopes[column]);
+                value.add_product(half * dt * dt, square[column]);
+                rows[row * order + column] = value;
+                columns[column * n + row] = value;
+            }
+            for axis in 0..axes {
+                let mut by = V::splat(f64::from(u8::from(row == axis)));
+                by.add_product(half * dt, slopes[axis]);
+                let by = dt * by;
+                caused[row * axes + axis] = by;
+                rows[row * order + n + axis] = by;
+                columns[(n + axis) * n + row] = by;
+            }
+        }
+    }
+
+    /// Times to the next samples, with what follows from them where they are others than before.
+    #[inline(always)]
+    fn take_times(&mut self, parts: &[&Linearised], k: usize, noise: &FilterNoise) {
+        for (lane, part) in parts.iter().enumerate() {
+            let from = interval(part, k);
+            let dt = part.t_s[from + 1] - part.t_s[from];
+            let known = self.dt.lane_mut(lane);
+            if dt.to_bits() == known.to_bits() {
+                continue;
+            }
+            *known = dt;
+            for (axis, discrepancy) in noise.discrepancies().iter().enumerate() {
+                *self.kept[axis].lane_mut(lane) = (-dt / discrepancy.time_s).exp();
+                *self.renewed[axis].lane_mut(lane) = 1.0 - (-2.0 * dt / discrepancy.time_s).exp();
+            }
+        }
+    }
+
+    /// What a state becomes of: states and discrepancies.
+    #[inline(always)]
+    pub fn row(&self, state: usize) -> &[V] {
+        let order = self.states + self.axes;
+        &self.rows[state * order..][..order]
+    }
+
+    /// What each state becomes of each state and discrepancy, by these.
+    #[inline(always)]
+    pub fn columns(&self) -> &[V] {
+        &self.columns
+    }
+
+    /// By how much each acceleration moves a state.
+    #[inline(always)]
+    pub fn caused(&self, state: usize) -> &[V] {
+        &self.caused[state * self.axes..][..self.axes]
+    }
+
+    /// How much of each discrepancy stays.
+    #[inline(always)]
+    pub fn kept(&self) -> &[V] {
+        &self.kept
+    }
+
+    /// How much of the variance of each discrepancy is renewed.
+    #[inline(always)]
+    pub fn renewed(&self) -> &[V] {
+        &self.renewed
+    }
+
+    /// The time of the interval, s.
+    #[inline(always)]
+    pub fn dt(&self) -> V {
+        self.dt
+    }
+}
+
+impl Transition<f64> {
+    /// The whole matrix.
+    pub fn matrix(&self) -> DMatrix<f64> {
+        let (n, order) = (self.states, self.states + self.axes);
+        DMatrix::from_fn(order, order, |row, column| match row.checked_sub(n) {
+            None => self.rows[row * order + column],
+            Some(axis) if row == column => self.kept[axis],
+            Some(_) => 0.0,
+        })
+    }
+}
+
+/// The interval of a part that begins with sample `k`, or its last.
+#[inline(always)]
+fn interval(part: &Linearised, k: usize) -> usize {
+    k.min(part.samples.len().saturating_sub(2))
+}

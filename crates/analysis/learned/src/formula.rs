@@ -1,0 +1,166 @@
+//! A learned correction as formulas, by which exports write it down: operation for operation what
+//! is evaluated in a simulation.
+
+use sistership_formula::{Comparison, Expr, Function};
+use sistership_model::branch::{BranchInput, BranchMode, BranchOutput, Signal};
+use sistership_simulation::branch::{AdditionFormulas, LAW_RATES};
+
+use crate::domain::FadedDomain;
+use crate::expressions::{added, divided, subtracted};
+use crate::kernels::Kernels;
+use crate::perceptron::Perceptron;
+use crate::regressor::Regressor;
+use crate::tree::Tree;
+
+/// Formulas while they are written: what is used more than once gets a name.
+#[derive(Debug, Default)]
+pub(crate) struct FormulaWriter {
+    values: Vec<(String, Expr)>,
+}
+
+impl FormulaWriter {
+    /// Gives an expression a name.
+    fn value(&mut self, expr: Expr) -> Expr {
+        let name = format!("correction.{}", self.values.len());
+        self.values.push((name.clone(), expr));
+        Expr::Name(name)
+    }
+
+    fn regressor(&mut self, regressor: &Regressor, inputs: &[Expr]) -> Expr {
+        match regressor {
+            Regressor::RandomForest(trees) => {
+                let sum = sum(trees.iter().map(|tree| tree.formula(inputs)));
+                divided(sum, trees.len() as f64)
+            }
+            Regressor::BoostedTrees(boosted) => {
+                let trees = boosted.trees.iter().map(|tree| tree.formula(inputs));
+                added(Expr::Number(boosted.first), sum(trees))
+            }
+            Regressor::KernelRidge(kernels) => kernel_sum(kernels, inputs),
+            Regressor::Perceptron(network) => self.network(network, inputs),
+        }
+    }
+
+    /// Layer by layer; a neuron answers `x / sqrt(1 + x^2)`.
+    fn network(&mut self, network: &Perceptron, inputs: &[Expr]) -> Expr {
+        let mut here = inputs.to_vec();
+        let layers: Vec<_> = network.layers().collect();
+        for (place, (weights, biases)) in layers.iter().enumerate() {
+            let rows = weights.chunks_exact(here.len());
+            let sums: Vec<Expr> =
+                rows.zip(*biases).map(|(row, bias)| affine(row, *bias, &here)).collect();
+            here = match place + 1 < layers.len() {
+                false => sums,
+                true => sums.into_iter().map(|sum| self.neuron(sum)).collect(),
+            };
+        }
+        here.into_iter().next().unwrap_or(Expr::Number(0.0))
+    }
+
+    fn neuron(&mut self, sum: Expr) -> Expr {
+        let x = self.value(sum);
+        let square = added(Expr::Number(1.0), x.clone().times(x.clone()));
+        let root = Expr::Call(Function::Sqrt, vec![square]);
+        let factor = Expr::Divide(Box::new(Expr::Number(1.0)), Box::new(root));
+        self.value(x.times(factor))
+    }
+}
+
+/// Everything that a correction adds, by its outputs with their places among the rates.
+pub(crate) fn formulas(
+    mode: BranchMode,
+    outputs: &[(usize, BranchOutput, Regressor)],
+    domain: &FadedDomain,
+) -> AdditionFormulas {
+    let mut writer = FormulaWriter::default();
+    let share = domain.formula(&mut |expr| writer.value(expr));
+    let share = writer.value(share);
+    let mut added: [Option<Expr>; 3] = [None, None, None];
+    for (place, output, regressor) in outputs {
+        let answer = answer(&mut writer, output, regressor);
+        let difference = match mode {
+            BranchMode::Parallel => answer,
+            BranchMode::Convert | BranchMode::Serial => {
+                subtracted(answer, Expr::Name(LAW_RATES[*place].to_owned()))
+            }
+        };
+        added[*place] = Some(share.clone().times(difference));
+    }
+    AdditionFormulas { values: writer.values, added }
+}
+
+/// An output within the range of its training.
+fn answer(writer: &mut FormulaWriter, output: &BranchOutput, regressor: &Regressor) -> Expr {
+    let inputs: Vec<Expr> = output.inputs.iter().map(|input| writer.value(scaled(input))).collect();
+    let answer = writer.regressor(regressor, &inputs);
+    let [low, high] = output.range.map(Expr::Number);
+    let scaled = Expr::Number(output.scale).times(answer);
+    let above = Expr::Call(Function::Max, vec![scaled, low]);
+    Expr::Call(Function::Min, vec![above, high])
+}
+
+/// An input as the weights take it.
+fn scaled(input: &BranchInput) -> Expr {
+    let name = |name: &str| Expr::Name(name.to_owned());
+    let signal = match input.signal {
+        Signal::U => name("u"),
+        Signal::V => name("v"),
+        Signal::R => name("r"),
+        Signal::Delta => name("delta"),
+        Signal::N => name("n"),
+        Signal::Beta => {
+            Expr::Call(Function::Atan2, vec![Expr::Negate(Box::new(name("v"))), name("u")])
+        }
+        Signal::UDot => name(LAW_RATES[0]),
+        Signal::VDot => name(LAW_RATES[1]),
+        Signal::RDot => name(LAW_RATES[2]),
+    };
+    divided(subtracted(signal, Expr::Number(input.centre)), input.scale)
+}
+
+fn kernel_sum(kernels: &Kernels, inputs: &[Expr]) -> Expr {
+    let twice = 2.0 * kernels.length * kernels.length;
+    let kernel = |centre: &[f64]| {
+        let square = |(c, x): (&f64, &Expr)| {
+            let offset = subtracted(Expr::Number(*c), x.clone());
+            offset.clone().times(offset)
+        };
+        let square = sum(centre.iter().zip(inputs).map(square));
+        let below = added(Expr::Number(1.0), divided(square, twice));
+        Expr::Divide(Box::new(Expr::Number(1.0)), Box::new(below))
+    };
+    let centres = kernels.centres.chunks_exact(inputs.len()).zip(&kernels.factors);
+    let terms = centres.map(|(centre, factor)| Expr::Number(*factor).times(kernel(centre)));
+    added(Expr::Number(kernels.mean), sum(terms))
+}
+
+/// `bias + row inputs`
+fn affine(row: &[f64], bias: f64, inputs: &[Expr]) -> Expr {
+    let terms = row.iter().zip(inputs).map(|(w, x)| Expr::Number(*w).times(x.clone()));
+    added(Expr::Number(bias), sum(terms))
+}
+
+/// `if(input <= bound, below, above)`
+pub(crate) fn split(input: Expr, bound: f64, [below, above]: [Expr; 2]) -> Expr {
+    let parts = [input, Expr::Number(bound), below, above];
+    Expr::If(Comparison::LessOrEqual, Box::new(parts))
+}
+
+fn sum(terms: impl Iterator<Item = Expr>) -> Expr {
+    terms.reduce(added).unwrap_or(Expr::Number(0.0))
+}
+
+impl Tree {
+    /// The answer as nested choices.
+    pub fn formula(&self, inputs: &[Expr]) -> Expr {
+        self.node_formula(0, inputs)
+    }
+
+    fn node_formula(&self, at: usize, inputs: &[Expr]) -> Expr {
+        let (input, right, value) = self.node(at);
+        let Some(input) = input else { return Expr::Number(value) };
+        let below = self.node_formula(at + 1, inputs);
+        let above = self.node_formula(right, inputs);
+        split(inputs[input].clone(), value, [below, above])
+    }
+}

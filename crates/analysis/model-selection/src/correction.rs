@@ -1,0 +1,140 @@
+//! What a learned correction must pass, beside trials held out at random, before it is taken.
+
+use rayon::prelude::*;
+use sistership_assessment::uncertainty::student;
+use sistership_identification::refine::{Request, Settings, fit_model};
+use sistership_learned::{
+    BranchCheck, BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, TrainError,
+    Training, TriedKind, corrected, judge_folds,
+};
+use sistership_model::Model;
+use sistership_model::trial::Trial;
+use sistership_simulation::Ship;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+
+use crate::branch::Foundation;
+use crate::extremes::extremes;
+use crate::sailed::unsailed_rudder;
+use crate::scatter::scatter_ratio;
+
+/// A kind of correction that won on trials held out.
+pub(super) struct Correction<'a> {
+    /// What it was learned beside.
+    pub foundation: &'a Foundation<'a>,
+    /// What it won on.
+    pub on: HeldOutTrials<'a>,
+    /// The kind.
+    pub kind: BranchKind,
+    /// Longest step of simulations, s.
+    pub step_s: f64,
+}
+
+impl Correction<'_> {
+    /// The choice after every check until one is not passed, the cheapest first.
+    ///
+    /// # Errors
+    /// It cannot be trained.
+    pub fn checked(&self, mut choice: BranchChoice) -> Result<BranchChoice, TrainError> {
+        let model = &self.foundation.refinement.model;
+        let training = BranchSettings::default().of(self.kind);
+        let training = training.training(model, self.on.law, self.on.trials)?;
+        type Check<'b> = &'b dyn Fn() -> Result<BranchCheck, TrainError>;
+        let tried = choice.tried.iter().find(|tried| tried.kind == self.kind).cloned();
+        let level = || Ok(level(tried.as_ref(), self.on.trials.len()));
+        let sails = || self.sails();
+        let certainty = || self.certainty(&training);
+        let elsewhere = || self.elsewhere(&training);
+        let checks: [Check<'_>; 4] = [&level, &sails, &certainty, &elsewhere];
+        for check in checks {
+            let check = check()?;
+            let passed = check.passed;
+            choice.reason += &words(&check);
+            choice.checks.push(check);
+            if !passed {
+                choice.taken = None;
+                break;
+            }
+        }
+        Ok(choice)
+    }
+
+    /// Whether it sails what every model must, trained on all trials.
+    fn sails(&self) -> Result<BranchCheck, TrainError> {
+        let Foundation { refinement, trials, .. } = *self.foundation;
+        let settings = BranchSettings::default().of(self.kind);
+        let training = settings.training(&refinement.model, self.on.law, trials)?;
+        let model = corrected(&refinement.model.foundation(), self.on.law, trials, &training)?;
+        let of = |model: &Model| unsailed_rudder(model, self.on.law, trials).is_some();
+        let count = |fails: bool| if fails { 1.0 } else { 0.0 };
+        let (own, both) = (count(of(&refinement.model)), count(of(&model)));
+        Ok(check("rudders and motions that no trial had, as failures", own, both))
+    }
+
+    /// Whether the models of folds are no further apart in the standard manoeuvres.
+    fn certainty(&self, training: &Training) -> Result<BranchCheck, TrainError> {
+        let pair = |fold: &HeldOutFold| {
+            let both = self.on.corrected(fold, training)?;
+            Ok((self.standard(&fold.foundation)?, self.standard(&both)?))
+        };
+        let pairs: Vec<(StandardManoeuvres, StandardManoeuvres)> =
+            self.on.folds.par_iter().map(pair).collect::<Result<_, TrainError>>()?;
+        let (own, both): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+        let ratio = scatter_ratio(&own, &both);
+        Ok(check("variance of the standard manoeuvres over folds, relative", 1.0, ratio))
+    }
+
+    fn standard(&self, model: &Model) -> Result<StandardManoeuvres, TrainError> {
+        let mut ship = Ship::new(model, self.on.law)?;
+        ship.forget_validity();
+        let settings = ManoeuvreSettings { figures_only: true, ..ManoeuvreSettings::default() };
+        Ok(standard(&ship, &settings))
+    }
+
+    /// Whether it is no worse on the trials of the largest and least rudder angles and speeds, each
+    /// held out of both halves.
+    fn elsewhere(&self, training: &Training) -> Result<BranchCheck, TrainError> {
+        let what = "trials of the largest and least rudder angles and speeds, held out";
+        let held_out = extremes(self.foundation.trials);
+        let folds: Vec<HeldOutFold> =
+            held_out.into_par_iter().filter_map(|places| self.refitted(places)).collect();
+        let on = HeldOutTrials { folds: &folds, ..self.on };
+        Ok(judge_folds(&on, training, self.step_s)?.map_or_else(
+            || check("trials of other rudder angles and speeds: there are none", 0.0, 0.0),
+            |judged| check(what, judged.foundation, judged.branch),
+        ))
+    }
+
+    /// The chosen refinement without some trials; none where the others make no model.
+    fn refitted(&self, held_out: Vec<usize>) -> Option<HeldOutFold> {
+        let Foundation { request, trials, .. } = *self.foundation;
+        let others = trials.iter().enumerate().filter(|(place, _)| !held_out.contains(place));
+        let others: Vec<&Trial> = others.map(|(_, trial)| *trial).collect();
+        let settings = Settings { held_out: Vec::new(), ..request.settings.clone() };
+        let request = Request { trials: &others, settings: &settings, ..request };
+        let foundation = fit_model(&request).ok()?.foundation();
+        Some(HeldOutFold { foundation, held_out })
+    }
+}
+
+/// Whether the gain on trials held out at random is sure at a level of 95 %.
+fn level(tried: Option<&TriedKind>, trials: usize) -> BranchCheck {
+    let what = "trials held out, sure to 95 %";
+    tried.map_or_else(
+        || check(what, 0.0, f64::MAX),
+        |tried| {
+            let sure = student(trials.max(2) - 1) * tried.standard_error;
+            check(what, tried.foundation, tried.branch + sure)
+        },
+    )
+}
+
+fn check(what: &str, foundation: f64, branch: f64) -> BranchCheck {
+    let passed = branch <= foundation;
+    BranchCheck { what: what.to_owned(), foundation, branch, passed }
+}
+
+fn words(check: &BranchCheck) -> String {
+    let BranchCheck { what, foundation, branch, passed } = check;
+    let end = if *passed { "" } else { ": it is not taken" };
+    format!("; {what}: {branch:.3e} with it and {foundation:.3e} without{end}")
+}

@@ -1,0 +1,172 @@
+//! What the search takes of trials at constant revolutions comes to rest, stops and goes astern.
+//! `--ignored` asks it of every ship of the zoo and prints a table (docs/evidence/propulsion.md).
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+
+use sistership_identification::refine::{Method as Estimator, Request, Settings, refine};
+use sistership_identification::testing::{mariner, trials, with};
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::{Model, Vessel, Zoo};
+use sistership_model_selection::{Asked, Start, best_start};
+use sistership_propulsion::{PropulsionFault, check};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::{RECORDED, Trajectory, at, straight};
+use sistership_simulation::{Method, Order, Run, Ship};
+
+/// Revolutions of ships whose law takes none, 1/s.
+const REVOLUTIONS: f64 = 1.5;
+/// How long a propeller is stopped or reversed, by the time in which the ship sails its length.
+const LENGTHS: f64 = 60.0;
+
+/// A ship with trials of its own law, noise of a hundredth in them.
+struct Stranger {
+    vessel: Vessel,
+    trials: Vec<Trial>,
+    /// The ship itself, where its law has a propeller.
+    truth: Option<Ship>,
+}
+
+fn stranger(zoo: &Zoo, vessel: &Vessel) -> Option<Stranger> {
+    let model = zoo.published(vessel, None).ok()?;
+    let ship = Ship::new(&model, zoo.law(&model.law)?).ok()?;
+    let length_s = ship.lpp_m() / ship.approach_speed_m_s();
+    let settings = ManoeuvreSettings {
+        step_s: Some(0.05 * length_s),
+        duration_s: Some(25.0 * length_s),
+        ..ManoeuvreSettings::default()
+    };
+    let tracks = [
+        zigzag(&ship, 20.0, 20.0, &settings).ok()?.track,
+        zigzag(&ship, -10.0, 10.0, &settings).ok()?.track,
+        turn(&ship, 35.0, &settings).ok()?.track,
+        turn(&ship, -20.0, &settings).ok()?.track,
+    ];
+    let n_rps = model.revolutions_rps.unwrap_or(REVOLUTIONS);
+    let trials = tracks.iter().enumerate().map(|(k, track)| recorded(track, k, n_rps)).collect();
+    let vessel = bare(vessel, &model);
+    Some(Stranger { vessel, trials, truth: ship.has_propeller().then_some(ship) })
+}
+
+fn recorded(track: &Trajectory, index: usize, n_rps: f64) -> Trial {
+    let column = |place: usize| -> Vec<f64> {
+        let size = track.states.iter().map(|state| state[place].abs()).fold(0.0, f64::max);
+        let shake = |k: usize| (12.9898 * (k + 977 * place + 31 * index) as f64).sin();
+        track.states.iter().enumerate().map(|(k, s)| s[place] + 0.01 * size * shake(k)).collect()
+    };
+    let mut channels: BTreeMap<Channel, Vec<f64>> =
+        RECORDED[..6].iter().map(|&(channel, place)| (channel, column(place))).collect();
+    channels.insert(Channel::Delta, track.column(at::DELTA));
+    channels.insert(Channel::N, vec![n_rps; track.t_s.len()]);
+    Trial { name: format!("trial {index}"), t_s: track.t_s.clone(), channels, ..Trial::default() }
+}
+
+/// The ship without models of its own.
+fn bare(vessel: &Vessel, model: &Model) -> Vessel {
+    let mut bare = vessel.clone();
+    bare.file.models = Vec::new();
+    bare.file.free_running = Vec::new();
+    if let Some(speed) = model.speed_m_s {
+        bare.particulars.insert("service_speed_m_s".into(), Quantity::new(speed, "model"));
+    }
+    bare
+}
+
+fn found(zoo: &Zoo, stranger: &Stranger) -> Result<Start, String> {
+    let trials: Vec<&Trial> = stranger.trials.iter().collect();
+    let (champions, settings) = (BTreeMap::new(), Settings::default());
+    let target = &stranger.vessel;
+    let asked = Asked { zoo, target, champions: &champions, trials: &trials, settings: &settings };
+    best_start(&asked, &|_, _| true).map_err(|error| error.to_string())
+}
+
+/// Speed by that of the approach at the end; none where the motion left the physical range.
+fn last(ship: &Ship, start: f64, turns: f64) -> Option<f64> {
+    let speed = ship.approach_speed_m_s();
+    let length_s = ship.lpp_m() / speed;
+    let order = Order { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
+    let run = Run {
+        start: straight(start * speed),
+        duration_s: LENGTHS * length_s,
+        step_s: 0.05 * length_s,
+        method: Method::Rk4,
+    };
+    let mut track = Trajectory::default();
+    ship.sail(run, &mut track, |_, _| Some(order)).ok()?;
+    Some(track.states.last()?[at::U] / speed)
+}
+
+/// A line of the table; the propeller stopped, reversed, and reversed from rest: without the
+/// balance, with it, and by the ship itself.
+fn line(stranger: &Stranger, start: &Start) -> String {
+    let (model, law) = (&start.refinement.model, &*start.entrant.law);
+    let without = Model { propulsion: None, ..model.clone() };
+    let ships = [&without, model].map(|model| Ship::new(model, law).unwrap());
+    let cell = |(share, turns)| {
+        let [before, after] = [&ships[0], &ships[1]].map(|ship| last(ship, share, turns));
+        let said = |share: Option<f64>| share.map_or("-".to_owned(), |share| format!("{share:.2}"));
+        let truth = stranger.truth.as_ref().and_then(|ship| last(ship, share, turns));
+        format!("{}, {}, {}", said(before), said(after), said(truth))
+    };
+    let cells = [(1.0, 0.0), (1.0, -1.0), (0.0, -1.0)].map(cell).join(" | ");
+    let balance = if model.propulsion.is_some() { "yes" } else { "no" };
+    let name = stranger.vessel.name();
+    format!("| {name} | {} | {balance} | {cells} |", start.entrant.name())
+}
+
+fn stops(start: &Start) -> bool {
+    let ship = Ship::new(&start.refinement.model, &start.entrant.law).unwrap();
+    check(&ship).is_ok()
+}
+
+#[test]
+fn what_is_taken_of_a_ship_without_revolutions_in_its_law_stops() {
+    let zoo = Zoo::embedded().unwrap();
+    let stranger = stranger(&zoo, zoo.vessel("mariner").unwrap()).unwrap();
+    let start = found(&zoo, &stranger).unwrap();
+    println!("{}", line(&stranger, &start));
+    assert!(stops(&start));
+}
+
+#[test]
+fn a_named_method_gives_a_law_without_revolutions_a_balance() {
+    let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+    let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let settings = Settings { method: Estimator::Weak, ..Settings::default() };
+    let request = Request {
+        target: zoo.vessel("mariner").unwrap(),
+        source: &model,
+        source_law: None,
+        law: &law,
+        trials: &trials,
+        population: &[],
+        settings: &settings,
+    };
+    let made = refine(&request, &|_, _| true).unwrap();
+    assert_eq!(check(&Ship::new(&made.model, &law).unwrap()), Ok(()));
+    let resistance = &made.model.propulsion.as_ref().unwrap().parameters["resistance"];
+    println!("{resistance:?}");
+    assert!(resistance.standard_error.unwrap() < 0.4 * resistance.value);
+    assert!(made.remarks.iter().any(|remark| remark.contains("surge is a balance")));
+    assert_eq!(check(&Ship::new(&model, &law).unwrap()), Err(PropulsionFault::NoRevolutions));
+}
+
+#[test]
+#[ignore = "minutes"]
+fn what_is_taken_of_every_ship_of_the_zoo_stops() {
+    let zoo = Zoo::embedded().unwrap();
+    let mut running = Vec::new();
+    for vessel in zoo.vessels() {
+        let Some(stranger) = stranger(&zoo, vessel) else { continue };
+        match found(&zoo, &stranger) {
+            Ok(start) => {
+                println!("{}", line(&stranger, &start));
+                running.extend((!stops(&start)).then(|| vessel.name().to_owned()));
+            }
+            Err(error) => println!("| {} | {error} |", vessel.name()),
+        }
+    }
+    assert!(running.is_empty(), "{running:?}");
+}

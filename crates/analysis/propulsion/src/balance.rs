@@ -1,0 +1,161 @@
+//! The surge balance of a model, by its trials and what is known of the ship beforehand.
+//!
+//! The self-propulsion point is that of the trials. With `s` the advance ratio there by that of
+//! zero thrust and `c` the tangent of the advance angle, the slope of surge by the speed there is
+//! `-(R/u)(2 + s/(1 - s) - c^2/(1 + c^2))`: what the trials say of it gives the resistance `R`, and
+//! the estimate from particulars gives it beforehand. Both are weighed by their precision.
+
+use std::collections::BTreeMap;
+
+use sistership_model::propulsion::Propulsion;
+use sistership_model::quantity::Quantity;
+use sistership_model::{Law, Model, Trial, particulars};
+
+use crate::covered::{Range, by_speed, revolutions, speeds};
+use crate::slope::{Figure, slope};
+use crate::thresholds::BALANCE;
+
+/// What is known of a model's propulsion.
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// The model, with its posterior where there is one.
+    pub model: &'a Model,
+    /// Its law.
+    pub law: &'a Law,
+    /// The estimate of the ship from her particulars, of the law `mmg`.
+    pub estimate: Option<&'a Model>,
+    /// The trials that it was fitted to.
+    pub trials: &'a [&'a Trial],
+}
+
+/// The propeller at the self-propulsion point.
+#[derive(Debug, Clone, Copy)]
+struct Working {
+    /// Advance ratio by that of zero thrust.
+    loading: f64,
+    /// `J/(0.7 pi)`.
+    advance: f64,
+    source: &'static str,
+}
+
+const TYPICAL: &str = "typical of ships: no estimate from particulars";
+const ESTIMATED: &str = "estimated from particulars";
+const TRIALS: &str = "self-propulsion point of the trials";
+const RANGE: &str = "range of the trials";
+const CHOSEN: &str = "docs/evidence/propulsion.md";
+
+/// The balance of a model; none where its speed or revolutions at the approach are not known.
+pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
+    let speed = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
+    let n_rps = of.model.revolutions_rps.filter(|n_rps| *n_rps > 0.0)?;
+    let working = of.estimate.and_then(working).unwrap_or(Working {
+        loading: BALANCE.loading,
+        advance: BALANCE.advance,
+        source: TYPICAL,
+    });
+    let mut parameters: BTreeMap<String, Quantity> = BTreeMap::new();
+    let mut add = |name: &str, quantity| parameters.insert(name.to_owned(), quantity);
+    add("resistance", resistance(of, working, [speed, n_rps]));
+    add("speed", Quantity::new(speed, TRIALS));
+    add("revolutions", Quantity::new(n_rps, TRIALS));
+    add("loading", Quantity::new(working.loading, working.source));
+    add("advance", Quantity::new(working.advance, working.source));
+    add("backing", Quantity::new(BALANCE.backing, CHOSEN));
+    let range = revolutions(of.trials, n_rps);
+    let takes_them = of.law.inputs.contains_key("n");
+    let seen = if takes_them { by_speed(of.trials, [speed, n_rps]) } else { [range[1], range[2]] };
+    let proportional = f64::from(u8::from(takes_them));
+    for (name, value) in
+        [("seen_from", seen[0]), ("seen_to", seen[1]), ("proportional", proportional)]
+    {
+        add(name, Quantity::new(value, RANGE));
+    }
+    add_range(&mut parameters, 'n', range);
+    add_range(&mut parameters, 'u', speeds(of.trials, speed));
+    Some(Propulsion { parameters })
+}
+
+/// Whether trials alone say what the propeller does: a law takes no revolutions, or coefficients
+/// multiply them.
+pub fn needs_balance(law: &Law) -> bool {
+    law.factors.contains_key("n") || !law.inputs.contains_key("n")
+}
+
+fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Range) {
+    let names = ["none_below", "full_from", "full_to", "none_above"];
+    for (name, value) in names.into_iter().zip(range) {
+        parameters.insert(format!("{of}_{name}"), Quantity::new(value, RANGE));
+    }
+}
+
+/// The propeller of an estimate where thrust and resistance balance.
+fn working(estimate: &Model) -> Option<Working> {
+    let parameter = |name: &str| estimate.parameters.get(name).map(|quantity| quantity.value);
+    let diameter_m = particulars::value(&estimate.particulars, "propeller_diameter_m")?;
+    let inflow = (1.0 - parameter("w_P0")?) * estimate.speed_m_s?;
+    let ratio = inflow / (estimate.revolutions_rps? * diameter_m);
+    let [k_0, k_1, k_2] = [parameter("k_0")?, parameter("k_1")?, parameter("k_2")?];
+    // The smaller positive root of k_0 + k_1 J + k_2 J^2, which falls from k_0 above zero.
+    let root = (k_1 * k_1 - 4.0 * k_0 * k_2).sqrt();
+    let zero = 2.0 * k_0 / (root - k_1);
+    let [least, most] = BALANCE.loadings;
+    let loading = ratio / zero;
+    (loading.is_finite() && loading > 0.0).then(|| Working {
+        loading: loading.clamp(least, most),
+        advance: ratio / (0.7 * std::f64::consts::PI),
+        source: ESTIMATED,
+    })
+}
+
+/// Resistance at the self-propulsion point, N.
+fn resistance(of: &Evidence<'_>, working: Working, at: [f64; 2]) -> Quantity {
+    let known = beforehand(of, at[0]);
+    let Working { loading, advance, source } = working;
+    let square = advance * advance;
+    let factor = 2.0 + loading / (1.0 - loading) - square / (1.0 + square);
+    let of_slope = slope(of.model, of.law, at).map(|slope| {
+        let (mean, by) = (-slope.mean * at[0] / factor, at[0] / factor);
+        let own = BALANCE.slope_deviation * mean.abs().max(known.mean);
+        Figure { mean, deviation: (slope.deviation * by).hypot(own) }
+    });
+    let Some(fitted) = of_slope.filter(|figure| figure.mean > 0.0) else {
+        return quantity(known, format!("{source}; the trials do not tell it"));
+    };
+    quantity(weighed(known, fitted), format!("{source}, and surge by speed in the trials"))
+}
+
+fn quantity(figure: Figure, source: String) -> Quantity {
+    Quantity { standard_error: Some(figure.deviation), ..Quantity::new(figure.mean, source) }
+}
+
+/// The mean of two figures by their precisions.
+fn weighed(a: Figure, b: Figure) -> Figure {
+    let [p, q] = [a, b].map(|figure| figure.deviation.powi(-2));
+    Figure { mean: (p * a.mean + q * b.mean) / (p + q), deviation: (p + q).powf(-0.5) }
+}
+
+/// What is known of the resistance before any trial, N.
+fn beforehand(of: &Evidence<'_>, speed_m_s: f64) -> Figure {
+    let [particulars, estimate] =
+        [Some(&of.model.particulars), of.estimate.map(|estimate| &estimate.particulars)];
+    let value = |name: &str| {
+        let of = [particulars, estimate].into_iter().flatten();
+        of.filter_map(|own| particulars::value(own, name)).next()
+    };
+    let density = value("water_density_kg_m3").unwrap_or(1025.0);
+    let length_m = value("lpp_m").unwrap_or(0.0);
+    let draught_m = value("draught_m").unwrap_or(0.05 * length_m);
+    let unit = 0.5 * density * length_m * draught_m * speed_m_s.powi(2);
+    let estimated = of.estimate.and_then(|estimate| estimate.coefficients.get("X_0"));
+    match estimated.filter(|x_0| x_0.value < 0.0) {
+        Some(x_0) => {
+            let mean = -x_0.value * unit;
+            let stated = x_0.standard_error.unwrap_or(0.0) * unit;
+            Figure { mean, deviation: stated.max(BALANCE.estimate_deviation * mean) }
+        }
+        None => {
+            let mean = BALANCE.resistance * unit;
+            Figure { mean, deviation: 0.5 * mean }
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! What a ship must do when her propeller is stopped or reversed, straight ahead and from a turn.
+
+use sistership_simulation::Ship;
+use sistership_simulation::envelope::Stopped;
+use sistership_simulation::integrate::Method;
+use sistership_simulation::plant::Work;
+use sistership_simulation::ship::{Order, Run};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+
+use crate::thresholds::CHECK;
+
+/// Why a ship does not do it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PropulsionFault {
+    /// It takes no revolutions, or nobody knows those of the approach.
+    #[error("takes no propeller revolutions that could be changed")]
+    NoRevolutions,
+    /// It does not slow down as a body in water does.
+    #[error(
+        "with the propeller stopped its speed changes by {rate:.2} of itself in the time in which \
+         it sails its length, which should lie between -{fastest} and -{slowest:.3}"
+    )]
+    Deceleration {
+        /// Rate by `L/U`, dimensionless.
+        rate: f64,
+        /// Bounds.
+        fastest: f64,
+        /// Bounds.
+        slowest: f64,
+    },
+    /// It speeds up where it should slow down.
+    #[error("{motion}: speeds up again, to {share:.2} of the approach speed")]
+    Rises {
+        /// What was ordered.
+        motion: &'static str,
+        /// The speed by that of the approach.
+        share: f64,
+    },
+    /// It has not arrived after a time.
+    #[error("{motion}: still at {share:.2} of the approach speed after {t_s:.0} s")]
+    Late {
+        /// What was ordered.
+        motion: &'static str,
+        /// The speed by that of the approach.
+        share: f64,
+        /// When, s.
+        t_s: f64,
+    },
+    /// It left the physical range.
+    #[error("{motion}: {stopped}")]
+    Stopped {
+        /// What was ordered.
+        motion: &'static str,
+        /// When and why.
+        stopped: Stopped,
+    },
+}
+
+/// Something that is ordered, and where it must end.
+struct Motion {
+    name: &'static str,
+    /// Speed at the beginning, and revolutions, by those of the approach.
+    start: f64,
+    revolutions: f64,
+    /// Whether it begins in a turn.
+    turning: bool,
+    /// Whether a speed, by that of the approach, is where it should end.
+    arrived: fn(f64) -> bool,
+}
+
+const STRAIGHT: [Motion; 4] = [
+    Motion {
+        name: "propeller stopped",
+        start: 1.0,
+        revolutions: 0.0,
+        turning: false,
+        arrived: |u| u < CHECK.rest,
+    },
+    Motion {
+        name: "propeller reversed",
+        start: 1.0,
+        revolutions: -1.0,
+        turning: false,
+        arrived: |u| u < -CHECK.rest,
+    },
+    Motion {
+        name: "astern from rest",
+        start: 0.0,
+        revolutions: -1.0,
+        turning: false,
+        arrived: |u| u < -CHECK.rest,
+    },
+    Motion {
+        name: "ahead from rest",
+        start: 0.0,
+        revolutions: 1.0,
+        turning: false,
+        arrived: |u| u > CHECK.ahead[0],
+    },
+];
+
+const TURNING: [Motion; 2] = [
+    Motion {
+        name: "propeller stopped in a turn",
+        start: 1.0,
+        revolutions: 0.0,
+        turning: true,
+        arrived: |u| u < CHECK.rest,
+    },
+    Motion {
+        name: "propeller reversed in a turn",
+        start: 1.0,
+        revolutions: -1.0,
+        turning: true,
+        arrived: |u| u < 0.0,
+    },
+];
+
+/// Checks that a ship comes to rest with the propeller stopped, stops and goes astern with it
+/// reversed, and gathers way from rest, all straight ahead.
+///
+/// # Errors
+/// The first motion that ends otherwise.
+pub fn check(ship: &Ship) -> Result<(), PropulsionFault> {
+    check_motions(ship, &STRAIGHT)
+}
+
+/// Checks that a ship comes to rest and stops out of a turn as well.
+///
+/// # Errors
+/// The first motion that ends otherwise.
+pub fn check_turning(ship: &Ship) -> Result<(), PropulsionFault> {
+    check_motions(ship, &TURNING)
+}
+
+fn check_motions(ship: &Ship, motions: &[Motion]) -> Result<(), PropulsionFault> {
+    let speed = ship.approach_speed_m_s();
+    if !ship.has_propeller() || ship.revolutions_at(speed) <= 0.0 {
+        return Err(PropulsionFault::NoRevolutions);
+    }
+    let longest_s = CHECK.patience * stopping_time_s(ship)?;
+    motions.iter().try_for_each(|motion| sailed(ship, motion, longest_s))
+}
+
+/// The speed over the deceleration with the propeller stopped, s.
+fn stopping_time_s(ship: &Ship) -> Result<f64, PropulsionFault> {
+    let speed = ship.approach_speed_m_s();
+    let surge = ship.rate_at(&straight(speed), 0.0, 0.0, &mut Work::default())[at::U];
+    let length_s = ship.lpp_m() / speed;
+    let rate = surge / speed * length_s;
+    let [least, most] = CHECK.stopping;
+    let (fastest, slowest) = (1.0 / least, 1.0 / most);
+    if (-fastest..=-slowest).contains(&rate) {
+        return Ok(length_s / -rate);
+    }
+    Err(PropulsionFault::Deceleration { rate, fastest, slowest })
+}
+
+/// What was seen of a motion so far.
+struct Watch {
+    /// The least speed, by that of the approach.
+    least: f64,
+    /// The last one.
+    last: f64,
+    rises: bool,
+    arrived: bool,
+}
+
+fn sailed(ship: &Ship, motion: &Motion, longest_s: f64) -> Result<(), PropulsionFault> {
+    let name = motion.name;
+    let (speed, length_s) = (ship.approach_speed_m_s(), ship.lpp_m() / ship.approach_speed_m_s());
+    let turn_s = if motion.turning { CHECK.turn * length_s } else { 0.0 };
+    let ahead_rps = ship.revolutions_at(speed);
+    let run = Run {
+        start: straight(motion.start * speed),
+        duration_s: turn_s + longest_s,
+        step_s: CHECK.step * length_s,
+        method: Method::Rk4,
+    };
+    let turn = Order { delta_rad: CHECK.turn_deg.to_radians(), n_rps: ahead_rps };
+    let ordered = Order { delta_rad: 0.0, n_rps: motion.revolutions * ahead_rps };
+    let mut watch =
+        Watch { least: f64::INFINITY, last: motion.start, rises: false, arrived: false };
+    let order = |t_s: f64, state: &StateVector| {
+        if t_s < turn_s {
+            return Some(turn);
+        }
+        watch.see(state[at::U] / speed, motion);
+        (!watch.rises && !watch.arrived).then_some(ordered)
+    };
+    let went = ship.sail(run, &mut Trajectory::default(), order);
+    went.map_err(|stopped| PropulsionFault::Stopped { motion: name, stopped })?;
+    match (watch.rises, watch.arrived) {
+        (true, _) => Err(PropulsionFault::Rises { motion: name, share: watch.last }),
+        (_, true) => Ok(()),
+        _ => Err(PropulsionFault::Late { motion: name, share: watch.last, t_s: longest_s }),
+    }
+}
+
+impl Watch {
+    /// Takes note of a speed. Out of a turn a ship may gain speed at first.
+    fn see(&mut self, share: f64, motion: &Motion) {
+        let should_fall = motion.revolutions <= 0.0 && !motion.turning;
+        let too_fast = share > CHECK.ahead[1];
+        self.rises = too_fast || should_fall && share > self.least + CHECK.rise;
+        (self.least, self.last) = (self.least.min(share), share);
+        self.arrived = (motion.arrived)(share);
+    }
+}

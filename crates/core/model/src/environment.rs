@@ -1,0 +1,167 @@
+//! Wind, current and depth of a prediction beside those that a model's trials covered.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::model::Model;
+use crate::validity::Region;
+
+/// The depth that a trial without one counts as, m: below the deepest sea (10,935 m).
+pub const DEEP_M: f64 = 12_000.0;
+
+/// What is no difference between a value and the range of the trials, by the value: an anemometer's
+/// last digit.
+const SLACK: f64 = 0.01;
+
+/// The surroundings that a prediction is asked for; absent where calm or deep.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Environment {
+    /// True wind speed, m/s.
+    pub wind_speed_m_s: Option<f64>,
+    /// Speed of the water over the ground, m/s.
+    pub current_speed_m_s: Option<f64>,
+    /// Water depth, m.
+    pub depth_m: Option<f64>,
+}
+
+/// An input of a prediction of which the model's trials tell nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct UncoveredInput {
+    /// Its name with the unit.
+    pub input: String,
+    /// Its value.
+    pub value: f64,
+    /// Least and greatest value that the trials recorded; absent where they recorded none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covered: Option<[f64; 2]>,
+    /// What that means for the prediction.
+    pub message: String,
+}
+
+/// An input, with the effect of the library by which it acts.
+struct EnvironmentInput {
+    name: &'static str,
+    words: &'static str,
+    unit: &'static str,
+    /// Names of [`Region::environment`] that count as it.
+    recorded: &'static [&'static str],
+    effect: &'static str,
+    /// What the prediction rests on instead of trials.
+    basis: &'static str,
+}
+
+const WIND: EnvironmentInput = EnvironmentInput {
+    name: "wind_speed_m_s",
+    words: "wind",
+    unit: "m/s",
+    recorded: &["wind_speed", "apparent_wind_speed"],
+    effect: "wind",
+    basis: "its force follows from a typical ship's coefficients, not from this ship's trials",
+};
+const CURRENT: EnvironmentInput = EnvironmentInput {
+    name: "current_speed_m_s",
+    words: "current",
+    unit: "m/s",
+    recorded: &[],
+    effect: "current",
+    basis: "it is taken to be uniform and steady, and to carry the water about the ship with it",
+};
+const DEPTH: EnvironmentInput = EnvironmentInput {
+    name: "depth_m",
+    words: "water depth",
+    unit: "m",
+    recorded: &["depth"],
+    effect: "shallow-water",
+    basis: "what shallow water changes follows from the law's formulas, not from trials",
+};
+
+impl Environment {
+    /// The inputs that the model's trials did not cover. Still air, still and deep water are no
+    /// inputs; neither is what acts by an effect that was found in trials.
+    pub fn uncovered(&self, model: &Model) -> Vec<UncoveredInput> {
+        let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
+        let asked = [
+            (WIND, positive(self.wind_speed_m_s)),
+            (CURRENT, positive(self.current_speed_m_s)),
+            (DEPTH, self.depth_m),
+        ];
+        let all = asked.into_iter().filter_map(|(input, value)| Some((input, value?)));
+        all.filter_map(|(input, value)| input.uncovered(value, model)).collect()
+    }
+}
+
+impl EnvironmentInput {
+    fn uncovered(&self, value: f64, model: &Model) -> Option<UncoveredInput> {
+        let covered = model.validity.as_ref().and_then(|region| self.covered(region));
+        let is_inside = covered.is_some_and(|[low, high]| {
+            (low - SLACK * value.abs()..=high + SLACK * value.abs()).contains(&value)
+        });
+        let carries = model.effects.iter().any(|effect| effect.name == self.effect);
+        if is_inside || (covered.is_none() && carries) {
+            return None;
+        }
+        let message = self.message(value, covered, model.validity.is_some());
+        Some(UncoveredInput { input: self.name.to_owned(), value, covered, message })
+    }
+
+    fn covered(&self, region: &Region) -> Option<[f64; 2]> {
+        self.recorded.iter().find_map(|name| region.environment.get(*name)).copied()
+    }
+
+    fn message(&self, value: f64, covered: Option<[f64; 2]>, has_trials: bool) -> String {
+        let Self { words, unit, basis, .. } = self;
+        let trials = match covered {
+            Some([low, high]) if high >= DEEP_M => {
+                format!("the trials had {low:.1} {unit} and deeper")
+            }
+            Some([low, high]) => format!("the trials had {low:.1} to {high:.1} {unit}"),
+            None if has_trials => "no trial of the model recorded any".to_owned(),
+            None => "the model does not say what its trials covered".to_owned(),
+        };
+        format!("{words} of {value:.1} {unit}: {trials}; {basis}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::zoo::Zoo;
+
+    fn names(environment: Environment, recorded: &[(&str, [f64; 2])]) -> Vec<String> {
+        let mut model = Zoo::embedded().unwrap().model("mariner").unwrap();
+        let columns = [("u".to_owned(), vec![5.0, 6.0])].into();
+        let mut region = Region::of(&columns).unwrap();
+        region.environment =
+            recorded.iter().map(|&(name, range)| (name.to_owned(), range)).collect();
+        model.validity = Some(region);
+        environment.uncovered(&model).into_iter().map(|one| one.message).collect()
+    }
+
+    #[test]
+    fn what_no_trial_recorded_is_named() {
+        let storm = Environment {
+            wind_speed_m_s: Some(25.0),
+            current_speed_m_s: Some(1.0),
+            depth_m: Some(12.0),
+        };
+        let all = names(storm, &[]);
+        assert_eq!(all.len(), 3, "{all:?}");
+        assert!(all[0].starts_with("wind of 25.0 m/s: no trial of the model recorded any"));
+        assert_eq!(names(Environment::default(), &[]), Vec::<String>::new());
+        let calm = Environment { wind_speed_m_s: Some(0.0), ..Environment::default() };
+        assert_eq!(names(calm, &[]), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_value_within_what_was_recorded_is_not_named() {
+        let wind = |speed| Environment { wind_speed_m_s: Some(speed), ..Environment::default() };
+        let recorded = [("wind_speed", [2.0, 8.0])];
+        assert!(names(wind(8.05), &recorded).is_empty());
+        assert!(names(wind(25.0), &recorded)[0].contains("the trials had 2.0 to 8.0 m/s"));
+        let depth = |depth| Environment { depth_m: Some(depth), ..Environment::default() };
+        assert!(names(depth(40.0), &[("depth", [15.0, DEEP_M])]).is_empty());
+        let shallow = names(depth(9.0), &[("depth", [15.0, DEEP_M])]);
+        assert!(shallow[0].contains("the trials had 15.0 m and deeper"), "{shallow:?}");
+    }
+}

@@ -1,0 +1,241 @@
+//! Propulsion where a model's trials do not reach: a surge balance of resistance and open-water
+//! thrust in place of what a law extrapolates straight ahead.
+//!
+//! The formulas are data (`models/propulsion/open-water.yaml`). Within the speeds and revolutions
+//! of the trials the law stays as it is. Beyond them it sees revolutions of its trials, and what it
+//! says straight ahead gives way to the balance. With `F_s` for what a law says straight ahead,
+//! rudder amidships and in still air, `P` for the balance, `n'` for the revolutions that the law
+//! sees and `w` for its share, surge becomes `F - (1 - w) F_s + P(u, n) - w P(u, n')`; sway, yaw
+//! and roll the same without `P`. What is linear in the coefficients stays so.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::coefficient::Axis;
+use crate::effect::qualified;
+use crate::error::FileError;
+use crate::law::{Input, Law, Parameter, Straight};
+use crate::quantity::Quantity;
+use crate::source::Source;
+use sistership_formula::units::{Dimension, Unit};
+use sistership_formula::{Expr, parse};
+
+/// The surge balance of a model, by the parameters that its formulas name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Propulsion {
+    /// Values of the parameters, SI.
+    pub parameters: BTreeMap<String, Quantity>,
+}
+
+/// The formulas as their file writes them.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BalanceFile {
+    #[serde(rename = "kind")]
+    _kind: BalanceKind,
+    #[serde(rename = "name")]
+    _name: String,
+    #[serde(rename = "title")]
+    _title: String,
+    #[serde(rename = "sources")]
+    _sources: BTreeMap<String, Source>,
+    #[serde(rename = "note")]
+    _note: String,
+    parameters: IndexMap<String, ParameterFile>,
+    sees: BTreeMap<String, String>,
+    values: IndexMap<String, String>,
+    weight: String,
+    surge: String,
+}
+
+#[derive(Debug, Deserialize)]
+enum BalanceKind {
+    #[serde(rename = "propulsion")]
+    Propulsion,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParameterFile {
+    unit: String,
+    meaning: String,
+}
+
+/// The formulas, read.
+#[derive(Debug)]
+struct Balance {
+    parameters: IndexMap<String, Parameter>,
+    sees: Vec<(String, Expr)>,
+    values: IndexMap<String, Expr>,
+    weight: Expr,
+    surge: Expr,
+}
+
+static BALANCE: LazyLock<Result<Balance, FileError>> = LazyLock::new(|| {
+    let text = include_str!("../../../../models/propulsion/open-water.yaml");
+    Balance::parse("propulsion/open-water.yaml", text)
+});
+
+impl Balance {
+    fn parse(file: &str, text: &str) -> Result<Self, FileError> {
+        let raw: BalanceFile =
+            crate::yaml::read(text).map_err(|error| FileError::of_yaml(file, error))?;
+        let refused = |field: &str, message: String| FileError {
+            file: file.to_owned(),
+            field: field.to_owned(),
+            message,
+            ..FileError::default()
+        };
+        let formula =
+            |field: &str, text: &str| parse(text).map_err(|e| refused(field, e.to_string()));
+        let parameter = |(name, raw): (&String, &ParameterFile)| {
+            let unit = Unit::parse(&raw.unit).map_err(|e| refused(name, e.to_string()))?;
+            let (unit, dimension) = (raw.unit.clone(), unit.dimension);
+            let meaning = raw.meaning.clone();
+            let known =
+                Parameter { dimension, unit, meaning, from: None, is_approach_speed: false };
+            Ok((name.clone(), known))
+        };
+        Ok(Self {
+            parameters: raw.parameters.iter().map(parameter).collect::<Result<_, _>>()?,
+            sees: named(&raw.sees, &formula)?,
+            values: named(&raw.values, &formula)?,
+            weight: formula("weight", &raw.weight)?,
+            surge: formula("surge", &raw.surge)?,
+        })
+    }
+}
+
+fn named<'a, C: FromIterator<(String, Expr)>>(
+    raw: impl IntoIterator<Item = (&'a String, &'a String)>,
+    formula: &dyn Fn(&str, &str) -> Result<Expr, FileError>,
+) -> Result<C, FileError> {
+    raw.into_iter().map(|(name, text)| Ok((name.clone(), formula(name, text)?))).collect()
+}
+
+/// The revolutions in a law.
+const REVOLUTIONS: &str = "n";
+/// States that vanish straight ahead.
+const ACROSS: [&str; 4] = ["v", "r", "p", "phi"];
+/// Inputs that vanish in still air, and the first letters of those that vanish with the rudder
+/// amidships.
+const WIND: [&str; 2] = ["wind_speed", "apparent_wind_speed"];
+const RUDDER: &str = "delta";
+/// The value that the share of the balance is.
+const BEYOND: &str = "beyond";
+
+/// A name of the balance in a law.
+fn own(name: &str) -> String {
+    qualified("propulsion", "open-water", name)
+}
+
+fn balance() -> Result<&'static Balance, (String, String)> {
+    BALANCE.as_ref().map_err(|error| ("propulsion".to_owned(), error.to_string()))
+}
+
+impl Propulsion {
+    /// A parameter's value; none where it is not given.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.parameters.get(name).map(|quantity| quantity.value)
+    }
+
+    /// Checks that exactly the parameters of the formulas are given, and finite.
+    ///
+    /// # Errors
+    /// The field at fault, and why.
+    pub fn check(&self) -> Result<(), (String, String)> {
+        let field = |name: &str| format!("propulsion.parameters.{name}");
+        let known = &balance()?.parameters;
+        if let Some(name) = self.parameters.keys().find(|name| !known.contains_key(*name)) {
+            return Err((field(name), "the balance has no such parameter".into()));
+        }
+        let is_given = |name: &str| self.value(name).is_some_and(f64::is_finite);
+        match known.keys().find(|name| !is_given(name)) {
+            Some(name) => Err((field(name), "give it a finite value".into())),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Law {
+    /// This law with the balance where the trials of a model do not reach.
+    ///
+    /// # Errors
+    /// The field of the model at fault, and why.
+    pub fn with_propulsion(&self, propulsion: &Propulsion) -> Result<Self, (String, String)> {
+        propulsion.check()?;
+        let balance = balance()?;
+        let mut law = self.clone();
+        add_inputs(&mut law, balance, propulsion);
+        for (name, _) in &balance.sees {
+            law.rename_in_forces(name, &own(&format!("seen.{name}")));
+        }
+        let renamed = straight_values(&mut law);
+        for (name, expr) in &balance.sees {
+            law.add_value(own(&format!("seen.{name}")), of_law(expr, balance));
+        }
+        for (name, expr) in &balance.values {
+            law.add_value(own(name), of_law(expr, balance));
+        }
+        law.add_value(own("weight"), of_law(&balance.weight, balance));
+        let one = Box::new(Expr::Number(1.0));
+        let beyond = Expr::Subtract(one, Box::new(Expr::Name(own("weight"))));
+        law.add_value(own(BEYOND), beyond);
+        let straight = Straight { renamed, beyond: own(BEYOND) };
+        for axis in law.axes.values_mut() {
+            axis.rest = straight.blended(axis.rest.clone(), &Expr::Number(1.0));
+        }
+        if let Some(axis) = law.axes.get_mut(&Axis::X) {
+            let surge = Box::new(of_law(&balance.surge, balance));
+            axis.rest = Expr::Add(Box::new(axis.rest.clone()), surge);
+        }
+        law.dressing.straight = Some(straight);
+        Ok(law)
+    }
+}
+
+/// Revolutions are an input, at those of self-propulsion where nobody gives them.
+fn add_inputs(law: &mut Law, balance: &Balance, propulsion: &Propulsion) {
+    let default = propulsion.value("revolutions");
+    let revolutions = Input { dimension: Dimension::RATE, default };
+    law.inputs.entry(REVOLUTIONS.to_owned()).or_insert(revolutions);
+    for (name, parameter) in &balance.parameters {
+        law.parameters.insert(own(name), parameter.clone());
+        let value = propulsion.value(name).unwrap_or(0.0);
+        law.dressing.parameters.insert(own(name), value);
+    }
+}
+
+/// Formulas of the balance by the names that it has in a law.
+fn of_law(expr: &Expr, balance: &Balance) -> Expr {
+    let is_own = |name: &str| {
+        balance.parameters.contains_key(name)
+            || balance.values.contains_key(name)
+            || name == "weight"
+    };
+    expr.renamed(&|name| is_own(name).then(|| Expr::Name(own(name))))
+}
+
+/// Adds what each value is straight ahead, where that differs, and returns what names become there.
+fn straight_values(law: &mut Law) -> BTreeMap<String, Expr> {
+    let is_still = |name: &&String| name.starts_with(RUDDER) || WIND.contains(&name.as_str());
+    let inputs = law.inputs.keys().filter(is_still).cloned();
+    let still = ACROSS.iter().map(|name| (*name).to_owned()).chain(inputs);
+    let mut renamed: BTreeMap<String, Expr> = still.map(|name| (name, Expr::Number(0.0))).collect();
+    let values: Vec<(String, Expr)> =
+        law.values.iter().map(|(name, expr)| (name.clone(), expr.clone())).collect();
+    for (name, expr) in values {
+        let names: BTreeSet<&str> = expr.names();
+        if names.iter().any(|name| renamed.contains_key(*name)) {
+            let straight = own(&format!("straight.{name}"));
+            law.add_value(straight.clone(), expr.renamed(&|name| renamed.get(name).cloned()));
+            renamed.insert(name, Expr::Name(straight));
+        }
+    }
+    renamed
+}

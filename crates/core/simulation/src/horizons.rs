@@ -1,0 +1,130 @@
+//! Errors of simulations that restart at several intervals, as one criterion.
+//!
+//! A bias in yaw moment or sway force grows with the length of a simulation: over five ship lengths
+//! it is less than the noise of the readings, over a whole trial it is not. Errors of long
+//! simulations alone are mostly what gusts and the noise of one starting state left behind. So the
+//! criterion is the geometric mean of the standardised errors at every restart interval: its logarithm
+//! is, up to constants, the negative log-likelihood of Gaussian errors whose variance at each
+//! interval is not known (the profile likelihood, `n/2 ln` of the mean square, summed), so that each
+//! interval counts by ratios, whatever its size.
+
+use std::collections::BTreeMap;
+
+use sistership_model::trial::{Channel, Trial};
+
+use crate::error::{SquaredError, standardised_mse};
+use crate::recorded::Replay;
+use crate::state::RECORDED;
+
+/// Standardised squared error per channel of what was not simulated, for the simulation stopped:
+/// that of two independent motions of the same variance, `E (a - b)^2 = 2 s^2`.
+const UNRELATED: f64 = 2.0;
+
+/// Standardised squared errors of simulations with one restart interval.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct HorizonErrors {
+    /// Mean over all samples.
+    pub mean: f64,
+    /// Mean over the samples of each trial.
+    pub each: Vec<f64>,
+}
+
+impl HorizonErrors {
+    /// Errors of simulations that all went on to their end.
+    pub fn new(
+        total: &SquaredError,
+        each: &[SquaredError],
+        deviations: &BTreeMap<Channel, f64>,
+    ) -> Self {
+        let of = |error: &SquaredError| standardised_mse(error, deviations);
+        Self { mean: of(total), each: each.iter().map(of).collect() }
+    }
+
+    /// Errors of simulations that may have stopped early, which then count as [`UNRELATED`].
+    pub fn with_stops(
+        trials: &[&Trial],
+        runs: &[Replay],
+        deviations: &BTreeMap<Channel, f64>,
+    ) -> Self {
+        let one = |(trial, run): (&&Trial, &Replay)| error_with_stop(trial, run, deviations);
+        let each: Vec<f64> = trials.iter().zip(runs).map(one).collect();
+        let weighted = trials.iter().zip(&each).map(|(trial, error)| error * trial.len() as f64);
+        let samples: usize = trials.iter().map(|trial| trial.len()).sum();
+        Self { mean: weighted.sum::<f64>() / samples.max(1) as f64, each }
+    }
+}
+
+fn error_with_stop(trial: &Trial, run: &Replay, deviations: &BTreeMap<Channel, f64>) -> f64 {
+    let error = standardised_mse(&SquaredError::of(trial, run), deviations);
+    let is_compared = |channel: &Channel| {
+        trial.channel(*channel).is_some() && deviations.get(channel).is_some_and(|d| *d > 0.0)
+    };
+    let channels = RECORDED[..6].iter().filter(|(channel, _)| is_compared(channel)).count();
+    let (simulated, all) = (run.samples.len() as f64, trial.len().max(1) as f64);
+    (error * simulated + UNRELATED * channels as f64 * (all - simulated)) / all
+}
+
+/// The criterion, and by trial the share of each in it: their mean is the geometric mean of the
+/// means over trials, and their scatter is, to first order, that of its logarithm times itself.
+pub fn combined(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
+    match horizons {
+        [] => return (0.0, Vec::new()),
+        [only] => return (only.mean, only.each.clone()),
+        _ => {}
+    }
+    let mean = geometric_mean(horizons.iter().map(|horizon| horizon.mean));
+    let trials = horizons.iter().map(|horizon| horizon.each.len()).min().unwrap_or(0);
+    let means: Vec<f64> = horizons
+        .iter()
+        .map(|horizon| horizon.each.iter().sum::<f64>() / trials.max(1) as f64)
+        .collect();
+    let scale = geometric_mean(means.iter().copied());
+    let share = |trial: usize| {
+        let ratios = horizons.iter().zip(&means);
+        let ratios = ratios.map(|(horizon, mean)| horizon.each[trial] / mean.max(LEAST));
+        scale * ratios.sum::<f64>() / horizons.len() as f64
+    };
+    (mean, (0..trials).map(share).collect())
+}
+
+/// Below this an error has no logarithm.
+const LEAST: f64 = f64::MIN_POSITIVE;
+
+fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    (values.map(|value| value.max(LEAST).ln()).sum::<f64>() / count).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn horizon(each: &[f64]) -> HorizonErrors {
+        HorizonErrors { mean: each.iter().sum::<f64>() / each.len() as f64, each: each.to_vec() }
+    }
+
+    #[test]
+    fn one_horizon_is_itself() {
+        let only = horizon(&[0.1, 0.3]);
+        assert_eq!(combined(std::slice::from_ref(&only)), (only.mean, only.each));
+        assert_eq!(combined(&[]), (0.0, Vec::new()));
+    }
+
+    #[test]
+    fn horizons_count_by_ratios_and_trials_by_their_share() {
+        let (short, long) = (horizon(&[0.01, 0.03]), horizon(&[2.0, 6.0]));
+        let (mean, each) = combined(&[short.clone(), long]);
+        assert!((mean - (0.02_f64 * 4.0).sqrt()).abs() < 1e-12);
+        assert!((each.iter().sum::<f64>() / 2.0 - mean).abs() < 1e-12);
+        assert!((each[1] / each[0] - 3.0).abs() < 1e-12);
+        // Twice the long error is a factor of the root of two, whatever its size.
+        let (doubled, _) = combined(&[short, horizon(&[4.0, 12.0])]);
+        assert!((doubled / mean - 2.0_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn errors_of_nothing_are_finite() {
+        let (mean, each) = combined(&[horizon(&[0.0, 0.0]), horizon(&[1.0, 1.0])]);
+        assert!(mean < 1e-100 && each.iter().all(|error| error.is_finite()));
+    }
+}

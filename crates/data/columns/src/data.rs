@@ -1,0 +1,36 @@
+//! The columns that are to be identified.
+
+/// A column of a file.
+#[derive(Debug, Clone, Default)]
+pub struct ColumnData {
+    /// The header, or `#3` for the third column of a file without one.
+    pub header: String,
+    /// The cell of a line of units.
+    pub below: Option<String>,
+    /// A value a row; NaN where the cell holds no number.
+    pub values: Vec<f64>,
+    /// For times that are written as text or as days of a sheet: their unit in manifests. The
+    /// values are then seconds.
+    pub written_time: Option<&'static str>,
+}
+
+/// A part of a recording that is large enough to identify its columns.
+#[derive(Debug, Clone, Default)]
+pub struct RecordingSample {
+    /// Its columns, of equal length.
+    pub columns: Vec<ColumnData>,
+    /// Rows before which others were not looked at.
+    pub breaks: Vec<usize>,
+}
+
+impl RecordingSample {
+    /// The number of rows.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    /// Whether it has no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

@@ -1,0 +1,400 @@
+//! Evidence of a header: quantities, unit, side and sign that its words name.
+
+use crate::role::{Kind, Role, Side};
+use crate::vocabulary::{Meaning, Phrase, vocabulary};
+use crate::words::{is_ideographic, words};
+
+/// Log odds of a quantity whose phrase explains every word of a header: 400 to 1.
+const EXACT: f64 = 6.0;
+/// The same for a phrase of one letter, which stands for more than one thing.
+const LETTER: f64 = 3.5;
+/// Log odds lost with each word that a phrase does not explain.
+const UNEXPLAINED: f64 = 2.0;
+
+/// What a header says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct HeaderEvidence {
+    /// Quantities and their log odds, best first.
+    pub candidates: Vec<(Meaning, f64)>,
+    /// Units that are written in it or below it, by their names in manifests.
+    pub units: Vec<String>,
+    pub side: Option<Side>,
+    pub is_port_positive: bool,
+}
+
+impl HeaderEvidence {
+    /// Reads a header and the cell of a line of units.
+    pub(crate) fn new(header: &str, below: Option<&str>) -> Self {
+        let parts = Parts::new(header);
+        let mut units = parts.units.clone();
+        units.extend(below.and_then(unit_named));
+        let mut evidence = Self {
+            candidates: Vec::new(),
+            is_port_positive: is_port_positive(header),
+            side: parts.side(),
+            units,
+        };
+        for phrase in &vocabulary().phrases {
+            if let Some(odds) = parts.odds(phrase) {
+                evidence.add(&phrase.meaning, odds);
+            }
+        }
+        evidence.candidates.sort_by(|a, b| b.1.total_cmp(&a.1));
+        evidence.candidates.truncate(6);
+        evidence
+    }
+
+    fn add(&mut self, meaning: &Meaning, odds: f64) {
+        let meaning = match (meaning, self.side) {
+            (Meaning::Channel(role), Some(side)) => Meaning::Channel(role.of_side(side)),
+            _ => meaning.clone(),
+        };
+        match self.candidates.iter_mut().find(|(known, _)| *known == meaning) {
+            Some((_, most)) => *most = most.max(odds),
+            None => self.candidates.push((meaning, odds)),
+        }
+    }
+
+    /// Log odds of a channel against a column that holds none.
+    pub(crate) fn odds(&self, role: Role) -> Option<f64> {
+        let of_role = |(meaning, _): &&(Meaning, f64)| *meaning == Meaning::Channel(role);
+        self.candidates.iter().find(of_role).map(|(_, odds)| *odds)
+    }
+
+    /// The quantity that no channel holds, where the header names one, and its log odds.
+    pub(crate) fn other(&self) -> Option<(&str, f64)> {
+        self.candidates.iter().find_map(|(meaning, odds)| match meaning {
+            Meaning::Other(name) => Some((name.as_str(), *odds)),
+            Meaning::Channel(_) => None,
+        })
+    }
+
+    /// The highest log odds of anything.
+    pub(crate) fn best(&self) -> f64 {
+        self.candidates.first().map_or(0.0, |(_, odds)| *odds)
+    }
+
+    /// The written unit of a kind.
+    pub(crate) fn unit(&self, kind: Kind) -> Option<&str> {
+        let fits = |unit: &&String| unit_is(kind, unit);
+        self.units.iter().find(fits).map(String::as_str)
+    }
+}
+
+fn unit_is(kind: Kind, unit: &str) -> bool {
+    let percent = unit == "%" && matches!(kind, Kind::Revolutions | Kind::Angle);
+    percent || kind.units().iter().any(|known| known.name == unit)
+}
+
+/// The unit that a text is, as manifests name it.
+pub(crate) fn unit_named(text: &str) -> Option<String> {
+    let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}']).trim().to_lowercase();
+    let inner: String = inner.split_whitespace().collect::<Vec<_>>().join(" ");
+    let spelled = vocabulary().units.iter().find(|(spelling, _)| *spelling == inner);
+    spelled.map(|(_, unit)| unit.clone())
+}
+
+fn is_port_positive(header: &str) -> bool {
+    let small = header.to_lowercase();
+    vocabulary().port_positive.iter().any(|phrase| small.contains(phrase.as_str()))
+}
+
+/// A header taken apart.
+struct Parts {
+    /// Words outside units, without those that are passed over.
+    words: Vec<String>,
+    /// All of them, without anything between.
+    joined: String,
+    /// A letter alone, in its own case.
+    letter: Option<char>,
+    /// Units in brackets or at the end.
+    units: Vec<String>,
+    /// Units among the words, each with how many words it takes at the end.
+    ending: Vec<(String, usize)>,
+}
+
+impl Parts {
+    fn new(header: &str) -> Self {
+        let (name, units) = without_brackets(header);
+        let all = words(&name);
+        let ending = ending(&all);
+        let mut letters = name.trim().chars();
+        let letter = letters.next().filter(|_| letters.next().is_none());
+        let mut units = units;
+        units.extend(all.iter().filter(|word| word.len() > 1).filter_map(|word| unit_named(word)));
+        units.extend(ending.iter().map(|(unit, _)| unit.clone()));
+        let sign = vocabulary().port_positive.iter().any(|text| name.to_lowercase().contains(text));
+        let kept = |word: &String| !(sign && is_sign_word(word));
+        let all: Vec<String> = all.into_iter().filter(kept).collect();
+        Self { joined: all.concat(), words: all, letter, units, ending }
+    }
+
+    fn side(&self) -> Option<Side> {
+        let several = self.words.len() > 1;
+        let of_word = |word: &String| {
+            let sides = vocabulary().sides.iter();
+            let long = |text: &str| text.chars().count() > 1 || is_ideographic(text);
+            let same = |text: &str| word == text && (several || long(text));
+            sides.clone().find(|(text, _)| same(text)).map(|(_, side)| *side)
+        };
+        let written = || {
+            let within = |text: &str| is_ideographic(text) && self.joined.contains(text);
+            vocabulary().sides.iter().find(|(text, _)| within(text)).map(|(_, side)| *side)
+        };
+        self.words
+            .iter()
+            .skip(usize::from(several))
+            .rev()
+            .find_map(of_word)
+            .or_else(|| self.words.first().and_then(of_word))
+            .or_else(written)
+            .or_else(|| self.suffix().map(|(_, side)| side))
+    }
+
+    /// A word that is a known one with the letter of a side at its end, as `deltal`.
+    fn suffix(&self) -> Option<(&str, Side)> {
+        let [word] = self.words.as_slice() else { return None };
+        let sides =
+            [('l', Side::Port), ('p', Side::Port), ('r', Side::Starboard), ('s', Side::Starboard)];
+        sides.into_iter().find_map(|(letter, side)| {
+            let stem = word.strip_suffix(letter).filter(|stem| stem.len() > 2)?;
+            let known = ["delta", "rudder", "rpm", "rud", "prop", "azi", "shaft"].contains(&stem);
+            known.then_some((stem, side))
+        })
+    }
+
+    /// Log odds of a phrase; none where the header does not hold it.
+    fn odds(&self, phrase: &Phrase) -> Option<f64> {
+        if phrase.joined.chars().count() == 1 && !is_ideographic(&phrase.joined) {
+            return self.letter_odds(phrase);
+        }
+        if is_ideographic(&phrase.joined) {
+            return self.ideographic_odds(&phrase.joined);
+        }
+        let stem = self.suffix().map(|(stem, _)| stem);
+        if self.joined == phrase.joined || stem == Some(phrase.joined.as_str()) {
+            return Some(EXACT);
+        }
+        let holds = phrase.words.iter().all(|word| self.words.iter().any(|one| same(one, word)));
+        holds.then(|| self.partial(phrase)).filter(|odds| *odds > 0.0)
+    }
+
+    fn partial(&self, phrase: &Phrase) -> f64 {
+        let open = self.unexplained(phrase);
+        // A word of a quantity that is not read (ordered, error, force) makes the whole header one.
+        let weight = match &phrase.meaning {
+            Meaning::Other(name) if name != "count or mark" => 1.0,
+            _ => UNEXPLAINED,
+        };
+        // Of phrases that explain as much, the one with more words is the more particular.
+        EXACT - weight * open as f64 + 0.3 * (phrase.words.len() as f64 - 1.0)
+    }
+
+    /// Words that neither the phrase, nor a unit, nor a side, nor the list of common words explains.
+    fn unexplained(&self, phrase: &Phrase) -> usize {
+        let kind = match phrase.meaning {
+            Meaning::Channel(role) => role.kind(),
+            Meaning::Other(_) => Kind::Any,
+        };
+        let fits = |unit: &str| kind == Kind::Any || unit_is(kind, unit);
+        let ends = self.ending.iter().filter(|(unit, _)| fits(unit)).map(|(_, count)| *count);
+        let kept = self.words.len() - ends.max().unwrap_or(0);
+        let words = vocabulary();
+        let common = |word: &String| {
+            words.passed_over.contains(word)
+                || words.sides.iter().any(|(side, _)| side == word)
+                || word.chars().all(|letter| letter.is_ascii_digit())
+                || unit_named(word).is_some_and(|unit| fits(&unit))
+        };
+        let open =
+            |word: &&String| !phrase.words.iter().any(|one| same(word, one)) && !common(word);
+        self.words[..kept].iter().filter(open).count()
+    }
+
+    fn letter_odds(&self, phrase: &Phrase) -> Option<f64> {
+        // `N` is north, `n` revolutions; a capital in the vocabulary means the capital alone.
+        let first = self.words.first()?;
+        if *first != phrase.joined {
+            return None;
+        }
+        let rest = self.unexplained(phrase);
+        let capital = self.letter.is_some_and(char::is_uppercase);
+        let is_place = matches!(phrase.meaning, Meaning::Channel(Role::X | Role::Y));
+        let odds = match (is_place && matches!(phrase.joined.as_str(), "n" | "e"), capital) {
+            (true, false) => return None,
+            (true, true) => LETTER + 1.0,
+            _ => LETTER,
+        };
+        (rest == 0).then_some(odds)
+    }
+
+    fn ideographic_odds(&self, phrase: &str) -> Option<f64> {
+        let mut rest = self.joined.clone();
+        if !rest.contains(phrase) {
+            return None;
+        }
+        rest = rest.replacen(phrase, "", 1);
+        let words = vocabulary();
+        let sides = words.sides.iter().map(|(side, _)| side);
+        for common in words.passed_over.iter().chain(sides).filter(|word| is_ideographic(word)) {
+            rest = rest.replace(common.as_str(), "");
+        }
+        let open = rest.chars().filter(|letter| is_ideographic(&letter.to_string())).count();
+        let odds = EXACT - UNEXPLAINED * open as f64 + 0.3 * (phrase.chars().count() as f64 - 1.0);
+        Some(odds).filter(|odds| *odds > 0.0)
+    }
+}
+
+/// Whether two words are the same but for a number at the end of the header's.
+fn same(written: &str, known: &str) -> bool {
+    let stem = written.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    written == known || (stem.len() > 1 && stem == known)
+}
+
+fn is_sign_word(word: &str) -> bool {
+    vocabulary().port_positive.iter().any(|phrase| words(phrase).iter().any(|one| one == word))
+}
+
+/// The header without what stands in brackets, and the units that stand there.
+fn without_brackets(header: &str) -> (String, Vec<String>) {
+    let (mut name, mut units, mut rest) = (String::new(), Vec::new(), header);
+    while let Some(open) = rest.find(['[', '(', '{', '（', '［']) {
+        let inner = &rest[open..];
+        let first = inner.chars().next().map_or(1, char::len_utf8);
+        let close = inner.find([']', ')', '}', '）', '］']).unwrap_or(inner.len());
+        let text = &inner[first.min(close)..close];
+        name.push_str(&rest[..open]);
+        match unit_named(text) {
+            Some(unit) => units.push(unit),
+            None => {
+                name.push(' ');
+                name.push_str(text);
+                name.push(' ');
+            }
+        }
+        let after = inner[close..].chars().next().map_or(0, char::len_utf8);
+        rest = &inner[close + after..];
+    }
+    name.push_str(rest);
+    let ends: [&[char]; 2] = [&[' ', ',', ';', ':'], &['/']];
+    for end in ends {
+        if units.is_empty()
+            && let Some(at) = name.trim_end().rfind(end).filter(|at| *at > 0)
+            && let Some(unit) = unit_named(&name[at + 1..]).filter(|_| is_clear(&name[at + 1..]))
+        {
+            units.push(unit);
+            name.truncate(at);
+        }
+    }
+    (name, units)
+}
+
+/// Whether a unit at the end of a header is no letter of a side or an axis.
+fn is_clear(unit: &str) -> bool {
+    unit.trim().chars().count() > 1 || is_ideographic(unit)
+}
+
+/// Units that the last words are: `deg`, `deg_s`, `m_s`.
+fn ending(words: &[String]) -> Vec<(String, usize)> {
+    let counts = (1..=2).filter(|count| *count < words.len());
+    counts
+        .flat_map(|count| {
+            let last = &words[words.len() - count..];
+            ["/", "_", " "].into_iter().filter_map(move |between| {
+                unit_named(&last.join(between)).map(|unit| (unit, count))
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn best(header: &str) -> Option<&'static str> {
+        match HeaderEvidence::new(header, None).candidates.first() {
+            Some((Meaning::Channel(role), _)) => Some(role.name()),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn headers_in_nine_languages_are_recognised() {
+        for (header, wanted) in [
+            ("Rudder Angle [deg]", "delta"),
+            ("RUDDER_PORT (deg)", "delta_p"),
+            ("deltal", "delta_p"),
+            ("GPS Latitude", "latitude"),
+            ("Speed over ground", "speed"),
+            ("Relative wind speed", "apparent_wind_speed"),
+            ("True Wind Direction", "wind_from"),
+            ("Yaw rate", "r"),
+            ("YawRate_deg_s", "r"),
+            ("u [m/s]", "u"),
+            ("Date/Time", "t"),
+            ("Shaft RPM starboard", "n_s"),
+            ("u_velo [m/s]", "u"),
+            ("vm_velo [m/s]", "v"),
+            ("r_angvelo [rad/s]", "r"),
+            ("n_prop [rps]", "n"),
+            ("wind_dir_relative_mid [rad]", "apparent_wind_from"),
+            ("wind_velo_true [m/s]", "wind_speed"),
+            ("Rudder (port positive)", "delta"),
+            ("Sway speed [kn]", "v"),
+            ("Shaft [rpm]", "n"),
+            ("original_timestamp", "t"),
+            ("N", "x"),
+            ("n", "n"),
+            ("STW (kn)", "u_water"),
+            ("Drehgeschwindigkeit (°/s)", "r"),
+            ("Fahrt über Grund [kn]", "speed"),
+            ("Krängung", "phi"),
+            ("Rorvinkel [grader]", "delta"),
+            ("Svingehastighet", "r"),
+            ("Vitesse de lacet (deg/s)", "r"),
+            ("Angle de barre", "delta"),
+            ("Ángulo de timón [grados]", "delta"),
+            ("Giri elica", "n"),
+            ("舵角", "delta"),
+            ("船首方位 [度]", "psi"),
+            ("左舷プロペラ回転数", "n_p"),
+            ("선수각", "psi"),
+            ("대지속도 (kn)", "speed"),
+            ("转首角速度", "r"),
+            ("对水航速", "u_water"),
+        ] {
+            assert_eq!(best(header), Some(wanted), "{header}");
+        }
+    }
+
+    #[test]
+    fn quantities_that_no_channel_holds_are_not_taken_for_one() {
+        for header in [
+            "Rudder order",
+            "engine u load",
+            "",
+            "[deg]",
+            "yaw_acc",
+            "right_force",
+            "thr_left",
+            "surge_dot_bias",
+            "Ruderlage Soll",
+            "Pitch angle",
+            "thr_left_pwm_zero_point",
+        ] {
+            assert_eq!(best(header), None, "{header}");
+        }
+    }
+
+    #[test]
+    fn units_sides_and_signs_are_read() {
+        let of = |header: &str| HeaderEvidence::new(header, None);
+        assert_eq!(of("Sway speed [kn]").unit(Kind::Speed), Some("kn"));
+        assert_eq!(of("yaw_rate_deg_s").unit(Kind::Rate), Some("deg/s"));
+        assert_eq!(of("rpm_port").unit(Kind::Revolutions), Some("rpm"));
+        assert_eq!(of("Drehzahl 1/min").unit(Kind::Revolutions), Some("rpm"));
+        assert_eq!(of("rpm_port").side, Some(Side::Port));
+        assert!(of("Rudder (port positive)").is_port_positive);
+        assert_eq!(HeaderEvidence::new("speed", Some("knots")).unit(Kind::Speed), Some("kn"));
+    }
+}

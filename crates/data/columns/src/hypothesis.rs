@@ -1,0 +1,63 @@
+//! What a column may be.
+
+use crate::role::{Role, Unit};
+
+/// A quantity with unit and sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hypothesis {
+    pub role: Role,
+    pub unit: Unit,
+    /// Whether the column counts the other way.
+    pub is_reversed: bool,
+}
+
+impl Hypothesis {
+    /// The factor from the column's numbers to SI units and canonical sign.
+    pub(crate) fn factor(&self) -> f64 {
+        if self.is_reversed { -self.unit.to_si } else { self.unit.to_si }
+    }
+
+    /// Every unit and sign of a role.
+    pub(crate) fn of_role(role: Role) -> impl Iterator<Item = Self> {
+        let signs: &[bool] = if role.is_signed() { &[false, true] } else { &[false] };
+        let units = role.kind().units().iter();
+        units.flat_map(move |&unit| {
+            signs.iter().map(move |&is_reversed| Self { role, unit, is_reversed })
+        })
+    }
+}
+
+/// What each column is taken for; nothing for a column that is not read.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Assignment {
+    pub columns: Vec<Option<Hypothesis>>,
+    /// Seconds in the unit of the time column.
+    pub time_factor: f64,
+}
+
+impl Assignment {
+    /// The column of a role, and its factor.
+    pub(crate) fn find(&self, role: Role) -> Option<(usize, f64)> {
+        let of_role = |one: &Option<Hypothesis>| one.is_some_and(|one| one.role == role);
+        let at = self.columns.iter().position(of_role)?;
+        Some((at, self.columns[at]?.factor()))
+    }
+
+    pub(crate) fn has(&self, role: Role) -> bool {
+        self.find(role).is_some()
+    }
+
+    /// With a column taken for something else; whatever was of the same role is free again.
+    pub(crate) fn with(&self, column: usize, to: Option<Hypothesis>) -> Self {
+        let mut other = self.clone();
+        if let Some(to) = to.filter(|to| to.role != Role::Other) {
+            for one in &mut other.columns {
+                if one.is_some_and(|one| one.role == to.role) {
+                    *one = None;
+                }
+            }
+        }
+        other.columns[column] = to;
+        other
+    }
+}

@@ -1,0 +1,261 @@
+//! Identification of the columns of a recording.
+
+use crate::data::RecordingSample;
+use crate::hypothesis::{Assignment, Hypothesis};
+use crate::outcome::{Alternative, Identification, IdentifiedColumn};
+use crate::own::OwnEvidence;
+use crate::physics::{Physics, Relation};
+use crate::role::Role;
+use crate::search::{Search, Settled};
+use crate::signals::Signals;
+use crate::thrusters;
+use crate::time::{self, TimeUnit};
+
+/// Probability from which nobody need look.
+const CERTAIN: f64 = 0.97;
+/// Log odds of a name, or of relations, that bear a reading.
+const NAMED: f64 = 3.0;
+const RELATED: f64 = 8.0;
+/// Log odds of a relation that is worth a word.
+const TOLD: f64 = 3.0;
+/// Probability of a second reading that is worth a question.
+const ASKED: f64 = 0.15;
+/// Probability below which a column that no name bears is left out.
+const TAKEN: f64 = 0.6;
+
+/// A column that the user has settled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GivenColumn {
+    /// Its header.
+    pub header: String,
+    /// Nothing for a column that is to be left out.
+    pub role: Option<Role>,
+    /// Its unit in manifests; nothing for the likeliest.
+    pub unit: Option<String>,
+    /// Whether it counts the other way; nothing for the likelier.
+    pub is_reversed: Option<bool>,
+}
+
+/// Identifies the columns of a recording by headers, values and the relations between them.
+pub fn identify(recording: &RecordingSample, given: &[GivenColumn]) -> Identification {
+    let plain = Signals::new(recording, None);
+    let own: Vec<OwnEvidence> = recording
+        .columns
+        .iter()
+        .zip(&plain.summaries)
+        .map(|(column, summary)| OwnEvidence::new(column, summary))
+        .collect();
+    let time = given_time(recording, given).or_else(|| time::column(&recording.columns, &own));
+    let units = time.map_or(Vec::new(), |at| time_units(recording, &own, at, given));
+    let signals = Signals::new(recording, time);
+    let fallback = TimeUnit { name: "s", to_si: 1.0, odds: 0.0 };
+    let units = if units.is_empty() { vec![fallback] } else { units };
+    let search = Search::new(&own, Physics::new(&signals), time, settled(recording, given));
+    let found = units.iter().map(|unit| {
+        let (best, odds) = search.best(unit.to_si);
+        (*unit, best, odds + unit.odds)
+    });
+    let mut found: Vec<(TimeUnit, Assignment, f64)> = found.collect();
+    found.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let Some((unit, best, _)) = found.first().cloned() else { return Identification::default() };
+    let physics = Physics::with_figures(&signals);
+    let outcome = Outcome { search: &search, best: &best, relations: physics.relations(&best) };
+    let mut columns: Vec<IdentifiedColumn> = recording
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(at, column)| outcome.column(at, &column.header))
+        .collect();
+    if let Some(at) = time {
+        let second = found.get(1).map(|other| (other.0, other.2 - found[0].2));
+        columns[at] = of_time(&recording.columns[at].header, &own[at], unit, second);
+    }
+    let thrusters = thrusters::find(&own, &signals, &best);
+    Identification { columns, thrusters }
+}
+
+fn given_time(recording: &RecordingSample, given: &[GivenColumn]) -> Option<usize> {
+    let given = given.iter().find(|one| one.role == Some(Role::Time))?;
+    recording.columns.iter().position(|column| column.header == given.header)
+}
+
+fn time_units(
+    recording: &RecordingSample,
+    own: &[OwnEvidence],
+    at: usize,
+    given: &[GivenColumn],
+) -> Vec<TimeUnit> {
+    let named = given.iter().find(|one| one.role == Some(Role::Time));
+    let unit = named.and_then(|one| one.unit.as_deref());
+    let all = time::units(&recording.columns[at], &own[at]);
+    let known = Role::Time.kind().units().iter().find(|known| Some(known.name) == unit);
+    match known {
+        Some(known) => vec![TimeUnit { name: known.name, to_si: known.to_si, odds: 0.0 }],
+        None => all,
+    }
+}
+
+fn settled(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<Settled> {
+    let of = |one: &GivenColumn| {
+        let column = recording.columns.iter().position(|known| known.header == one.header)?;
+        let role = one.role.filter(|role| *role != Role::Time);
+        let fits = |what: &Hypothesis| {
+            one.unit.as_deref().is_none_or(|unit| unit == what.unit.name)
+                && one.is_reversed.is_none_or(|is_reversed| is_reversed == what.is_reversed)
+        };
+        let what = role.and_then(|role| Hypothesis::of_role(role).find(fits));
+        (one.role != Some(Role::Time)).then_some(Settled { column, what })
+    };
+    given.iter().filter_map(of).collect()
+}
+
+fn of_time(
+    header: &str,
+    own: &OwnEvidence,
+    unit: TimeUnit,
+    second: Option<(TimeUnit, f64)>,
+) -> IdentifiedColumn {
+    let other = second.map_or(0.0, |(_, odds)| odds.exp());
+    let probability = 1.0 / (1.0 + other);
+    let named = own.named(Role::Time) >= NAMED;
+    let step = own.summary.step * unit.to_si;
+    let name = if named { "a name of time; " } else { "" };
+    let alternative = second.filter(|_| 1.0 - probability > ASKED).map(|(unit, _)| Alternative {
+        role: Some(Role::Time),
+        unit: unit.name.into(),
+        is_reversed: false,
+        probability: 1.0 - probability,
+    });
+    IdentifiedColumn {
+        header: header.to_owned(),
+        role: Some(Role::Time),
+        unit: unit.name.into(),
+        is_reversed: false,
+        probability,
+        is_certain: probability > CERTAIN && (named || own.summary.regular > 0.9),
+        reason: format!("{name}its steps are of {step:.3} s in `{}`", unit.name),
+        alternative,
+        other: None,
+    }
+}
+
+/// The best assignment, and what is said of its columns.
+struct Outcome<'a> {
+    search: &'a Search<'a>,
+    best: &'a Assignment,
+    relations: Vec<Relation>,
+}
+
+impl Outcome<'_> {
+    fn column(&self, at: usize, header: &str) -> IdentifiedColumn {
+        let own = &self.search.own[at];
+        let what = self.best.columns[at];
+        let mut all = self.alternatives(at);
+        let most = all.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = all.iter().map(|one| (one.1 - most).exp()).sum();
+        all.iter_mut().for_each(|one| one.1 = (one.1 - most).exp() / sum);
+        let probability = all.iter().find(|one| one.0 == what).map_or(0.0, |one| one.1);
+        let other = all.iter().filter(|one| one.0 != what).max_by(|a, b| a.1.total_cmp(&b.1));
+        let alternative = other.filter(|one| one.1 > ASKED).map(|one| Alternative {
+            role: one.0.map(|what| what.role),
+            unit: one.0.map_or("", |what| what.unit.name).into(),
+            is_reversed: one.0.is_some_and(|what| what.is_reversed),
+            probability: one.1,
+        });
+        let named = what.is_some_and(|what| own.named(what.role) >= NAMED);
+        if what.is_some() && !named && probability < TAKEN {
+            return self.left_out(at, header, probability);
+        }
+        IdentifiedColumn {
+            header: header.to_owned(),
+            role: what.map(|what| what.role),
+            unit: what.map_or("", |what| what.unit.name).to_owned(),
+            is_reversed: what.is_some_and(|what| what.is_reversed),
+            probability,
+            is_certain: self.is_certain(at, probability),
+            reason: self.reason(at),
+            alternative,
+            other: own.header.other().filter(|_| what.is_none()).map(|(name, _)| name.to_owned()),
+        }
+    }
+
+    /// A column whose best reading is too unlikely to be taken.
+    fn left_out(&self, at: usize, header: &str, probability: f64) -> IdentifiedColumn {
+        let what = self.best.columns[at];
+        let alternative = what.map(|what| Alternative {
+            role: Some(what.role),
+            unit: what.unit.name.into(),
+            is_reversed: what.is_reversed,
+            probability,
+        });
+        IdentifiedColumn {
+            header: header.to_owned(),
+            role: None,
+            unit: String::new(),
+            is_reversed: false,
+            probability: 1.0 - probability,
+            is_certain: false,
+            reason: "neither its name nor its values settle what it is".into(),
+            alternative,
+            other: None,
+        }
+    }
+
+    /// Every reading of a column with its log odds, the others being what they are.
+    fn alternatives(&self, at: usize) -> Vec<(Option<Hypothesis>, f64)> {
+        let each = self.search.hypotheses[at].iter().copied().map(Some).chain([None]);
+        let mut all: Vec<(Option<Hypothesis>, f64)> =
+            each.map(|what| (what, self.search.odds(&self.best.with(at, what)))).collect();
+        let best = self.best.columns[at];
+        if !all.iter().any(|one| one.0 == best) {
+            all.push((best, self.search.odds(self.best)));
+        }
+        all
+    }
+
+    fn is_certain(&self, at: usize, probability: f64) -> bool {
+        let own = &self.search.own[at];
+        let Some(what) = self.best.columns[at] else {
+            let known = own.header.other().is_some() || own.summary.is_counter;
+            return known || own.summary.count == 0;
+        };
+        let settled = self.search.settled.iter().any(|one| one.column == at);
+        let borne = own.named(what.role) >= NAMED || self.related(what.role) >= RELATED;
+        settled || (probability > CERTAIN && borne)
+    }
+
+    fn related(&self, role: Role) -> f64 {
+        let of_role = self.relations.iter().filter(|one| one.roles.contains(&role));
+        of_role.map(|one| one.odds).sum()
+    }
+
+    fn reason(&self, at: usize) -> String {
+        let own = &self.search.own[at];
+        let Some(what) = self.best.columns[at] else {
+            return match own.header.other() {
+                Some((name, _)) => format!("{name}: no channel holds it"),
+                None if own.summary.count == 0 => "it holds no number".into(),
+                None if own.summary.is_counter => "it counts rows".into(),
+                None => "neither its name nor its values are known".into(),
+            };
+        };
+        let mut parts = Vec::new();
+        if own.named(what.role) >= NAMED {
+            parts.push("by name".to_owned());
+        }
+        let mut relations: Vec<&Relation> = self
+            .relations
+            .iter()
+            .filter(|one| one.roles.contains(&what.role) && one.odds.abs() > TOLD)
+            .collect();
+        relations.sort_by(|a, b| b.odds.abs().total_cmp(&a.odds.abs()));
+        parts.extend(relations.iter().take(2).map(|one| one.figure.clone()));
+        if what.is_reversed {
+            parts.push("it counts the other way".to_owned());
+        }
+        if parts.is_empty() {
+            parts.push("by its range and what is missing otherwise".to_owned());
+        }
+        parts.join("; ")
+    }
+}

@@ -1,0 +1,34 @@
+//! Identification of the columns of a recording: which quantity, in which unit, with which sign.
+//!
+//! Three sources are combined as log odds: headers (a vocabulary in nine languages,
+//! `models/vocabulary`), values (range, period, monotony), and relations between columns (heading
+//! and yaw rate, positions and velocities, yaw rate and rudder). [`identify`] finds the assignment
+//! that all three make likeliest, the probability of each column, and what to ask where two
+//! readings are nearly as likely.
+
+mod data;
+mod faults;
+mod header;
+mod hypothesis;
+mod identify;
+mod outcome;
+mod own;
+mod physics;
+mod role;
+mod rudder;
+mod search;
+mod signals;
+mod starts;
+mod summary;
+mod thrusters;
+mod time;
+mod track;
+mod vocabulary;
+mod whole;
+mod words;
+
+pub use data::{ColumnData, RecordingSample};
+pub use faults::{FilteredChannel, SampleFault, backward_times, sample_faults};
+pub use identify::{GivenColumn, identify};
+pub use outcome::{Alternative, Identification, IdentifiedColumn, ThrusterPair};
+pub use role::{Kind, Role, Side, Unit};

@@ -1,0 +1,251 @@
+//! Quantities that a column may hold.
+
+/// A quantity of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// Time.
+    Time,
+    /// Position north.
+    X,
+    /// Position east.
+    Y,
+    /// Latitude.
+    Latitude,
+    /// Longitude.
+    Longitude,
+    /// Heading, clockwise from north.
+    Psi,
+    /// Surge velocity over ground.
+    U,
+    /// Sway velocity over ground, to starboard.
+    V,
+    /// Yaw rate, to starboard.
+    R,
+    /// Roll angle, to starboard.
+    Phi,
+    /// Roll rate.
+    P,
+    /// Rudder angle, positive turns to starboard.
+    Delta,
+    /// Starboard rudder.
+    DeltaS,
+    /// Port rudder.
+    DeltaP,
+    /// Propeller revolutions.
+    N,
+    /// Starboard propeller.
+    NS,
+    /// Port propeller.
+    NP,
+    /// Course over ground.
+    Course,
+    /// Speed over ground.
+    Speed,
+    /// Speed through the water, ahead.
+    UWater,
+    /// Speed through the water, to starboard.
+    VWater,
+    /// Velocity over ground towards north.
+    VNorth,
+    /// Velocity over ground towards east.
+    VEast,
+    /// True wind speed.
+    WindSpeed,
+    /// True wind direction.
+    WindFrom,
+    /// Apparent wind speed.
+    ApparentWindSpeed,
+    /// Apparent wind direction.
+    ApparentWindFrom,
+    /// Water depth.
+    Depth,
+    /// A quantity that no channel holds.
+    Other,
+}
+
+/// What a quantity measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// s.
+    Time,
+    /// m.
+    Length,
+    /// m/s.
+    Speed,
+    /// rad.
+    Angle,
+    /// rad/s.
+    Rate,
+    /// 1/s.
+    Revolutions,
+    /// Anything.
+    Any,
+}
+
+struct Properties {
+    role: Role,
+    name: &'static str,
+    kind: Kind,
+    /// Range, in SI units, in which the largest magnitude of nearly every recording lies: model
+    /// basins to large ships.
+    largest: [f64; 2],
+    /// Whether recorders differ in its sign.
+    is_signed: bool,
+}
+
+const fn row(
+    role: Role,
+    name: &'static str,
+    kind: Kind,
+    largest: [f64; 2],
+    is_signed: bool,
+) -> Properties {
+    Properties { role, name, kind, largest, is_signed }
+}
+
+const TABLE: [Properties; 29] = [
+    row(Role::Time, "t", Kind::Time, [0.0, 1e12], false),
+    row(Role::X, "x", Kind::Length, [1.0, 1e7], false),
+    row(Role::Y, "y", Kind::Length, [1.0, 1e7], true),
+    row(Role::Latitude, "latitude", Kind::Angle, [0.001, 1.571], false),
+    row(Role::Longitude, "longitude", Kind::Angle, [0.001, 3.142], false),
+    row(Role::Psi, "psi", Kind::Angle, [0.08, 60.0], true),
+    row(Role::U, "u", Kind::Speed, [0.2, 25.0], true),
+    row(Role::V, "v", Kind::Speed, [0.01, 6.0], true),
+    row(Role::R, "r", Kind::Rate, [0.002, 1.0], true),
+    row(Role::Phi, "phi", Kind::Angle, [0.008, 0.7], true),
+    row(Role::P, "p", Kind::Rate, [0.0005, 0.5], true),
+    row(Role::Delta, "delta", Kind::Angle, [0.03, 1.7], true),
+    row(Role::DeltaS, "delta_s", Kind::Angle, [0.03, 1.7], true),
+    row(Role::DeltaP, "delta_p", Kind::Angle, [0.03, 1.7], true),
+    row(Role::N, "n", Kind::Revolutions, [0.5, 60.0], false),
+    row(Role::NS, "n_s", Kind::Revolutions, [0.5, 60.0], false),
+    row(Role::NP, "n_p", Kind::Revolutions, [0.5, 60.0], false),
+    row(Role::Course, "course", Kind::Angle, [0.08, 60.0], false),
+    row(Role::Speed, "speed", Kind::Speed, [0.2, 25.0], false),
+    row(Role::UWater, "u_water", Kind::Speed, [0.2, 25.0], false),
+    row(Role::VWater, "v_water", Kind::Speed, [0.01, 6.0], true),
+    row(Role::VNorth, "v_north", Kind::Speed, [0.1, 25.0], false),
+    row(Role::VEast, "v_east", Kind::Speed, [0.02, 25.0], true),
+    row(Role::WindSpeed, "wind_speed", Kind::Speed, [1.0, 45.0], false),
+    row(Role::WindFrom, "wind_from", Kind::Angle, [0.05, 6.3], false),
+    row(Role::ApparentWindSpeed, "apparent_wind_speed", Kind::Speed, [1.0, 60.0], false),
+    row(Role::ApparentWindFrom, "apparent_wind_from", Kind::Angle, [0.05, 6.3], false),
+    row(Role::Depth, "depth", Kind::Length, [0.2, 6000.0], false),
+    row(Role::Other, "", Kind::Any, [0.0, f64::INFINITY], false),
+];
+
+impl Role {
+    /// Every quantity that a channel holds.
+    pub fn channels() -> impl Iterator<Item = Self> {
+        TABLE.iter().map(|row| row.role).filter(|&role| role != Self::Other)
+    }
+
+    fn properties(self) -> &'static Properties {
+        &TABLE[self as usize]
+    }
+
+    /// Its name in manifests; empty for `Other`.
+    pub fn name(self) -> &'static str {
+        self.properties().name
+    }
+
+    /// The quantity of that name in manifests.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::channels().find(|role| role.name() == name)
+    }
+
+    /// What it measures.
+    pub fn kind(self) -> Kind {
+        self.properties().kind
+    }
+
+    /// Usual range of the largest magnitude, SI.
+    pub fn largest(self) -> [f64; 2] {
+        self.properties().largest
+    }
+
+    /// Whether recorders differ in its sign.
+    pub fn is_signed(self) -> bool {
+        self.properties().is_signed
+    }
+
+    /// The quantity of the starboard or port side.
+    pub(crate) fn of_side(self, side: Side) -> Self {
+        match (self, side) {
+            (Self::Delta, Side::Port) => Self::DeltaP,
+            (Self::Delta, Side::Starboard) => Self::DeltaS,
+            (Self::N, Side::Port) => Self::NP,
+            (Self::N, Side::Starboard) => Self::NS,
+            _ => self,
+        }
+    }
+}
+
+/// A side of the ship.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Left, looking ahead.
+    Port,
+    /// Right, looking ahead.
+    Starboard,
+}
+
+/// A unit of a kind: name in manifests, factor to SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// Name in manifests.
+    pub name: &'static str,
+    /// Factor to SI units.
+    pub to_si: f64,
+}
+
+const fn unit(name: &'static str, to_si: f64) -> Unit {
+    Unit { name, to_si }
+}
+
+const DEG: f64 = std::f64::consts::PI / 180.0;
+
+impl Kind {
+    /// Units that columns of this kind come in, most usual first.
+    pub fn units(self) -> &'static [Unit] {
+        const TIME: [Unit; 6] = [
+            unit("s", 1.0),
+            unit("ms", 1e-3),
+            unit("us", 1e-6),
+            unit("min", 60.0),
+            unit("h", 3600.0),
+            unit("ns", 1e-9),
+        ];
+        const LENGTH: [Unit; 3] = [unit("m", 1.0), unit("km", 1000.0), unit("nmi", 1852.0)];
+        const SPEED: [Unit; 3] =
+            [unit("m/s", 1.0), unit("kn", 1852.0 / 3600.0), unit("km/h", 1.0 / 3.6)];
+        const ANGLE: [Unit; 2] = [unit("deg", DEG), unit("rad", 1.0)];
+        const RATE: [Unit; 3] =
+            [unit("deg/s", DEG), unit("rad/s", 1.0), unit("deg/min", DEG / 60.0)];
+        const REVOLUTIONS: [Unit; 2] = [unit("rpm", 1.0 / 60.0), unit("rps", 1.0)];
+        const ANY: [Unit; 1] = [unit("", 1.0)];
+        match self {
+            Self::Time => &TIME,
+            Self::Length => &LENGTH,
+            Self::Speed => &SPEED,
+            Self::Angle => &ANGLE,
+            Self::Rate => &RATE,
+            Self::Revolutions => &REVOLUTIONS,
+            Self::Any => &ANY,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_in_the_order_of_the_roles() {
+        for (at, row) in TABLE.iter().enumerate() {
+            assert_eq!(row.role as usize, at);
+        }
+        assert_eq!(Role::by_name("v_north"), Some(Role::VNorth));
+    }
+}

@@ -1,0 +1,91 @@
+//! The yaw rate answers the rudder: which column is it, and which way it counts.
+//!
+//! Two witnesses: the correlation with the yaw rate some moments later, and the partial correlation
+//! with the yaw acceleration in Nomoto's first-order model, dr/dt = a r + b delta + c.
+
+use crate::physics::{Physics, Relation};
+use crate::role::Role;
+use crate::signals::Signals;
+
+/// Lags of the yaw rate, as parts of the recording.
+const LAGS: [f64; 5] = [0.0, 0.0025, 0.005, 0.01, 0.02];
+/// Log odds for each unit of correlation of the two witnesses together.
+const PER_UNIT: f64 = 6.0;
+
+/// Both witnesses, of the rudder as it is taken to count.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Steering {
+    pub lagged: f64,
+    pub partial: f64,
+}
+
+impl Steering {
+    pub(crate) fn new(signals: &Signals, r: usize, delta: usize, is_reversed: bool) -> Self {
+        let sign = if is_reversed { -1.0 } else { 1.0 };
+        let lagged = lagged(&signals.continuous[delta], &signals.continuous[r]);
+        let partials = signals.scales.iter().map(|scale| {
+            let (yaw, rudder) = (&scale.columns[r], &scale.columns[delta]);
+            partial(&yaw.change, [&yaw.integral, &rudder.integral, &scale.duration])
+        });
+        let partial = partials.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+        Self { lagged: sign * lagged, partial: sign * partial }
+    }
+
+    pub(crate) fn relation(self, rudder: Role, physics: &Physics) -> Relation {
+        let odds = (PER_UNIT * (self.lagged + self.partial)).clamp(-10.0, 12.0);
+        let lagged = self.lagged;
+        let figure =
+            physics.figure(|| format!("the yaw rate follows it with a correlation of {lagged:.2}"));
+        Relation { roles: [rudder, Role::R, Role::Other], odds, figure }
+    }
+}
+
+pub(crate) fn lagged(delta: &[f64], r: &[f64]) -> f64 {
+    let n = delta.len();
+    let at = |part: &f64| {
+        let lag = (part * n as f64) as usize;
+        correlation(&delta[..n - lag], &r[lag..])
+    };
+    LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+}
+
+/// Pearson's correlation; zero where one side is constant.
+pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().max(1) as f64;
+    let (ma, mb) = (a.iter().sum::<f64>() / n, b.iter().sum::<f64>() / n);
+    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+    for (a, b) in a.iter().zip(b) {
+        aa += (a - ma).powi(2);
+        ab += (a - ma) * (b - mb);
+        bb += (b - mb).powi(2);
+    }
+    if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+}
+
+/// The partial correlation of the second regressor with a response: its coefficient over its
+/// standard error, brought to -1 to 1.
+fn partial(response: &[f64], regressors: [&Vec<f64>; 3]) -> f64 {
+    let rows = response.len();
+    if rows < 15 {
+        return 0.0;
+    }
+    // What the first and the third explain is taken out of both.
+    let rest = |values: &[f64]| residual(values, regressors[0], regressors[2]);
+    let (Some(y), Some(d)) = (rest(response), rest(regressors[1])) else { return 0.0 };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (yy, yd, dd) = (dot(&y, &y), dot(&y, &d), dot(&d, &d));
+    if yy > 0.0 && dd > 0.0 { yd / (yy * dd).sqrt() } else { 0.0 }
+}
+
+fn residual(values: &[f64], one: &[f64], other: &[f64]) -> Option<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (aa, ab, bb) = (dot(one, one), dot(one, other), dot(other, other));
+    let (va, vb) = (dot(values, one), dot(values, other));
+    let determinant = aa * bb - ab * ab;
+    if determinant <= 1e-12 * aa * bb {
+        return None;
+    }
+    let (p, q) = ((bb * va - ab * vb) / determinant, (aa * vb - ab * va) / determinant);
+    let left = values.iter().zip(one.iter().zip(other));
+    Some(left.map(|(value, (a, b))| value - p * a - q * b).collect())
+}

@@ -1,0 +1,260 @@
+//! What the values of a column show by themselves.
+
+use std::f64::consts::TAU;
+
+/// Periods at which directions return to zero, with the unit that each means.
+const PERIODS: [(f64, &str); 2] = [(360.0, "deg"), (TAU, "rad")];
+/// Crossings of the mean that zigzags do not reach.
+const SWINGS: usize = 60;
+/// Samples between which an average across the period may lie.
+const AVERAGED: usize = 8;
+/// Deviations from the median of neighbours, in robust standard deviations, that are taken out
+/// before columns are compared. It is no cleaning: nothing of it is kept.
+const SPIKE: f64 = 12.0;
+
+/// A column's range and shape.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Summary {
+    /// Values that are numbers.
+    pub count: usize,
+    /// 99 % of magnitudes are below.
+    pub largest: f64,
+    pub median: f64,
+    /// Between 1 % and 99 %.
+    pub spread: f64,
+    /// Part of values below zero.
+    pub negative: f64,
+    /// The period at which it returns, and its unit.
+    pub period: Option<(f64, &'static str)>,
+    /// Part of steps that are not backward.
+    pub forward: f64,
+    /// Median step.
+    pub step: f64,
+    /// Part of steps within 10 % of the median.
+    pub regular: f64,
+    /// Part of steps within 1 % of the median.
+    pub steady: f64,
+    /// Whether it swings about its mean, as roll does and no heading.
+    pub swings: bool,
+    /// Whether it counts rows.
+    pub is_counter: bool,
+    /// Part of steps that are zero.
+    pub still: f64,
+}
+
+impl Summary {
+    /// Summary of the values of one recording, or of several one after the other: no step leads
+    /// from before a break to behind it, since clocks begin anew there.
+    pub(crate) fn new(values: &[f64], breaks: &[usize]) -> Self {
+        let finite = |value: &f64| value.is_finite();
+        let mut sorted: Vec<f64> = values.iter().copied().filter(finite).collect();
+        if sorted.is_empty() {
+            return Self::default();
+        }
+        let steps = steps_within(values, breaks);
+        let period = period(&sorted);
+        let first = sorted[0];
+        let swings = swings(&sorted);
+        sorted.sort_by(f64::total_cmp);
+        let mut summary = Self {
+            count: sorted.len(),
+            median: quantile(&sorted, 0.5),
+            spread: quantile(&sorted, 0.99) - quantile(&sorted, 0.01),
+            negative: share(&sorted, |value| value < 0.0),
+            period,
+            swings: swings && period.is_none(),
+            ..Self::default()
+        };
+        let mut magnitudes: Vec<f64> = sorted.iter().map(|value| value.abs()).collect();
+        magnitudes.sort_by(f64::total_cmp);
+        summary.largest = quantile(&magnitudes, 0.99);
+        summary.steps(steps, first);
+        summary
+    }
+
+    fn steps(&mut self, mut steps: Vec<f64>, first: f64) {
+        if steps.is_empty() {
+            return;
+        }
+        let counts = steps.iter().all(|step| *step == 1.0);
+        self.is_counter = counts && (first == 0.0 || first == 1.0 || first.fract() == 0.0);
+        self.forward = share(&steps, |step| step >= 0.0);
+        self.still = share(&steps, |step| step == 0.0);
+        steps.sort_by(f64::total_cmp);
+        let step = quantile(&steps, 0.5);
+        self.step = step;
+        self.regular = share(&steps, |one| (one - step).abs() <= 0.1 * step.abs());
+        self.steady = share(&steps, |one| (one - step).abs() <= 0.01 * step.abs());
+    }
+
+    /// Whether values grow as a clock does.
+    pub(crate) fn is_clock(&self) -> bool {
+        // One step in fifty may be out of order: that is a fault of the file.
+        self.count > 1 && self.forward > 0.98 && self.step > 0.0 && self.still < 0.9
+    }
+}
+
+/// Steps between finite values that follow each other, none across a break.
+fn steps_within(values: &[f64], breaks: &[usize]) -> Vec<f64> {
+    let ends = breaks.iter().copied().chain([values.len()]);
+    let mut steps = Vec::with_capacity(values.len());
+    let mut from = 0;
+    for end in ends.map(|end| end.min(values.len())) {
+        let part = values.get(from..end).unwrap_or_default();
+        let part: Vec<f64> = part.iter().copied().filter(|value| value.is_finite()).collect();
+        steps.extend(part.windows(2).map(|pair| pair[1] - pair[0]));
+        from = end;
+    }
+    steps
+}
+
+pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    sorted.get((last as f64 * part).round() as usize).copied().unwrap_or(0.0)
+}
+
+pub(crate) fn share(values: &[f64], holds: impl Fn(f64) -> bool) -> f64 {
+    let count = values.iter().filter(|value| holds(**value)).count();
+    count as f64 / values.len().max(1) as f64
+}
+
+/// Whether the mean is crossed more often than any manoeuvre takes a heading across it.
+fn swings(values: &[f64]) -> bool {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let (low, high) = values.iter().fold((0.0_f64, 0.0_f64), |(low, high), value| {
+        (low.min(value - mean), high.max(value - mean))
+    });
+    // Noise about the mean is no swing: a tenth of the range has to be passed.
+    let (mut side, mut crossings) = (0.0, 0);
+    for value in values.iter().map(|value| value - mean) {
+        let now = if value > 0.1 * high {
+            1.0
+        } else if value < 0.1 * low {
+            -1.0
+        } else {
+            side
+        };
+        crossings += usize::from(now * side < 0.0);
+        side = now;
+    }
+    crossings > SWINGS
+}
+
+/// A direction that returns: it keeps within a period, fills it, and jumps by one.
+fn period(values: &[f64]) -> Option<(f64, &'static str)> {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
+            (low.min(value), high.max(value))
+        });
+    PERIODS.into_iter().find(|(period, _)| {
+        let within = high - low <= 1.005 * period && high - low > 0.8 * period;
+        let bounds = low >= -0.505 * period && high <= 1.005 * period;
+        let jumps = values.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 0.7 * period);
+        let near = within && bounds && jumps.count() > 0;
+        near && (low < -0.3 * period || low >= -0.01 * period)
+    })
+}
+
+/// The values as a continuous signal: directions without jumps, gaps held, spikes out.
+pub(crate) fn continuous(values: &[f64], summary: &Summary) -> Vec<f64> {
+    let period = summary.period.map(|(period, _)| period);
+    let mut values: Vec<f64> = match period {
+        Some(period) => unwrapped(values, period),
+        None => values.to_vec(),
+    };
+    hold(&mut values);
+    if period.is_none() {
+        despike(&mut values);
+    }
+    values
+}
+
+/// A direction without jumps; averages across its period become gaps.
+fn unwrapped(values: &[f64], period: f64) -> Vec<f64> {
+    let wrap = |step: f64| step - (step / period).round() * period;
+    let mut out = vec![f64::NAN; values.len()];
+    let Some(start) = values.iter().position(|value| value.is_finite()) else { return out };
+    let (mut before, mut sum) = (values[start], values[start]);
+    out[start] = sum;
+    let mut k = start + 1;
+    while k < values.len() {
+        let far = |at: usize| !(wrap(values[at] - before).abs() <= 0.12 * period);
+        let end = values.len().min(k + AVERAGED);
+        let at = if far(k) { (k..end).find(|&at| !far(at)).unwrap_or(k) } else { k };
+        if values[at].is_finite() {
+            sum += wrap(values[at] - before);
+            (before, out[at]) = (values[at], sum);
+        }
+        k = at + 1;
+    }
+    out
+}
+
+fn hold(values: &mut [f64]) {
+    let mut last = values.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
+    for value in values {
+        if value.is_finite() {
+            last = *value;
+        }
+        *value = last;
+    }
+}
+
+fn despike(values: &mut [f64]) {
+    let n = values.len();
+    if n < 20 {
+        return;
+    }
+    let around = |k: usize| {
+        let mut near = [values[k - 2], values[k - 1], values[k], values[k + 1], values[k + 2]];
+        near.sort_by(f64::total_cmp);
+        near[2]
+    };
+    let medians: Vec<f64> = (2..n - 2).map(around).collect();
+    let mut apart: Vec<f64> = (2..n - 2).map(|k| (values[k] - medians[k - 2]).abs()).collect();
+    apart.sort_by(f64::total_cmp);
+    // A column that mostly stands still has no scatter of its own: then its largest moves count.
+    let scatter = (1.4826 * quantile(&apart, 0.5)).max(quantile(&apart, 0.99));
+    if scatter <= 0.0 {
+        return;
+    }
+    for k in 2..n - 2 {
+        if (values[k] - medians[k - 2]).abs() > SPIKE * scatter {
+            values[k] = medians[k - 2];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_clocks_and_counters_are_seen() {
+        let heading: Vec<f64> = (0..500).map(|k| f64::from(k) * 3.0 % 360.0).collect();
+        let summary = Summary::new(&heading, &[]);
+        assert_eq!(summary.period.map(|(_, unit)| unit), Some("deg"));
+        assert!((continuous(&heading, &summary)[499] - 1497.0).abs() < 1e-9);
+        let clock: Vec<f64> = (0..500).map(|k| 2.7e6 + 100.0 * f64::from(k)).collect();
+        assert!(Summary::new(&clock, &[]).is_clock() && !Summary::new(&clock, &[]).is_counter);
+        assert!(Summary::new(&(0..9).map(f64::from).collect::<Vec<_>>(), &[]).is_counter);
+        assert!(Summary::new(&heading[..100], &[]).period.is_none());
+    }
+
+    #[test]
+    fn averages_across_the_period_do_not_turn_a_direction() {
+        let mut heading: Vec<f64> = (0..200).map(|k| (350.0 + f64::from(k)) % 360.0).collect();
+        (heading[10], heading[11]) = (180.0, 120.0);
+        let mut long = heading.clone();
+        long.extend((0..300).map(|k| (190.0 + f64::from(k)) % 360.0));
+        let signal = continuous(&long, &Summary::new(&long, &[]));
+        assert!((signal[150] - 500.0).abs() < 1e-9, "{}", signal[150]);
+    }
+
+    #[test]
+    fn a_clock_that_begins_anew_in_each_file_is_a_clock() {
+        let clock = [0.0, 1.0, 0.0, 1.0];
+        assert!(!Summary::new(&clock, &[]).is_clock());
+        assert!(Summary::new(&clock, &[2]).is_clock());
+    }
+}

@@ -1,0 +1,68 @@
+//! The column of time and its unit.
+
+use crate::data::ColumnData;
+use crate::own::OwnEvidence;
+use crate::role::{Kind, Role, Unit};
+
+/// Seconds between samples that recorders usually have, and the scatter of their logarithm: from
+/// some 100 Hz to one a minute lies within two standard deviations.
+const INTERVAL_S: f64 = 0.5;
+const SCATTER: f64 = 2.1;
+/// Log odds below the best with which a unit is still looked at.
+const CONSIDERED: f64 = 12.0;
+/// Seconds since 1970 between which a number is one of those: years 2001 to 2065.
+const UNIX: std::ops::Range<f64> = 1.0e9..3.0e9;
+
+/// A unit of time and its log odds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TimeUnit {
+    pub name: &'static str,
+    pub to_si: f64,
+    pub odds: f64,
+}
+
+/// The column that most likely is time.
+pub(crate) fn column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usize> {
+    let scored = own.iter().zip(columns).enumerate().filter_map(|(at, (own, column))| {
+        let written = if column.written_time.is_some() { 8.0 } else { 0.0 };
+        let summary = &own.summary;
+        let runs = summary.is_clock() || (written > 0.0 && summary.forward > 0.9);
+        if !runs {
+            return None;
+        }
+        let regular = 3.0 * summary.regular + 4.0 * summary.steady;
+        let counter = if summary.is_counter { -5.0 } else { 0.0 };
+        let first = if at == 0 { 1.0 } else { 0.0 };
+        let named = own.named(Role::Time) - own.none().min(6.0);
+        Some((at, named + written + regular + counter + first))
+    });
+    scored.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
+}
+
+/// Units that the column may be in, best first.
+pub(crate) fn units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
+    let of = |unit: &Unit| {
+        let interval_s = own.summary.step * unit.to_si;
+        let usual = -0.5 * ((interval_s / INTERVAL_S).ln() / SCATTER).powi(2);
+        TimeUnit { name: unit.name, to_si: unit.to_si, odds: usual }
+    };
+    if let Some(name) = column.written_time {
+        return vec![TimeUnit { name, to_si: 1.0, odds: 0.0 }];
+    }
+    if UNIX.contains(&own.summary.median) {
+        return vec![TimeUnit { name: "unix", to_si: 1.0, odds: 0.0 }];
+    }
+    let all = Kind::Time.units();
+    if let Some(written) = own.header.unit(Kind::Time) {
+        let known = all.iter().find(|unit| unit.name == written);
+        return known.map(|unit| TimeUnit { odds: 0.0, ..of(unit) }).into_iter().collect();
+    }
+    // Seconds are the rule: another unit has to explain more.
+    let mut units: Vec<TimeUnit> = all.iter().map(of).collect();
+    units.iter_mut().skip(1).for_each(|unit| unit.odds -= 3.0);
+    units.sort_by(|a, b| b.odds.total_cmp(&a.odds));
+    let best = units.first().map_or(0.0, |unit| unit.odds);
+    units.retain(|unit| unit.odds > best - CONSIDERED);
+    units.truncate(3);
+    units
+}

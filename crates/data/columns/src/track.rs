@@ -1,0 +1,195 @@
+//! Positions and heading against velocities: which axis is north, units, signs, ground or water.
+
+use crate::hypothesis::Assignment;
+use crate::physics::{Fit, PER_FOLD, Physics, Relation, odds_of};
+use crate::role::Role;
+use crate::signals::Signals;
+
+/// Mean radius of the earth, m.
+const EARTH: f64 = 6.371e6;
+/// Part of the squares that positions leave at best: antennas stand apart from the log.
+const FLOOR: f64 = 2e-3;
+/// Log odds of a direction that a straight line would explain as well.
+const STRAIGHT: f64 = 4.0;
+/// A current is slower than this part of the ship's speed.
+const CURRENT: f64 = 0.4;
+
+/// Steps of a track along the ship and across it, over blocks of the finer scale.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    roles: (Role, Role),
+    /// Displacements north and east, m.
+    north: Vec<f64>,
+    east: Vec<f64>,
+    /// Along the heading and to starboard, m, where there is a heading.
+    ship: Option<(Vec<f64>, Vec<f64>)>,
+    psi: Vec<f64>,
+    /// Length of each step, m.
+    length: Vec<f64>,
+}
+
+impl Track {
+    /// Steps of the positions of an assignment; nothing where they stand still.
+    pub(crate) fn new(signals: &Signals, of: &Assignment, roles: (Role, Role)) -> Option<Self> {
+        let scale = signals.scales.last()?;
+        let ((i, fi), (j, fj)) = (of.find(roles.0)?, of.find(roles.1)?);
+        let metres = match roles.0 {
+            Role::Latitude => (EARTH, EARTH * (signals.summaries[i].median * fi).cos()),
+            _ => (1.0, 1.0),
+        };
+        let scaled = |at: usize, factor: f64| -> Vec<f64> {
+            scale.columns[at].change.iter().map(|change| change * factor).collect()
+        };
+        let (north, east) = (scaled(i, fi * metres.0), scaled(j, fj * metres.1));
+        let moved: f64 = north.iter().chain(&east).map(|step| step * step).sum();
+        let psi: Vec<f64> = match of.find(Role::Psi) {
+            Some((k, fk)) => scale.columns[k].mean.iter().map(|psi| psi * fk).collect(),
+            None => Vec::new(),
+        };
+        let ship = (!psi.is_empty()).then(|| {
+            let each = north.iter().zip(&east).zip(&psi);
+            each.map(|((n, e), psi)| (n * psi.cos() + e * psi.sin(), e * psi.cos() - n * psi.sin()))
+                .unzip()
+        });
+        let length = north.iter().zip(&east).map(|(n, e)| n.hypot(*e)).collect();
+        (moved > 0.0).then_some(Self { roles, north, east, ship, psi, length })
+    }
+
+    /// Its relations with heading, course, and velocities.
+    pub(crate) fn relations(&self, physics: &Physics, of: &Assignment) -> Vec<Relation> {
+        let mut all: Vec<Relation> = self.heading(physics).into_iter().collect();
+        if let Some((along, across)) = &self.ship {
+            let body = [(Role::U, along, "along"), (Role::V, across, "across")];
+            all.extend(
+                body.iter()
+                    .filter_map(|&(role, steps, text)| self.moved(physics, of, role, steps, text)),
+            );
+            all.extend(self.water(physics, of, along));
+        }
+        all.extend(self.moved(physics, of, Role::Speed, &self.length, "over ground"));
+        all.extend(self.course(physics, of));
+        all
+    }
+
+    /// Sum of the log odds of its relations.
+    pub(crate) fn odds(&self, physics: &Physics, of: &Assignment) -> f64 {
+        self.relations(physics, of).iter().map(|relation| relation.odds).sum()
+    }
+
+    /// A ship moves where it points: what it moves across is the smaller part.
+    fn heading(&self, physics: &Physics) -> Option<Relation> {
+        let (along, across) = self.ship.as_ref()?;
+        let (ahead, aside): (f64, f64) = (squares(along), squares(across));
+        let part = aside / (ahead + aside);
+        let astern: f64 = along.iter().filter(|step| **step < 0.0).map(|step| step * step).sum();
+        let backwards = if astern > 0.5 * ahead { 6.0 } else { 0.0 };
+        // Of directions at random half of the squares would lie across.
+        let line = self.off_line();
+        let odds = (-PER_FOLD * (2.0 * part).max(1e-3).ln())
+            .min(STRAIGHT - PER_FOLD * (part.max(1e-4) / line.max(1e-4)).ln())
+            .clamp(-12.0, 14.0)
+            - backwards;
+        let told =
+            || format!("{:.1} % of the track's squares lie across the heading", 100.0 * part);
+        let figure = physics.figure(told);
+        Some(Relation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
+    }
+
+    /// The part of the squares that lies across the straight line that explains most.
+    fn off_line(&self) -> f64 {
+        let (nn, ee) = (squares(&self.north), squares(&self.east));
+        let ne: f64 = self.north.iter().zip(&self.east).map(|(n, e)| n * e).sum();
+        let half = (0.25 * (nn - ee).powi(2) + ne * ne).sqrt();
+        ((0.5 * (nn + ee) - half) / (nn + ee).max(1e-300)).max(0.0)
+    }
+
+    fn moved(
+        &self,
+        physics: &Physics,
+        of: &Assignment,
+        role: Role,
+        steps: &[f64],
+        text: &str,
+    ) -> Option<Relation> {
+        let (at, factor) = of.find(role)?;
+        let factor = factor * of.time_factor;
+        let integral = &physics.signals.scales.last()?.columns[at].integral;
+        let fit = Fit::new(steps, 1.0, integral, factor)?;
+        let times = fit.slope;
+        let told = || format!("positions move {times:.2} times as fast {text} as it says");
+        let figure = physics.figure(told);
+        let roles = [self.roles.0, self.roles.1, role];
+        Some(Relation { roles, odds: fit.odds(FLOOR), figure })
+    }
+
+    /// Speed through the water: the track's less a steady current, which two figures describe.
+    fn water(&self, physics: &Physics, of: &Assignment, along: &[f64]) -> Option<Relation> {
+        let (at, factor) = of.find(Role::UWater)?;
+        let scale = physics.signals.scales.last()?;
+        let integral = &scale.columns[at].integral;
+        let factor = factor * of.time_factor;
+        let seconds: Vec<f64> = scale.duration.iter().map(|t| t * of.time_factor).collect();
+        let rest: Vec<f64> = along.iter().zip(integral).map(|(a, b)| a - factor * b).collect();
+        let (c, s): (Vec<f64>, Vec<f64>) =
+            self.psi.iter().zip(&seconds).map(|(psi, t)| (t * psi.cos(), t * psi.sin())).unzip();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (cc, cs, ss) = (dot(&c, &c), dot(&c, &s), dot(&s, &s));
+        let (cr, sr) = (dot(&c, &rest), dot(&s, &rest));
+        let determinant = cc * ss - cs * cs;
+        if determinant <= 1e-9 * cc * ss {
+            return None;
+        }
+        let north = (ss * cr - cs * sr) / determinant;
+        let east = (cc * sr - cs * cr) / determinant;
+        let left: f64 = rest
+            .iter()
+            .zip(c.iter().zip(&s))
+            .map(|(rest, (c, s))| (rest - north * c - east * s).powi(2))
+            .sum();
+        let figure = physics.figure(|| {
+            format!(
+                "agrees with the track less a current of {:.2} m/s towards {:.0} deg",
+                north.hypot(east),
+                east.atan2(north).to_degrees().rem_euclid(360.0)
+            )
+        });
+        // Against a current alone, which explains a steady speed as well.
+        let alone = dot(along, along)
+            - (cc * dot(&s, along).powi(2) - 2.0 * cs * dot(&c, along) * dot(&s, along)
+                + ss * dot(&c, along).powi(2))
+                / determinant;
+        let all = squares(along).max(1e-300);
+        let speed = (all / along.len().max(1) as f64).sqrt()
+            / (dot(&seconds, &seconds) / seconds.len().max(1) as f64).sqrt();
+        let fast = if north.hypot(east) > CURRENT * speed { 10.0 } else { 0.0 };
+        let odds = odds_of((left / all).max(FLOOR))
+            .min(2.0 + odds_of((left / alone.max(1e-9 * all)).max(FLOOR)))
+            - 4.0
+            - fast;
+        Some(Relation { roles: [Role::UWater, Role::Psi, Role::Other], odds, figure })
+    }
+
+    fn course(&self, physics: &Physics, of: &Assignment) -> Option<Relation> {
+        let (at, factor) = of.find(Role::Course)?;
+        let course = &physics.signals.scales.last()?.columns[at].mean;
+        let steps = self.north.iter().zip(&self.east);
+        let (mut said, mut all) = (0.0, 0.0);
+        for ((n, e), course) in steps.zip(course) {
+            said += n * (course * factor).cos() + e * (course * factor).sin();
+            all += n.hypot(*e);
+        }
+        let off = 1.0 - said / all.max(1e-300);
+        let (north, east): (f64, f64) = (self.north.iter().sum(), self.east.iter().sum());
+        let straight = 1.0 - north.hypot(east) / all.max(1e-300);
+        let odds = (-PER_FOLD * off.max(1e-4).ln())
+            .min(STRAIGHT - PER_FOLD * (off.max(1e-4) / straight.max(1e-4)).ln())
+            .clamp(-8.0, 20.0);
+        let told = || format!("{:.1} % of the way made good lies along it", 100.0 * (1.0 - off));
+        let figure = physics.figure(told);
+        Some(Relation { roles: [self.roles.0, self.roles.1, Role::Course], odds, figure })
+    }
+}
+
+fn squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}

@@ -1,0 +1,83 @@
+//! Log odds of an assignment as a whole: which quantities come together.
+
+use crate::hypothesis::Assignment;
+use crate::role::Role;
+
+/// Log odds of quantities without their companion.
+const ALONE: [(Role, Role, f64); 16] = [
+    (Role::X, Role::Y, -8.0),
+    (Role::Y, Role::X, -8.0),
+    (Role::Latitude, Role::Longitude, -8.0),
+    (Role::Longitude, Role::Latitude, -8.0),
+    (Role::VNorth, Role::VEast, -8.0),
+    (Role::VEast, Role::VNorth, -8.0),
+    (Role::V, Role::U, -2.0),
+    (Role::DeltaS, Role::DeltaP, -3.0),
+    (Role::DeltaP, Role::DeltaS, -3.0),
+    (Role::NS, Role::NP, -3.0),
+    (Role::NP, Role::NS, -3.0),
+    (Role::WindFrom, Role::WindSpeed, -2.0),
+    (Role::ApparentWindFrom, Role::ApparentWindSpeed, -2.0),
+    (Role::VWater, Role::UWater, -3.0),
+    (Role::Course, Role::Speed, -1.0),
+    (Role::P, Role::Phi, -1.0),
+];
+
+/// Log odds of quantities that are seldom in one recording.
+const TOGETHER: [(Role, Role, f64); 6] = [
+    (Role::Delta, Role::DeltaS, -6.0),
+    (Role::Delta, Role::DeltaP, -6.0),
+    (Role::N, Role::NS, -6.0),
+    (Role::N, Role::NP, -6.0),
+    (Role::U, Role::VNorth, -2.0),
+    (Role::V, Role::VEast, -2.0),
+];
+
+/// Quantities that one recorder writes in one unit, and the log odds of two.
+const ONE_UNIT: [(Role, Role, f64); 13] = [
+    (Role::U, Role::V, -3.5),
+    (Role::X, Role::Y, -6.0),
+    (Role::Latitude, Role::Longitude, -6.0),
+    (Role::VNorth, Role::VEast, -6.0),
+    (Role::DeltaS, Role::DeltaP, -6.0),
+    (Role::NS, Role::NP, -6.0),
+    (Role::R, Role::P, -2.0),
+    (Role::Psi, Role::Phi, -1.5),
+    (Role::Psi, Role::Delta, -1.0),
+    (Role::Phi, Role::Delta, -2.0),
+    (Role::Phi, Role::DeltaS, -2.0),
+    (Role::Psi, Role::R, -1.0),
+    (Role::Phi, Role::P, -2.0),
+];
+
+/// Log odds for what every recording of manoeuvres has, under any of its names.
+const NEEDED: [(&[Role], f64); 4] = [
+    (&[Role::Delta, Role::DeltaS, Role::DeltaP], 3.0),
+    (&[Role::N, Role::NS, Role::NP], 3.5),
+    (&[Role::Psi, Role::R], 3.0),
+    (&[Role::U, Role::Speed, Role::X, Role::Latitude, Role::VNorth], 3.0),
+];
+
+/// Log odds of the quantities that are assigned, as a set.
+pub(crate) fn odds(of: &Assignment) -> f64 {
+    let alone = ALONE.iter().filter(|(one, other, _)| of.has(*one) && !of.has(*other));
+    let together = TOGETHER.iter().filter(|(one, other, _)| of.has(*one) && of.has(*other));
+    let needed = NEEDED.iter().filter(|(roles, _)| roles.iter().any(|role| of.has(*role)));
+    let unit = |role: Role| {
+        let what = of.columns.iter().flatten().find(|what| what.role == role);
+        // Degrees with degrees a second, radians with radians a second.
+        what.map(|what| what.unit.name.split("/s").next().unwrap_or_default())
+    };
+    let mixed = ONE_UNIT.iter().filter(|(one, other, _)| match (unit(*one), unit(*other)) {
+        (Some(one), Some(other)) => one != other && one != "deg/min" && other != "deg/min",
+        _ => false,
+    });
+    let signs =
+        [Role::DeltaS, Role::DeltaP].map(|role| of.find(role).map(|(_, factor)| factor < 0.0));
+    let opposed = if matches!(signs, [Some(a), Some(b)] if a != b) { -4.0 } else { 0.0 };
+    opposed
+        + mixed.map(|row| row.2).sum::<f64>()
+        + alone.map(|row| row.2).sum::<f64>()
+        + together.map(|row| row.2).sum::<f64>()
+        + needed.map(|row| row.1).sum::<f64>()
+}

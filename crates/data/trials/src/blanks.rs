@@ -1,0 +1,79 @@
+//! Text whose columns stand apart by blanks: every run of them becomes one tab.
+
+use std::io::{self, Read};
+
+/// A reader that makes tabs of runs of blanks, where it is told to.
+pub(crate) struct Blanks<R> {
+    inner: R,
+    is_active: bool,
+    begins: bool,
+    pending: bool,
+}
+
+impl<R: Read> Blanks<R> {
+    pub(crate) fn new(inner: R, is_active: bool) -> Self {
+        Self { inner, is_active, begins: true, pending: false }
+    }
+
+    /// Writes the bytes as they are to be read; returns how many there are.
+    fn squeezed(&mut self, read: &[u8], out: &mut [u8]) -> usize {
+        let mut count = 0;
+        for &byte in read {
+            match byte {
+                b' ' | b'\t' => self.pending = !self.begins,
+                b'\n' | b'\r' => {
+                    (self.pending, self.begins) = (false, true);
+                    out[count] = byte;
+                    count += 1;
+                }
+                _ => {
+                    if self.pending {
+                        out[count] = b'\t';
+                        count += 1;
+                    }
+                    (self.pending, self.begins) = (false, false);
+                    out[count] = byte;
+                    count += 1;
+                }
+            }
+        }
+        count
+    }
+}
+
+impl<R: Read> Read for Blanks<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        if !self.is_active || out.len() < 2 {
+            return self.inner.read(out);
+        }
+        // A tab may be owed from before, so that one byte more may be written than is read.
+        let mut taken = vec![0; out.len() - 1];
+        loop {
+            let read = self.inner.read(&mut taken)?;
+            let count = self.squeezed(&taken[..read], out);
+            if count > 0 || read == 0 {
+                return Ok(count);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn runs_of_blanks_become_one_tab() {
+        let mut text = String::new();
+        Blanks::new(&b"  1.0   2.0 \r\n\n 3\t 4"[..], true).read_to_string(&mut text).unwrap();
+        assert_eq!(text, "1.0\t2.0\r\n\n3\t4");
+        let mut bytes = Vec::new();
+        let mut small = Blanks::new(&b" a  b\n"[..], true);
+        let mut two = [0; 2];
+        while let count @ 1.. = small.read(&mut two).unwrap() {
+            bytes.extend_from_slice(&two[..count]);
+        }
+        assert_eq!(bytes, b"a\tb\n");
+    }
+}

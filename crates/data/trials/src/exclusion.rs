@@ -1,0 +1,242 @@
+//! What a manifest leaves out of a file, and why: values of a channel, or whole rows.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sistership_model::manifest::FileTime;
+use sistership_model::trial::Finding;
+
+use crate::findings::Findings;
+use crate::stretches::Stretch;
+use crate::table::{Table, Target};
+
+/// Values that are not used, as faulty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Exclusion {
+    /// The file, as its trial names it.
+    pub file: String,
+    /// The channel (`psi`, `latitude`, ...); absent for whole rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channel: Option<String>,
+    /// Rows of the file, such as `17, 204-209`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
+    pub rows: Option<RowRanges>,
+    /// From this time of the file, where no rows are named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<FileTime>,
+    /// To this time of the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<FileTime>,
+    /// The reason.
+    pub why: String,
+}
+
+impl Exclusion {
+    /// Whether another names the same channel of the same file for the same reason.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        let same =
+            (&self.file, &self.channel, &self.why) == (&other.file, &other.channel, &other.why);
+        same && self.rows.is_some() && other.rows.is_some()
+    }
+
+    /// Adds the rows of another.
+    pub(crate) fn add(&mut self, other: &Self) {
+        let mut rows: Vec<u32> = [self, other]
+            .iter()
+            .filter_map(|one| one.rows.as_ref())
+            .flat_map(|rows| rows.0.iter().cloned().flatten())
+            .collect();
+        rows.sort_unstable();
+        rows.dedup();
+        self.rows = Some(RowRanges::of_rows(rows));
+    }
+
+    /// How many values it takes out, in words: `43 values of psi: spikes`.
+    pub fn summary(&self) -> String {
+        let count = self.rows.as_ref().map_or(0, RowRanges::count);
+        let what = match &self.channel {
+            Some(channel) => format!("values of {channel}"),
+            None => "rows".to_owned(),
+        };
+        format!("{count} {what}: {}", self.why)
+    }
+
+    /// What a check says of it.
+    pub(crate) fn remark(&self) -> Finding {
+        let rows = self.rows.as_ref().map_or(String::new(), |rows| format!(" (rows {rows})"));
+        let summary = self.summary();
+        let message = format!("{summary}{rows}; `sistership import` leaves them out");
+        Finding { row: None, column: self.channel.clone(), message }
+    }
+}
+
+/// Ranges of rows, in order, as `17, 204-209`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct RowRanges(pub Vec<RangeInclusive<u32>>);
+
+impl TryFrom<String> for RowRanges {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let number = |part: &str| part.trim().parse::<u32>().ok();
+        let range = |part: &str| match part.split_once('-') {
+            Some((first, last)) => Some(number(first)?..=number(last)?),
+            None => number(part).map(|row| row..=row),
+        };
+        let ranges = text.split(',').map(|part| {
+            let found = range(part).filter(|range| !range.is_empty());
+            found.ok_or_else(|| format!("`{part}` is no row; write rows as `17, 204-209`"))
+        });
+        ranges.collect::<Result<Vec<_>, _>>().map(Self)
+    }
+}
+
+impl From<RowRanges> for String {
+    fn from(ranges: RowRanges) -> Self {
+        ranges.to_string()
+    }
+}
+
+impl fmt::Display for RowRanges {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, range) in self.0.iter().enumerate() {
+            let comma = if at > 0 { ", " } else { "" };
+            match range.start() == range.end() {
+                true => write!(out, "{comma}{}", range.start())?,
+                false => write!(out, "{comma}{}-{}", range.start(), range.end())?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl RowRanges {
+    /// The ranges of rows in ascending order.
+    pub fn of_rows(rows: impl IntoIterator<Item = u32>) -> Self {
+        let mut ranges: Vec<RangeInclusive<u32>> = Vec::new();
+        for row in rows {
+            match ranges.last_mut().filter(|last| *last.end() + 1 == row) {
+                Some(last) => *last = *last.start()..=row,
+                None => ranges.push(row..=row),
+            }
+        }
+        Self(ranges)
+    }
+
+    /// The number of rows.
+    pub fn count(&self) -> usize {
+        self.0.iter().map(|range| (range.end() - range.start()) as usize + 1).sum()
+    }
+}
+
+/// Takes what is excluded out of a table: values become gaps, whole rows are removed.
+pub(crate) fn exclude(table: &mut Table, exclusions: &[Exclusion], findings: &mut Findings) {
+    let mut removed = vec![false; table.rows.len()];
+    for exclusion in exclusions {
+        let places = match places(table, exclusion) {
+            Ok(places) => places,
+            Err(message) => {
+                findings.error(None, exclusion.channel.as_deref(), message);
+                continue;
+            }
+        };
+        let count: usize = places.iter().map(ExactSizeIterator::len).sum();
+        if count == 0 {
+            continue;
+        }
+        match &exclusion.channel {
+            None => places.into_iter().flatten().for_each(|k| removed[k] = true),
+            Some(channel) => {
+                let Some(at) = position(table, channel) else { continue };
+                let values = &mut table.values[at];
+                places.into_iter().flatten().for_each(|k| values[k] = f64::NAN);
+            }
+        }
+        let what =
+            exclusion.channel.as_deref().map_or("rows".into(), |one| format!("values of {one}"));
+        findings.warning(None, None, format!("{count} {what} excluded: {}", exclusion.why));
+    }
+    remove(table, &removed);
+}
+
+fn position(table: &Table, channel: &str) -> Option<usize> {
+    let target = Target::by_name(channel)?;
+    table.columns.iter().position(|column| column.target == target)
+}
+
+/// Samples that an exclusion means.
+fn places(table: &Table, exclusion: &Exclusion) -> Result<Vec<std::ops::Range<usize>>, String> {
+    if let Some(rows) = &exclusion.rows {
+        let at = |row: u32| table.rows.partition_point(|&known| known < row);
+        return Ok(rows.0.iter().map(|range| at(*range.start())..at(range.end() + 1)).collect());
+    }
+    let stretch = Stretch { from: exclusion.from.clone(), to: exclusion.to.clone() };
+    let window = stretch.window(table.start.as_ref()).map_err(|fault| fault.to_string())?;
+    let time = table.columns.iter().position(|column| column.target == Target::Time);
+    let Some(t) = time.map(|at| &table.values[at]) else { return Ok(Vec::new()) };
+    let inside = (0..t.len()).filter(|&k| window.from_s <= t[k] && t[k] <= window.to_s);
+    Ok(inside.map(|k| k..k + 1).collect())
+}
+
+fn remove(table: &mut Table, removed: &[bool]) {
+    if !removed.contains(&true) {
+        return;
+    }
+    let kept = |k: usize| !removed.get(k).copied().unwrap_or(false);
+    let mut k = 0;
+    let mut next = || {
+        k += 1;
+        kept(k - 1)
+    };
+    table.rows.retain(|_| next());
+    for values in &mut table.values {
+        let mut k = 0;
+        values.retain(|_| {
+            k += 1;
+            kept(k - 1)
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::testing::{messages, table};
+    use sistership_model::trial::Channel;
+
+    #[test]
+    fn rows_are_written_as_they_are_read() {
+        let ranges = RowRanges::of_rows([3, 4, 5, 9]);
+        assert_eq!((ranges.to_string().as_str(), ranges.count()), ("3-5, 9", 4));
+        assert_eq!(RowRanges::try_from("3-5,9".to_owned()), Ok(ranges));
+        assert!(RowRanges::try_from("5-3".to_owned()).unwrap_err().contains("204-209"));
+    }
+
+    #[test]
+    fn values_become_gaps_and_rows_go() {
+        let mut one = table(&[(Channel::U, vec![1.0; 6]), (Channel::Psi, vec![0.0; 6])]);
+        let row = |k: usize| one.rows[k];
+        let rows = [RowRanges::of_rows([row(1)]), RowRanges::of_rows([row(4), row(5)])];
+        let exclusion = |channel: Option<&str>, rows: &RowRanges| Exclusion {
+            file: "a".into(),
+            channel: channel.map(str::to_owned),
+            rows: Some(rows.clone()),
+            from: None,
+            to: None,
+            why: "spikes".into(),
+        };
+        let all = [exclusion(Some("psi"), &rows[0]), exclusion(None, &rows[1])];
+        let mut findings = Findings::default();
+        exclude(&mut one, &all, &mut findings);
+        assert_eq!((one.rows.len(), one.values[0].len()), (4, 4));
+        let gaps = one.values.iter().flatten().filter(|value| value.is_nan()).count();
+        assert_eq!(gaps, 1);
+        assert!(messages(findings).contains("1 values of psi excluded: spikes"));
+    }
+}

@@ -1,0 +1,265 @@
+//! Files with the same columns: identified once, by all of their rows.
+
+use indexmap::IndexMap;
+use sistership_columns::{
+    Alternative, GivenColumn, Identification, IdentifiedColumn, RecordingSample, Role, identify,
+};
+use sistership_model::manifest::ColumnMapping;
+
+use crate::preview::Preview;
+use crate::propose::Guess;
+use crate::table::Target;
+use crate::units::Kind;
+
+/// Rows of all files together that are compared.
+const ROWS: usize = 60_000;
+
+/// Columns that several files share, and what they are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Shape {
+    names: Vec<String>,
+    units: Vec<String>,
+    /// Channels of sentences, which need no mapping.
+    sentences: Vec<(String, Target)>,
+    sample: RecordingSample,
+    pub columns: IndexMap<String, ColumnMapping>,
+    /// A guess for each column, without the file's name.
+    pub guesses: Vec<Guess>,
+    /// The factor of the time column to seconds.
+    pub time: Option<(usize, f64)>,
+    /// Remarks on columns together.
+    pub notes: Vec<String>,
+}
+
+impl Shape {
+    pub(crate) fn new(preview: &Preview) -> Self {
+        Self {
+            names: preview.names.clone(),
+            units: preview.units.clone(),
+            sentences: preview.sentences.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether a file has these columns.
+    pub(crate) fn fits(&self, preview: &Preview) -> bool {
+        let sentences = self.sentences.is_empty() && preview.sentences.is_empty();
+        sentences && self.names == preview.names && self.units == preview.units
+    }
+
+    /// Adds the rows of a file.
+    pub(crate) fn add(&mut self, sample: &RecordingSample) {
+        if self.sample.columns.is_empty() {
+            self.sample = sample.clone();
+            return;
+        }
+        let rows = self.sample.len();
+        if rows + sample.len() > ROWS {
+            return;
+        }
+        self.sample.breaks.push(rows);
+        for (column, further) in self.sample.columns.iter_mut().zip(&sample.columns) {
+            column.values.extend_from_slice(&further.values);
+        }
+    }
+
+    /// Identifies the columns.
+    pub(crate) fn identify(&mut self, given: &[GivenColumn]) {
+        for (name, target) in &self.sentences {
+            self.guesses.push(of_sentence(name, *target));
+        }
+        let found = identify(&self.sample, given);
+        for (at, column) in found.columns.iter().enumerate() {
+            let guess = guess(column, &found);
+            if column.role == Some(Role::Time) {
+                self.time = Some((at, seconds(&column.unit)));
+            }
+            if let (Some(channel), Some(unit)) = (&guess.channel, &guess.unit) {
+                let mapping = ColumnMapping {
+                    reversed: guess.reversed,
+                    ..ColumnMapping::new(&guess.column, unit)
+                };
+                self.columns.insert(channel.clone(), mapping);
+            }
+            self.guesses.push(guess);
+        }
+        self.notes.extend(thrusters(&found));
+        self.sample = RecordingSample::default();
+    }
+
+    /// Whether it has a channel of that name.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        let told = || self.sentences.iter().any(|(_, held)| held.name() == name);
+        self.columns.contains_key(name) || told()
+    }
+
+    fn any(&self, names: &[&str]) -> bool {
+        names.iter().any(|name| self.has(name))
+    }
+
+    /// Whether it is a trial by itself: time, steering or propulsion, turning and speed.
+    pub(crate) fn is_complete(&self) -> bool {
+        let commands = self.any(&["delta", "delta_s", "delta_p", "n", "n_s", "n_p"])
+            || self.notes.iter().any(|note| note.contains("thruster"));
+        let speed = self.any(&["u", "speed", "x", "latitude", "v_north"]);
+        commands && speed && self.any(&["r", "psi"])
+    }
+
+    /// How many channels it has besides time.
+    pub(crate) fn channels(&self) -> usize {
+        self.columns.len() + self.sentences.len()
+    }
+
+    /// Whether the rudder counts the other way; nothing where there is no rudder.
+    pub(crate) fn rudder_reversed(&self) -> Option<bool> {
+        let rudder =
+            ["delta", "delta_s", "delta_p"].into_iter().find_map(|one| self.columns.get(one));
+        rudder.map(|column| column.reversed)
+    }
+}
+
+fn seconds(unit: &str) -> f64 {
+    match unit {
+        "excel" => 1.0,
+        unit => Kind::Time.factor(unit).unwrap_or(1.0),
+    }
+}
+
+fn of_sentence(name: &str, target: Target) -> Guess {
+    Guess {
+        file: String::new(),
+        column: name.to_owned(),
+        channel: Some(target.name().to_owned()),
+        unit: Some(Kind::of(target).canonical().to_owned()),
+        reversed: false,
+        why: "NMEA 0183 says what the sentence holds; it needs no mapping".into(),
+        certain: true,
+        question: None,
+    }
+}
+
+fn guess(column: &IdentifiedColumn, all: &Identification) -> Guess {
+    let nothing = |why: String, certain: bool| Guess {
+        file: String::new(),
+        column: column.header.clone(),
+        channel: None,
+        unit: None,
+        reversed: false,
+        why,
+        certain,
+        question: question(column),
+    };
+    let Some(role) = column.role else {
+        return nothing(format!("left out: {}", column.reason), column.is_certain);
+    };
+    if let Some(why) = redundant(role, all) {
+        return nothing(why, true);
+    }
+    let role = read_as(role, all);
+    if Target::by_name(role.name()).is_none() {
+        return nothing(format!("left out: {}: no channel holds it", role.name()), true);
+    }
+    Guess {
+        file: String::new(),
+        column: column.header.clone(),
+        channel: Some(role.name().to_owned()),
+        unit: Some(column.unit.clone()),
+        reversed: column.is_reversed,
+        why: why(column, role),
+        certain: column.is_certain && column.unit != "%" && Some(role) == column.role,
+        question: question(column),
+    }
+}
+
+fn why(column: &IdentifiedColumn, role: Role) -> String {
+    if column.unit == "%" {
+        let maximum = format!("declare what 100 % is as `maximum` of {}", role.name());
+        return format!("{}; a percentage: {maximum}", column.reason);
+    }
+    if Some(role) != column.role {
+        return format!("{}; a speed over ground alone is taken for that ahead", column.reason);
+    }
+    column.reason.clone()
+}
+
+/// What a column is not read for, since another gives the same.
+fn redundant(role: Role, all: &Identification) -> Option<String> {
+    let has = |role: Role| all.find(role).is_some();
+    let metres = has(Role::X) && has(Role::Y);
+    let body = has(Role::U) && has(Role::V);
+    match role {
+        Role::Latitude | Role::Longitude if metres => {
+            Some("left out: positions in metres are read".into())
+        }
+        Role::Course | Role::Speed | Role::VNorth | Role::VEast if body => {
+            Some("left out: u and v are read".into())
+        }
+        Role::Course | Role::Speed if has(Role::VNorth) && has(Role::VEast) => {
+            Some("left out: velocities north and east are read".into())
+        }
+        _ => None,
+    }
+}
+
+/// A speed over ground that nothing else gives is the speed ahead.
+fn read_as(role: Role, all: &Identification) -> Role {
+    let has = |role: Role| all.find(role).is_some();
+    let alone = ![Role::U, Role::Course, Role::X, Role::Latitude].into_iter().any(has);
+    if role == Role::Speed && alone { Role::U } else { role }
+}
+
+/// One question where a second reading is nearly as likely, with what answers it.
+fn question(column: &IdentifiedColumn) -> Option<String> {
+    let other = column.alternative.as_ref()?;
+    let first = Alternative {
+        role: column.role,
+        unit: column.unit.clone(),
+        is_reversed: column.is_reversed,
+        probability: column.probability,
+    };
+    let text = |one: &Alternative| match one.role {
+        Some(role) if one.is_reversed => format!("{} in {}, reversed", role.name(), one.unit),
+        Some(role) => format!("{} in {}", role.name(), one.unit),
+        None => "left out".to_owned(),
+    };
+    let flag = |one: &Alternative| match one.role {
+        Some(role) => {
+            let reversed = if one.is_reversed { ":reversed" } else { "" };
+            format!("--column '{}={}:{}{reversed}'", column.header, role.name(), one.unit)
+        }
+        None => format!("--column '{}='", column.header),
+    };
+    Some(format!(
+        "Is `{}` {} ({:.0} %) or {} ({:.0} %)? Answer with {} or {}",
+        column.header,
+        text(&first),
+        100.0 * first.probability,
+        text(other),
+        100.0 * other.probability,
+        flag(&first),
+        flag(other)
+    ))
+}
+
+/// Commands of two thrusters, of which a trial holds neither.
+fn thrusters(found: &Identification) -> Option<String> {
+    let pair = found.thrusters.as_ref()?;
+    let (port, starboard) = pair.columns;
+    let header = |at: usize| found.columns.get(at).map_or("", |column| column.header.as_str());
+    let (steers, other) = if pair.is_opposed {
+        ("sum", ", one of them counting the other way")
+    } else {
+        ("difference", "")
+    };
+    Some(format!(
+        "`{}` and `{}` are the commands of two thrusters{other}: the yaw rate follows their {steers} \
+         with a correlation of {:.2}, the speed ahead the other combination with {:.2}. A trial has \
+         `delta` for steering and `n` for revolutions, and no channel for a pair of thrusters nor \
+         for a command whose thrust is not known: both are left out, and `refine` cannot yet use \
+         these trials",
+        header(port),
+        header(starboard),
+        pair.yaw_correlation,
+        pair.speed_correlation
+    ))
+}

@@ -1,0 +1,83 @@
+//! Speeds through the water: a measurement of their own beside speeds over the ground, and the
+//! trial's velocities where there are none over the ground.
+
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+
+/// Speed through the water, with the channel of the same axis over the ground.
+const AXES: [(Channel, Channel); 2] =
+    [(Channel::UWater, Channel::U), (Channel::VWater, Channel::V)];
+
+/// Whether an axis has a speed through the water and none over the ground.
+pub(crate) fn is_water_only(recording: &Recording, ground: Channel) -> bool {
+    let has = |channel| recording.channel(channel).is_some();
+    AXES.iter().any(|&(water, own)| own == ground && has(water) && !has(own))
+}
+
+/// Decides what the trial's `u` and `v` are: over the ground where they are known so, else through
+/// the water.
+pub(crate) fn settle(recording: &mut Recording, findings: &mut Findings) {
+    let has = |channel| recording.channel(channel).is_some();
+    let Some(&(log, _)) = AXES.iter().find(|(water, _)| has(*water)) else { return };
+    if has(Channel::U) {
+        let message = "speed through the water beside velocities over the ground: what it differs \
+                       by is a current, or the error of a log";
+        return findings.warning(None, Some(recording.header(log)), message);
+    }
+    if has(Channel::V) {
+        let message = "is taken to be through the water, as the only speed ahead is; where it is \
+                       over the ground, map position and heading and declare `derive: [u]`";
+        findings.warning(None, Some(recording.header(Channel::V)), message);
+    }
+    let message = "u and v are speeds through the water, and nothing gives those over the ground: \
+                   a current shows in the positions only";
+    findings.warning(None, Some(recording.header(log)), message);
+    AXES.iter().for_each(|&axis| rename(recording, axis));
+    recording.trial.velocity = VelocityFrame::Water;
+}
+
+fn rename(recording: &mut Recording, (water, own): (Channel, Channel)) {
+    if let Some(values) = recording.trial.channels.remove(&water) {
+        recording.trial.channels.insert(own, values);
+    }
+    if let Some(column) = recording.columns.remove(&water) {
+        recording.columns.insert(own, column);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{messages, recording};
+
+    fn settled(channels: &[(Channel, f64)]) -> (Recording, String) {
+        let channels: Vec<_> =
+            channels.iter().map(|&(channel, value)| (channel, vec![value; 3])).collect();
+        let (mut ship, mut findings) = (recording(&channels), Findings::default());
+        settle(&mut ship, &mut findings);
+        (ship, messages(findings))
+    }
+
+    #[test]
+    fn a_log_stays_beside_velocities_over_the_ground() {
+        let (ship, text) = settled(&[(Channel::U, 4.0), (Channel::V, 0.0), (Channel::UWater, 5.0)]);
+        let at = |channel| ship.trial.channels[&channel][0];
+        assert_eq!((at(Channel::U), at(Channel::UWater)), (4.0, 5.0));
+        assert_eq!(ship.trial.velocity, VelocityFrame::Ground);
+        assert!(text.contains("Some(\"u_water_m_s\") speed through the water beside"), "{text}");
+    }
+
+    #[test]
+    fn a_log_alone_gives_the_velocities_through_the_water() {
+        let (ship, text) = settled(&[(Channel::UWater, 5.0), (Channel::VWater, 0.2)]);
+        let at = |channel| ship.trial.channels[&channel][0];
+        assert_eq!((at(Channel::U), at(Channel::V)), (5.0, 0.2));
+        assert_eq!(ship.trial.velocity, VelocityFrame::Water);
+        assert_eq!(ship.trial.channels.len(), 2);
+        assert!(text.contains("a current shows in the positions only"), "{text}");
+        assert!(settled(&[(Channel::UWater, 5.0), (Channel::V, 0.2)]).1.contains("derive: [u]"));
+    }
+}

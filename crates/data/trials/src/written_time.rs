@@ -1,0 +1,42 @@
+//! Times that are written as text, or as the days of a sheet.
+
+use crate::clock::looks_serial;
+use crate::decimals::Decimals;
+use crate::number::number;
+use crate::stamp::{Date, Order, stamp};
+
+/// The unit of a column of such times; nothing where it holds something else.
+pub(crate) fn written_time(header: &str, cells: &[&str]) -> Option<&'static str> {
+    let first = cells.iter().find(|cell| !cell.is_empty())?;
+    let Some(stamp) = stamp(first, Order::Open) else { return serial(header, cells) };
+    // A date alone is the same in every row.
+    let moves = cells.iter().filter(|cell| cell != &first).count() > cells.len() / 2;
+    let unit = match stamp.date {
+        Date::Known(_) => "timestamp",
+        Date::Absent => "hh:mm:ss",
+        Date::Either(_) => "auto",
+    };
+    (moves || cells.len() < 3).then_some(unit)
+}
+
+fn serial(header: &str, cells: &[&str]) -> Option<&'static str> {
+    let mut decimals = Decimals::new(b';');
+    let values: Vec<f64> =
+        cells.iter().filter_map(|cell| number(&decimals.point(0, cell.as_bytes())).ok()).collect();
+    (!values.is_empty() && looks_serial(header, &values)).then_some("excel")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_times_and_days_of_a_sheet_are_told_apart() {
+        let of = |header: &str, cells: &[&str]| written_time(header, cells);
+        assert_eq!(of("a", &["2024-05-01 12:00:00", "2024-05-01 12:00:01"]), Some("timestamp"));
+        assert_eq!(of("a", &["12:00:00", "12:00:01"]), Some("hh:mm:ss"));
+        assert_eq!(of("time", &["45413.5", "45413.50001"]), Some("excel"));
+        assert_eq!(of("a", &["1.0", "2.0"]), None);
+        assert_eq!(of("date", &["2024-05-01"; 5]), None);
+    }
+}

@@ -1,0 +1,287 @@
+//! The diagnoses of a champion as one sequence of evidence, in the order of its trials.
+//!
+//! Each trial counts once, by the narrowest diagnosis that it is part of: what is new is judged by
+//! itself. The cumulative sum of the logarithms of how much more probable each answer is for a model
+//! that lacks something than for one that holds (Page 1954, "Continuous inspection schemes",
+//! Biometrika 41) says whether the champion still holds, and since which trial it does not: one
+//! clean trial does not clear three of which something was left. A cause too small for a trial of
+//! its own shows in the diagnosis of the whole.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use sistership_store::{Diagnosed, VersionHead};
+
+/// How often a diagnosis errs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EvidenceLimits {
+    /// `alpha`: probability of naming or leaving something where nothing is missing, dimensionless.
+    /// Source: docs/evidence/diagnosis_unseen.md, "Clean trials of more ships": at most 2 % (0 of
+    /// 144, 95 % limit by the rule of three).
+    pub false_alarm: f64,
+    /// `beta`: probability of finding nothing where something of usual size is missing,
+    /// dimensionless. Source: the probability by which a diagnosis states its detection limits
+    /// (`diagnose::DetectionLimit`). At half and double of each, three trials that leave something
+    /// are cleared by four to seven clean ones (docs/evidence/condition.md).
+    pub miss: f64,
+}
+
+impl Default for EvidenceLimits {
+    fn default() -> Self {
+        Self { false_alarm: 0.02, miss: 0.1 }
+    }
+}
+
+impl EvidenceLimits {
+    /// The step of the cumulative sum after a diagnosis.
+    fn step(self, holds: bool) -> f64 {
+        match holds {
+            true => (self.miss / (1.0 - self.false_alarm)).ln(),
+            false => ((1.0 - self.miss) / self.false_alarm).ln(),
+        }
+    }
+}
+
+/// What one diagnosis says of a version.
+#[derive(Debug, Clone)]
+pub(super) struct Observation<'a> {
+    /// The diagnosis.
+    pub row: &'a Diagnosed,
+    /// `complete`, `effects` or `unexplained`.
+    pub verdict: &'a str,
+    /// Names of the effects that the version lacks.
+    pub effects: Vec<String>,
+    /// Ids of its trials, in the order of their upload.
+    pub trials: Vec<String>,
+    /// Those of which it leaves something.
+    unexplained: Vec<String>,
+}
+
+impl<'a> Observation<'a> {
+    /// Of the version that came of a diagnosis, what remained with the effects in place.
+    fn new(version: &VersionHead, row: &'a Diagnosed) -> Self {
+        let is_subject = row.version_id == version.id;
+        let verdict = match (is_subject, row.verdict.as_str()) {
+            (false, "effects") => COMPLETE,
+            (_, verdict) => verdict,
+        };
+        let effects = if is_subject { list(&row.effects) } else { Vec::new() };
+        let mut trials = list(&row.trials);
+        trials.sort();
+        Self { row, verdict, effects, trials, unexplained: list(&row.unexplained) }
+    }
+
+    /// Whether it finds nothing missing.
+    pub fn holds(&self) -> bool {
+        self.verdict == COMPLETE
+    }
+
+    /// The first trial that speaks against the model: an effect is in all of them.
+    pub fn first_against(&self) -> Option<&String> {
+        let left = self.trials.iter().find(|trial| self.unexplained.contains(trial));
+        let first = self.trials.first();
+        if self.effects.is_empty() { left.or(first) } else { first }
+    }
+
+    fn contains(&self, other: &Self) -> bool {
+        other.trials.len() < self.trials.len()
+            && other.trials.iter().all(|trial| self.trials.contains(trial))
+    }
+}
+
+const COMPLETE: &str = "complete";
+
+fn list(text: &str) -> Vec<String> {
+    serde_json::from_str(text).unwrap_or_default()
+}
+
+/// All that diagnoses say of a version.
+#[derive(Debug, Default)]
+pub(super) struct Evidence<'a> {
+    /// The diagnosis by which each trial counts, in the order of the trials.
+    pub sequence: Vec<Observation<'a>>,
+    /// The newest diagnosis that gathers trials of others.
+    pub whole: Option<Observation<'a>>,
+    /// Where in the sequence the cumulative sum has begun to rise, while it is above zero.
+    alarm: Option<usize>,
+}
+
+impl<'a> Evidence<'a> {
+    /// Weighs diagnoses, the latest first; those on a trial that is deleted do not count.
+    pub fn new(
+        version: &VersionHead,
+        rows: &'a [Diagnosed],
+        deleted: &[String],
+        limits: EvidenceLimits,
+    ) -> Self {
+        let is_kept = |observation: &Observation<'_>| {
+            !observation.trials.iter().any(|trial| deleted.contains(trial))
+        };
+        let all: Vec<Observation<'a>> =
+            rows.iter().map(|row| Observation::new(version, row)).filter(is_kept).collect();
+        let gathers = |one: &&Observation<'_>| all.iter().any(|other| one.contains(other));
+        let whole = all.iter().find(gathers).cloned();
+        let sequence = sequence(&all);
+        let alarm = alarm(&sequence, limits);
+        Self { sequence, whole, alarm }
+    }
+
+    /// The diagnoses that speak against the version, that of the whole first.
+    pub fn against(&self) -> Vec<&Observation<'a>> {
+        let whole = self.whole.iter().filter(|whole| !whole.holds());
+        let since = self.sequence.iter().skip(self.alarm.unwrap_or(self.sequence.len()));
+        whole.chain(since.filter(|one| !one.holds())).collect()
+    }
+
+    /// The first trial from which the version does not hold.
+    pub fn since(&self) -> Option<&String> {
+        let alarm = self.alarm.and_then(|at| self.sequence[at].first_against());
+        let whole = self.whole.as_ref().filter(|whole| !whole.holds());
+        alarm.or_else(|| whole.and_then(Observation::first_against))
+    }
+
+    /// The first trial after the last one that spoke against the version.
+    pub fn holds_since(&self) -> Option<&String> {
+        let last = self.sequence.iter().rposition(|one| !one.holds()).map_or(0, |at| at + 1);
+        self.sequence.get(last).and_then(|one| one.trials.first())
+    }
+
+    /// Every trial that counts.
+    pub fn trials(&self) -> BTreeSet<String> {
+        self.sequence.iter().flat_map(|one| one.trials.iter().cloned()).collect()
+    }
+}
+
+/// The narrowest diagnosis of each trial, of equal ones the latest, in the order of the trials.
+fn sequence<'a>(all: &[Observation<'a>]) -> Vec<Observation<'a>> {
+    let mut of_trial: BTreeMap<&str, usize> = BTreeMap::new();
+    for (at, one) in all.iter().enumerate() {
+        for trial in &one.trials {
+            let chosen = of_trial.entry(trial).or_insert(at);
+            if one.trials.len() < all[*chosen].trials.len() {
+                *chosen = at;
+            }
+        }
+    }
+    let mut taken = BTreeSet::new();
+    of_trial.into_values().filter(|at| taken.insert(*at)).map(|at| all[at].clone()).collect()
+}
+
+/// Where the cumulative sum has begun to rise, if it is above zero at the end.
+fn alarm(sequence: &[Observation<'_>], limits: EvidenceLimits) -> Option<usize> {
+    let (mut sum, mut start) = (0.0, None);
+    for (at, one) in sequence.iter().enumerate() {
+        sum = f64::max(0.0, sum + limits.step(one.holds()));
+        start = if sum > 0.0 { start.or(Some(at)) } else { None };
+    }
+    start
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn version() -> VersionHead {
+        VersionHead {
+            id: "v".into(),
+            model: "kcs".into(),
+            number: 1,
+            parent: None,
+            law: "abkowitz".into(),
+            method: "weak".into(),
+            sha256: String::new(),
+            created_us: 0,
+            author: None,
+        }
+    }
+
+    fn row(id: usize, trials: &[&str], verdict: &str) -> Diagnosed {
+        Diagnosed {
+            id: format!("{id:03}"),
+            version_id: "v".into(),
+            made_id: None,
+            report_id: "r".into(),
+            verdict: verdict.into(),
+            effects: if verdict == "effects" { r#"["current"]"# } else { "[]" }.into(),
+            trials: serde_json::to_string(trials).unwrap(),
+            unexplained: "[]".into(),
+            drift: None,
+            created_us: 0,
+        }
+    }
+
+    /// Diagnoses in the order in which they were made, as the store gives them.
+    fn newest_first(mut rows: Vec<Diagnosed>) -> Vec<Diagnosed> {
+        rows.reverse();
+        rows
+    }
+
+    fn weighed(rows: &[Diagnosed]) -> Evidence<'_> {
+        Evidence::new(&version(), rows, &[], EvidenceLimits::default())
+    }
+
+    #[test]
+    fn one_clean_trial_does_not_clear_three_bad_ones() {
+        let bad = |at: usize, trial: &str| row(at, &[trial], "unexplained");
+        let mut rows = vec![row(0, &["a"], "complete"), bad(1, "b"), bad(2, "c"), bad(3, "d")];
+        rows.push(row(4, &["e"], "complete"));
+        let rows = newest_first(rows);
+        let evidence = weighed(&rows);
+        assert_eq!((evidence.against().len(), evidence.since().unwrap().as_str()), (3, "b"));
+        assert_eq!(evidence.trials().len(), 5);
+    }
+
+    /// Three trials that leave something, then clean ones, with errors of a diagnosis at half and
+    /// at double of what is measured.
+    #[test]
+    fn many_clean_trials_do_and_how_many_hardly_depends_on_the_rates() {
+        let default = EvidenceLimits::default();
+        for factors in [(1.0, 1.0), (0.5, 1.0), (2.0, 1.0), (1.0, 0.5), (1.0, 2.0)] {
+            let limits = EvidenceLimits {
+                false_alarm: factors.0 * default.false_alarm,
+                miss: factors.1 * default.miss,
+            };
+            let cleared = (0..20).find(|&clean| {
+                let verdict = |at| if at < 3 { "unexplained" } else { "complete" };
+                let name = |at| format!("{at:02}");
+                let rows = (0..3 + clean).map(|at| row(at, &[&name(at)], verdict(at))).collect();
+                let rows = newest_first(rows);
+                Evidence::new(&version(), &rows, &[], limits).against().is_empty()
+            });
+            println!("{factors:?}: cleared by {cleared:?}");
+            assert!((4..=8).contains(&cleared.unwrap()), "{factors:?}: {cleared:?}");
+        }
+    }
+
+    #[test]
+    fn a_trial_counts_once_by_its_narrowest_diagnosis_and_the_whole_beside() {
+        let rows = newest_first(vec![
+            row(0, &["a"], "complete"),
+            row(1, &["b"], "complete"),
+            row(2, &["a", "b"], "effects"),
+            row(3, &["b"], "complete"),
+        ]);
+        let evidence = weighed(&rows);
+        let ids: Vec<&str> = evidence.sequence.iter().map(|one| one.row.id.as_str()).collect();
+        assert_eq!(ids, ["000", "003"]);
+        assert_eq!(evidence.whole.as_ref().unwrap().row.id, "002");
+        assert_eq!((evidence.against().len(), evidence.since().unwrap().as_str()), (1, "a"));
+    }
+
+    #[test]
+    fn what_was_found_on_a_deleted_trial_does_not_count() {
+        let rows = newest_first(vec![row(0, &["a"], "complete"), row(1, &["b"], "unexplained")]);
+        let deleted = ["b".to_owned()];
+        let evidence = Evidence::new(&version(), &rows, &deleted, EvidenceLimits::default());
+        assert!(evidence.against().is_empty());
+        assert_eq!(evidence.holds_since().unwrap(), "a");
+    }
+
+    #[test]
+    fn the_trial_that_leaves_something_is_named_among_several() {
+        let mut left = row(0, &["a", "b", "c"], "unexplained");
+        left.unexplained = r#"["b"]"#.into();
+        let rows = [left];
+        assert_eq!(weighed(&rows).since().unwrap(), "b");
+    }
+}

@@ -1,0 +1,281 @@
+//! Whether the model of a ship still holds: everything that diagnoses and drift say of its present
+//! champion since it was fitted, weighed together.
+
+mod evidence;
+mod gathered;
+mod recent_drift;
+mod words;
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use sistership_store::{Diagnosed, MAX_LIMIT, Page, Store, StoreError, VersionHead};
+use utoipa::ToSchema;
+
+use self::evidence::{Evidence, EvidenceLimits, Observation};
+use crate::line::{CHAMPION, alias};
+
+pub use gathered::{NEWEST, fitted_samples, gathered};
+pub use recent_drift::{DRIFT_LIMIT, RecentDrift};
+
+/// Whether the champion of a ship still holds, by all diagnoses of it and by its drift.
+#[derive(Debug, Clone, Default, Serialize, ToSchema)]
+pub struct Condition {
+    /// `holds`, `does_not_hold`, or `unknown` where its champion was never diagnosed.
+    pub model: Standing,
+    /// The same in one sentence.
+    pub sentence: String,
+    /// The number of its champion.
+    pub version: Option<i64>,
+    /// What was found of the champion: `complete`, `effects`, `unexplained`, or `drift` where that
+    /// alone speaks against it.
+    pub verdict: Option<String>,
+    /// Names of the effects that the champion lacks.
+    pub effects: Vec<String>,
+    /// Ids of the trials that it was diagnosed on.
+    pub trials: Vec<String>,
+    /// Ids of those that speak against it.
+    pub against: Vec<String>,
+    /// The diagnosis that says most: of those that speak against it the one of most trials.
+    pub found_by: Option<FoundBy>,
+    /// The first trial from which it is so: that from which it does not hold, or from which each
+    /// trial was clean.
+    pub since: Option<SinceTrial>,
+    /// How much more the champion leaves of its newest trials than of those it was fitted on.
+    pub drift: Option<RecentDrift>,
+    /// The diagnoses by which each trial counts, in the order of the trials, then that of the
+    /// whole.
+    pub diagnoses: Vec<WeighedDiagnosis>,
+    /// The version with the effects that the champion lacks.
+    pub with_effects: Option<MadeVersion>,
+    /// The newest diagnosis, and how many of all count.
+    #[serde(skip)]
+    state: String,
+}
+
+/// Whether a model holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Standing {
+    /// Its residual is what the noise predicts.
+    Holds,
+    /// Something is missing.
+    DoesNotHold,
+    /// Nobody has looked.
+    #[default]
+    Unknown,
+}
+
+/// A diagnosis.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct FoundBy {
+    /// Its id.
+    pub diagnosis: String,
+    /// When it was made, microseconds since 1970.
+    pub at_us: i64,
+    /// Where its report is, as data and as a page (`?format=html`).
+    pub report: String,
+}
+
+/// A trial since which a condition is so.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+pub struct SinceTrial {
+    /// Its id.
+    pub trial: String,
+    /// What people call it.
+    pub name: String,
+    /// When it was uploaded, microseconds since 1970.
+    pub at_us: i64,
+}
+
+/// A diagnosis that counts.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct WeighedDiagnosis {
+    /// The diagnosis.
+    #[serde(flatten)]
+    pub by: FoundBy,
+    /// Ids of its trials.
+    pub trials: Vec<String>,
+    /// `complete`, `effects` or `unexplained`.
+    pub verdict: String,
+    /// Whether it is of the whole: trials that other diagnoses are of, too.
+    pub whole: bool,
+}
+
+/// A version that came of a diagnosis.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct MadeVersion {
+    /// Its number.
+    pub number: i64,
+    /// Where it is.
+    pub at: String,
+}
+
+impl Condition {
+    /// The condition of a ship now.
+    ///
+    /// # Errors
+    /// The store does not answer.
+    pub async fn of(store: &Store, ship: &str) -> Result<Self, StoreError> {
+        let Some(champion) = alias(store, ship, CHAMPION).await? else {
+            return Ok(Self {
+                sentence: "Unknown: it has no champion yet.".into(),
+                ..Self::default()
+            });
+        };
+        let version = store.versions().head(ship, champion.version_number).await?;
+        let rows = store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
+        let deleted = store.deleted_trials(&trials_of(&rows)).await?;
+        let mut condition = Self::weighed(&version, &rows, &deleted);
+        if let Some(since) = &mut condition.since {
+            let trial = store.trials().get(&since.trial).await?;
+            (since.name, since.at_us) = (trial.name, trial.created_us);
+        }
+        condition.sentence = condition.in_words();
+        if let Some(made) = condition.made(&version, &rows) {
+            condition.with_effects =
+                Some(MadeVersion::of(store.versions().by_id(made).await?.head));
+        }
+        Ok(condition)
+    }
+
+    /// The condition by the diagnoses that concern a champion, the latest first, without those on
+    /// deleted trials: without sentence, names of trials, and what was made.
+    pub fn weighed(version: &VersionHead, rows: &[Diagnosed], deleted: &[String]) -> Self {
+        let evidence = Evidence::new(version, rows, deleted, EvidenceLimits::default());
+        let number = Some(version.number);
+        if evidence.sequence.is_empty() {
+            return Self { version: number, ..Self::default() };
+        }
+        let drift = drift(version, rows);
+        let condition = Self {
+            version: number,
+            trials: evidence.trials().into_iter().collect(),
+            diagnoses: weighed_diagnoses(&evidence),
+            state: state(rows, deleted),
+            drift,
+            ..Self::default()
+        };
+        let drifted = condition.drift.as_ref().is_some_and(RecentDrift::is_above_limit);
+        match evidence.against().is_empty() && !drifted {
+            true => condition.holding(&evidence),
+            false => condition.not_holding(&evidence),
+        }
+    }
+
+    fn holding(self, evidence: &Evidence<'_>) -> Self {
+        let newest = evidence.whole.iter().chain(evidence.sequence.last());
+        let found_by = newest.max_by(|a, b| a.row.id.cmp(&b.row.id));
+        Self {
+            model: Standing::Holds,
+            verdict: Some("complete".to_owned()),
+            found_by: found_by.map(|one| FoundBy::of(one.row)),
+            since: evidence.holds_since().map(|trial| SinceTrial::of(trial)),
+            ..self
+        }
+    }
+
+    fn not_holding(self, evidence: &Evidence<'_>) -> Self {
+        let against = evidence.against();
+        let drifted = self.drift.as_ref().and_then(|drift| drift.since.as_ref());
+        let since = evidence.since().or(drifted).map(|trial| SinceTrial::of(trial));
+        let found_by = against.iter().max_by_key(|one| one.trials.len());
+        Self {
+            model: Standing::DoesNotHold,
+            verdict: Some(verdict(&against).to_owned()),
+            effects: effects(&against),
+            against: trials_against(&against),
+            found_by: found_by.map(|one| FoundBy::of(one.row)),
+            since,
+            ..self
+        }
+    }
+
+    /// The id of the version with what is missing, where one was made.
+    fn made<'a>(&self, version: &VersionHead, rows: &'a [Diagnosed]) -> Option<&'a String> {
+        let mut of_version = rows.iter().filter(|row| row.version_id == version.id);
+        let made = of_version.find_map(|row| row.made_id.as_ref());
+        made.filter(|_| self.model == Standing::DoesNotHold)
+    }
+
+    /// Tells one state of the condition from another.
+    pub fn tag(&self) -> String {
+        let version = self.version.map(|number| format!(".{number}")).unwrap_or_default();
+        version + &self.state
+    }
+}
+
+/// Ids of the trials of diagnoses.
+pub fn trials_of(rows: &[Diagnosed]) -> Vec<String> {
+    let list = |row: &Diagnosed| serde_json::from_str(&row.trials).unwrap_or_default();
+    let ids: BTreeSet<String> =
+        rows.iter().flat_map(list as fn(&Diagnosed) -> Vec<String>).collect();
+    ids.into_iter().collect()
+}
+
+fn state(rows: &[Diagnosed], deleted: &[String]) -> String {
+    let newest = rows.first().map_or("", |newest| newest.id.as_str());
+    format!(".{newest}.{}", deleted.len())
+}
+
+/// The drift at the newest diagnosis of a version where it was measured.
+fn drift(version: &VersionHead, rows: &[Diagnosed]) -> Option<RecentDrift> {
+    let mut of_version = rows.iter().filter(|row| row.version_id == version.id);
+    of_version.find_map(|row| serde_json::from_str(row.drift.as_deref()?).ok())
+}
+
+fn weighed_diagnoses(evidence: &Evidence<'_>) -> Vec<WeighedDiagnosis> {
+    let one = |one: &Observation<'_>, whole| WeighedDiagnosis {
+        by: FoundBy::of(one.row),
+        trials: one.trials.clone(),
+        verdict: one.verdict.to_owned(),
+        whole,
+    };
+    let parts = evidence.sequence.iter().map(|part| one(part, false));
+    parts.chain(evidence.whole.iter().map(|whole| one(whole, true))).collect()
+}
+
+fn verdict(against: &[&Observation<'_>]) -> &'static str {
+    match (against.is_empty(), against.iter().any(|one| one.verdict == "unexplained")) {
+        (true, _) => "drift",
+        (false, true) => "unexplained",
+        (false, false) => "effects",
+    }
+}
+
+fn effects(against: &[&Observation<'_>]) -> Vec<String> {
+    let mut named: Vec<String> = Vec::new();
+    for effect in against.iter().flat_map(|one| &one.effects) {
+        if !named.contains(effect) {
+            named.push(effect.clone());
+        }
+    }
+    named
+}
+
+fn trials_against(against: &[&Observation<'_>]) -> Vec<String> {
+    let trials: BTreeSet<&String> = against.iter().flat_map(|one| &one.trials).collect();
+    trials.into_iter().cloned().collect()
+}
+
+impl SinceTrial {
+    fn of(trial: &str) -> Self {
+        Self { trial: trial.to_owned(), ..Self::default() }
+    }
+}
+
+impl FoundBy {
+    fn of(diagnosed: &Diagnosed) -> Self {
+        let report = format!("/v1/reports/{}", diagnosed.report_id);
+        Self { diagnosis: diagnosed.id.clone(), at_us: diagnosed.created_us, report }
+    }
+}
+
+impl MadeVersion {
+    fn of(head: VersionHead) -> Self {
+        Self {
+            number: head.number,
+            at: format!("/v1/models/{}/versions/{}", head.model, head.number),
+        }
+    }
+}

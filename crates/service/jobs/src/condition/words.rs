@@ -1,0 +1,57 @@
+//! The condition of a ship in one sentence.
+
+use super::{Condition, Standing};
+
+impl Condition {
+    pub(super) fn in_words(&self) -> String {
+        match self.model {
+            Standing::Unknown => {
+                "Unknown: its champion has not been diagnosed on a trial yet.".into()
+            }
+            Standing::Holds => format!(
+                "Its model holds: on {} its residual is what the noise predicts.",
+                trials(self.trials.len())
+            ),
+            Standing::DoesNotHold => {
+                format!("Its model does not hold{}: {}.", self.since_words(), self.faults())
+            }
+        }
+    }
+
+    fn since_words(&self) -> String {
+        let named = self.since.as_ref().filter(|since| !since.name.is_empty());
+        named.map_or_else(String::new, |since| format!(" since the trial {}", since.name))
+    }
+
+    /// What speaks against the model.
+    fn faults(&self) -> String {
+        let (against, all) = (self.against.len(), trials(self.trials.len()));
+        let on = if against == self.trials.len() { all } else { format!("{against} of {all}") };
+        let effects = self.effects.join(" and ");
+        let found = match (effects.is_empty(), self.verdict.as_deref()) {
+            (_, Some("drift")) => None,
+            (true, _) => {
+                Some(format!("on {on} something is missing that no known effect explains"))
+            }
+            (false, Some("effects")) => Some(format!("on {on} it lacks {effects}")),
+            (false, _) => Some(format!(
+                "on {on} it lacks {effects}, and something that no known effect explains"
+            )),
+        };
+        let drift = self.drift.as_ref().filter(|drift| drift.is_above_limit()).map(|drift| {
+            format!(
+                "it leaves {:.1} times as much of the force {} on new trials as on those it was \
+                 fitted on",
+                drift.ratio, drift.axis
+            )
+        });
+        found.into_iter().chain(drift).collect::<Vec<_>>().join("; ")
+    }
+}
+
+fn trials(count: usize) -> String {
+    match count {
+        1 => "1 trial".to_owned(),
+        count => format!("{count} trials"),
+    }
+}
