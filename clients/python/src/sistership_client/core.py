@@ -569,7 +569,7 @@ class Core:
         return self.http.json('POST', '/v1/webhooks', json=body)
 
     def delete_webhooks_id(self, id: str) -> WebhookView:
-        """End a webhook, for ever."""
+        """Delete a webhook permanently."""
         return self.http.json('DELETE', f'/v1/webhooks/{id}')
 
     def get_webhooks_id(self, id: str) -> WebhookView:

@@ -70,13 +70,15 @@ pub(super) fn branch(
     let on = HeldOutTrials { law: request.law, trials: &thinned, folds: &folds };
     let model = &foundation.refinement.model;
     let settings = BranchSettings::default();
-    let told = |kind: BranchKind| progress(0.99, &format!("trying a branch of {}", kind.name()));
+    let told = |kind: BranchKind| {
+        progress(0.99, &format!("fitting a learned correction: {}", kind.name()))
+    };
     let choice = match choose(model, &on, (&settings, kinds), &told) {
         Ok(choice) => choice.ok_or(RefineError::Cancelled)?,
         Err(error) => return Ok(BranchChoice::untried(untrained(&error))),
     };
     let Some(kind) = choice.taken else { return Ok(choice) };
-    if !progress(0.99, &format!("checking the branch of {}", kind.name())) {
+    if !progress(0.99, &format!("checking the learned correction: {}", kind.name())) {
         return Err(RefineError::Cancelled);
     }
     let correction = Correction { foundation, on, kind, step_s: replayed.step_s };

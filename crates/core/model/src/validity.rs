@@ -346,7 +346,7 @@ mod tests {
             })
             .unwrap();
         assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
-        assert!(out.beyond > 5.0 && out.words().contains("from 4 s, 60 % of the time"));
+        assert!(out.beyond > 5.0 && out.words().contains("from 4 s on, 60 % of the time"));
     }
 
     #[test]
