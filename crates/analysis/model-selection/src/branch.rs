@@ -6,44 +6,15 @@
 //! standard manoeuvres no less certain, and be no worse where the trials of the largest and least
 //! rudder angles and speeds are held out ([`crate::correction`]).
 
-use sistership_identification::refine::{
-    FoldModel, Progress, RefineError, Refinement, ReplayedTrials, Request, Thinning,
-};
+use sistership_identification::refine::{Progress, RefineError, ReplayedTrials, Thinning};
 use sistership_learned::{
-    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Kinds, TrainError, choose,
+    BranchChoice, BranchKind, BranchSettings, HeldOutTrials, Kinds, TrainError, choose,
 };
 use sistership_model::trial::Trial;
 
 use crate::correction::Correction;
+use crate::foundation::Foundation;
 use crate::thresholds::SEARCH;
-
-/// What a correction may be learned beside.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Foundation<'a> {
-    /// The refinement that was chosen, as an explicit request.
-    pub request: Request<'a>,
-    /// What it gave.
-    pub refinement: &'a Refinement,
-    /// The models of its folds; none of the source as carried over, which has seen no trial.
-    pub folds: &'a [FoldModel],
-    /// The trials that have a say.
-    pub trials: &'a [&'a Trial],
-}
-
-impl Foundation<'_> {
-    /// The folds with models that have not seen what they hold out; none where they held out parts
-    /// of trials.
-    fn held_out(&self) -> Vec<HeldOutFold> {
-        if self.folds.is_empty() && self.refinement.is_source_kept() {
-            return HeldOutFold::of_one(&self.refinement.model, self.trials.len());
-        }
-        let one = |fold: &FoldModel| HeldOutFold {
-            foundation: fold.model.foundation(),
-            held_out: fold.held_out.clone(),
-        };
-        self.folds.iter().map(one).collect()
-    }
-}
 
 /// Tries kinds of corrections beside a model, with as many samples as simulations need; few trials
 /// leave too little out.

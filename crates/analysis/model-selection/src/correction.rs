@@ -12,8 +12,8 @@ use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
 
-use crate::branch::Foundation;
 use crate::extremes::extremes;
+use crate::foundation::Foundation;
 use crate::sailed::unsailed_rudder;
 use crate::scatter::scatter_ratio;
 

@@ -10,6 +10,7 @@ mod choice;
 mod correction;
 mod entrant;
 mod extremes;
+mod foundation;
 mod ladder;
 mod population;
 mod sailed;

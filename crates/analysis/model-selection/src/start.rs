@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
-use crate::branch::{Foundation, branch};
+use crate::branch::branch;
 use crate::entrant::{Beside, Entrant, HeldBy, entrants};
+use crate::foundation::Foundation;
 use crate::ladder::Ladder;
 use crate::population::{asked_at, population};
 use crate::search::search;

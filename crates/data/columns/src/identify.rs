@@ -4,10 +4,12 @@ use crate::data::RecordingSample;
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::outcome::{Alternative, Identification, IdentifiedColumn};
 use crate::own::OwnEvidence;
-use crate::physics::{Physics, Relation};
+use crate::physics::Physics;
+use crate::relation::Relation;
 use crate::role::Role;
 use crate::search::{Search, Settled};
 use crate::signals::Signals;
+use crate::starts;
 use crate::thrusters;
 use crate::time::{self, TimeUnit};
 
@@ -52,7 +54,7 @@ pub fn identify(recording: &RecordingSample, given: &[GivenColumn]) -> Identific
     let units = if units.is_empty() { vec![fallback] } else { units };
     let search = Search::new(&own, Physics::new(&signals), time, settled(recording, given));
     let found = units.iter().map(|unit| {
-        let (best, odds) = search.best(unit.to_si);
+        let (best, odds) = starts::best(&search, unit.to_si);
         (*unit, best, odds + unit.odds)
     });
     let mut found: Vec<(TimeUnit, Assignment, f64)> = found.collect();

@@ -14,6 +14,7 @@ mod identify;
 mod outcome;
 mod own;
 mod physics;
+mod relation;
 mod role;
 mod rudder;
 mod search;

@@ -5,109 +5,37 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::hypothesis::Assignment;
+use crate::relation::{Fit, LEAST, Observed, Relation};
 use crate::role::Role;
 use crate::rudder;
 use crate::signals::Signals;
 use crate::track::Track;
 
-/// Log odds for each e-fold by which a relation leaves less unexplained.
-pub(crate) const PER_FOLD: f64 = 3.0;
-/// Log odds that one relation can give or take: instruments have scales and offsets of their own.
-const MOST: f64 = 30.0;
-const LEAST: f64 = -12.0;
-/// Log odds of a relation that a constant would explain as well: the sizes match, no more.
-const SIZE: f64 = 5.0;
-/// Part of the blocks whose residuals are left out: faults of instruments.
-const FAULTY: f64 = 0.04;
-
-/// A relation, what it gives, and its figure for a reader.
-#[derive(Debug, Clone)]
-pub(crate) struct Relation {
-    /// Quantities that take part; `Other` fills up.
-    pub roles: [Role; 3],
-    /// Log odds against the columns being unrelated.
-    pub odds: f64,
-    pub figure: String,
-}
-
-/// How well one series explains another.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fit {
-    /// Squares that are left, of all; and of those about the mean.
-    pub left: f64,
-    pub left_of_changes: f64,
-    /// The factor that would explain most.
-    pub slope: f64,
-}
-
-impl Fit {
-    /// Explains `a` by `factor * b`; nothing where both stand still.
-    pub(crate) fn new(a: &[f64], factor_a: f64, b: &[f64], factor_b: f64) -> Option<Self> {
-        let mut rows: Vec<(f64, f64, f64)> = a
-            .iter()
-            .zip(b)
-            .map(|(a, b)| {
-                let (a, b) = (factor_a * a, factor_b * b);
-                ((a - b) * (a - b), a, b)
-            })
-            .collect();
-        let kept = rows.len() - (FAULTY * rows.len() as f64) as usize;
-        if kept < rows.len() {
-            rows.select_nth_unstable_by(kept, |x, y| x.0.total_cmp(&y.0));
-            rows.truncate(kept);
-        }
-        let (mut left, mut aa, mut ab, mut bb, mut mean) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for &(square, a, b) in &rows {
-            left += square;
-            aa += a * a;
-            ab += a * b;
-            bb += b * b;
-            mean += a;
-        }
-        let changes = aa - mean * mean / rows.len().max(1) as f64;
-        let all = aa.max(bb);
-        (all > 0.0).then(|| Self {
-            left: left / all,
-            left_of_changes: left / changes.max(1e-9 * aa).max(1e-300),
-            slope: ab / bb.max(1e-300),
-        })
-    }
-
-    /// Its log odds; `floor` is the part that instruments leave at best.
-    pub(crate) fn odds(&self, floor: f64) -> f64 {
-        odds_of(self.left.max(floor)).min(SIZE + odds_of(self.left_of_changes.max(floor)))
-    }
-}
-
-/// Log odds of a part that is left unexplained.
-pub(crate) fn odds_of(unexplained: f64) -> f64 {
-    (-PER_FOLD * unexplained.max(1e-5).ln()).clamp(LEAST, MOST)
-}
-
 /// Relations of the columns of a recording.
 pub(crate) struct Physics<'a> {
-    pub signals: &'a Signals,
-    /// Whether figures are written out: not while thousands of assignments are compared.
-    pub is_told: bool,
+    pub observed: Observed<'a>,
     tracks: RefCell<HashMap<[i64; 9], Option<Rc<Track>>>>,
     rudders: RefCell<HashMap<(usize, usize, bool), rudder::Steering>>,
 }
 
 impl<'a> Physics<'a> {
     pub(crate) fn new(signals: &'a Signals) -> Self {
-        let (tracks, rudders) = (RefCell::default(), RefCell::default());
-        Self { signals, is_told: false, tracks, rudders }
+        Self::read(Observed { signals, is_told: false })
     }
 
     /// The same with figures.
     pub(crate) fn with_figures(signals: &'a Signals) -> Self {
-        Self { is_told: true, ..Self::new(signals) }
+        Self::read(Observed { signals, is_told: true })
+    }
+
+    fn read(observed: Observed<'a>) -> Self {
+        Self { observed, tracks: RefCell::default(), rudders: RefCell::default() }
     }
 
     /// Every relation that holds between the columns as they are taken.
     pub(crate) fn relations(&self, of: &Assignment) -> Vec<Relation> {
         let mut all = Vec::new();
-        if self.signals.scales.is_empty() {
+        if self.observed.signals.scales.is_empty() {
             return all;
         }
         let rates = [
@@ -119,7 +47,7 @@ impl<'a> Physics<'a> {
         for (whole, rate, text) in rates {
             all.extend(self.rate(of, whole, rate, text));
         }
-        all.extend(self.track(of).iter().flat_map(|track| track.relations(self, of)));
+        all.extend(self.track(of).iter().flat_map(|track| track.relations(self.observed, of)));
         all.extend(self.steering(of));
         all.extend(self.propulsion(of));
         all.extend(self.heel(of));
@@ -132,10 +60,6 @@ impl<'a> Physics<'a> {
         self.relations(of).iter().map(|relation| relation.odds).sum()
     }
 
-    pub(crate) fn figure(&self, text: impl FnOnce() -> String) -> String {
-        if self.is_told { text() } else { String::new() }
-    }
-
     /// A quantity that is the integral of another.
     pub(crate) fn rate(
         &self,
@@ -146,11 +70,11 @@ impl<'a> Physics<'a> {
     ) -> Option<Relation> {
         let ((i, fi), (j, fj)) = (of.find(whole)?, of.find(rate)?);
         let fj = fj * of.time_factor;
-        let each = self.signals.scales.iter().filter_map(|scale| {
+        let each = self.observed.signals.scales.iter().filter_map(|scale| {
             Fit::new(&scale.columns[i].change, fi, &scale.columns[j].integral, fj)
         });
         let best = each.min_by(|a, b| a.left.total_cmp(&b.left))?;
-        let figure = self.figure(|| format!("{text} ({:.2} times)", best.slope));
+        let figure = self.observed.figure(|| format!("{text} ({:.2} times)", best.slope));
         let roles = [whole, rate, Role::Other];
         Some(Relation { roles, odds: best.odds(1e-5), figure })
     }
@@ -166,7 +90,7 @@ impl<'a> Physics<'a> {
         let ([a, b], [c, d]) = (place(x), place(y));
         let ([e, f], [g, h]) = (place(Role::Psi), place(Role::Course));
         let key = [a, b, c, d, e, f, g, h, (of.time_factor * 1e9) as i64];
-        let made = || Track::new(self.signals, of, (x, y)).map(Rc::new);
+        let made = || Track::new(self.observed.signals, of, (x, y)).map(Rc::new);
         self.tracks.borrow_mut().entry(key).or_insert_with(made).clone()
     }
 
@@ -176,9 +100,9 @@ impl<'a> Physics<'a> {
             [Role::Delta, Role::DeltaS, Role::DeltaP].into_iter().find(|role| of.has(*role))?;
         let (delta, fd) = of.find(rudder)?;
         let reversed = (fr < 0.0) != (fd < 0.0);
-        let made = || rudder::Steering::new(self.signals, r, delta, reversed);
+        let made = || rudder::Steering::new(self.observed.signals, r, delta, reversed);
         let steering = *self.rudders.borrow_mut().entry((r, delta, reversed)).or_insert_with(made);
-        Some(steering.relation(rudder, self))
+        Some(steering.relation(rudder, self.observed))
     }
 
     /// Revolutions of a size that fits speed and turning.
@@ -187,9 +111,10 @@ impl<'a> Physics<'a> {
         let speed = [Role::U, Role::Speed, Role::UWater, Role::VNorth];
         let speed = speed.into_iter().find(|role| of.has(*role))?;
         let ((i, fi), (j, fj)) = (of.find(n)?, of.find(speed)?);
-        let revolutions = self.signals.summaries[i].largest * fi;
-        let speed_m_s = self.signals.summaries[j].largest * fj.abs();
-        let turning = of.find(Role::R).map(|(k, fk)| self.signals.summaries[k].largest * fk.abs());
+        let revolutions = self.observed.signals.summaries[i].largest * fi;
+        let speed_m_s = self.observed.signals.summaries[j].largest * fj.abs();
+        let turning =
+            of.find(Role::R).map(|(k, fk)| self.observed.signals.summaries[k].largest * fk.abs());
         // Tight turns are of about 2.5 lengths across: r L / u = 0.8; with the speed lost, 0.4 of
         // the largest speed. A propeller advances by some 2 % of the length a turn.
         let length = 0.4 * speed_m_s / turning.filter(|r| *r > 1e-4)?;
@@ -197,7 +122,7 @@ impl<'a> Physics<'a> {
         let off = (advance.max(1e-12) / 0.02).ln();
         let odds = (2.0 - 0.5 * off * off).clamp(LEAST, 2.0);
         let ahead = speed_m_s / revolutions.max(1e-9);
-        let figure = self.figure(|| format!("{ahead:.2} m ahead a turn"));
+        let figure = self.observed.figure(|| format!("{ahead:.2} m ahead a turn"));
         Some(Relation { roles: [n, Role::Other, Role::Other], odds, figure })
     }
 
@@ -206,13 +131,15 @@ impl<'a> Physics<'a> {
         let ((i, _), (j, _)) = (of.find(Role::Phi)?, of.find(Role::R)?);
         let correlation = self.correlation(i, j).abs();
         let odds = 4.0 * (correlation - 0.3).max(0.0);
-        let figure = self.figure(|| format!("heels with the yaw rate by {correlation:.2}"));
+        let figure =
+            self.observed.figure(|| format!("heels with the yaw rate by {correlation:.2}"));
         Some(Relation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
     }
 
     /// Correlation of the means over coarse blocks.
     fn correlation(&self, i: usize, j: usize) -> f64 {
-        let means = |at: usize| self.signals.scales.first().map(|scale| &scale.columns[at].mean);
+        let means =
+            |at: usize| self.observed.signals.scales.first().map(|scale| &scale.columns[at].mean);
         means(i).zip(means(j)).map_or(0.0, |(a, b)| rudder::correlation(a, b))
     }
 
@@ -229,12 +156,12 @@ impl<'a> Physics<'a> {
             .into_iter()
             .filter_map(|(one, other, floor)| {
                 let ((i, fi), (j, fj)) = (of.find(one)?, of.find(other)?);
-                let scale = self.signals.scales.first()?;
+                let scale = self.observed.signals.scales.first()?;
                 let (a, b) = (&scale.columns[i].mean, &scale.columns[j].mean);
                 let fit = Fit::new(a, fi, b, fj)?;
                 let (odds, share) = (fit.odds(floor), 100.0 * fit.left.sqrt());
                 let told = || format!("shows what its twin does, within {share:.0} %");
-                let figure = self.figure(told);
+                let figure = self.observed.figure(told);
                 Some(Relation { roles: [one, other, Role::Other], odds, figure })
             })
             .collect()

@@ -3,7 +3,7 @@
 //! Two witnesses: the correlation with the yaw rate some moments later, and the partial correlation
 //! with the yaw acceleration in Nomoto's first-order model, dr/dt = a r + b delta + c.
 
-use crate::physics::{Physics, Relation};
+use crate::relation::{Observed, Relation};
 use crate::role::Role;
 use crate::signals::Signals;
 
@@ -31,11 +31,11 @@ impl Steering {
         Self { lagged: sign * lagged, partial: sign * partial }
     }
 
-    pub(crate) fn relation(self, rudder: Role, physics: &Physics) -> Relation {
+    pub(crate) fn relation(self, rudder: Role, observed: Observed<'_>) -> Relation {
         let odds = (PER_UNIT * (self.lagged + self.partial)).clamp(-10.0, 12.0);
         let lagged = self.lagged;
-        let figure =
-            physics.figure(|| format!("the yaw rate follows it with a correlation of {lagged:.2}"));
+        let figure = observed
+            .figure(|| format!("the yaw rate follows it with a correlation of {lagged:.2}"));
         Relation { roles: [rudder, Role::R, Role::Other], odds, figure }
     }
 }

@@ -4,7 +4,6 @@ use crate::hypothesis::{Assignment, Hypothesis};
 use crate::own::OwnEvidence;
 use crate::physics::Physics;
 use crate::role::{Kind, Role, Unit};
-use crate::starts;
 use crate::whole;
 
 /// Log odds by themselves below which a hypothesis is not looked at.
@@ -32,8 +31,6 @@ const SIGNED: [&[Role]; 5] = [
     &[Role::Y, Role::Psi],
     &[Role::Phi, Role::P],
 ];
-/// Starts, besides that of headers, from which an assignment is improved.
-const STARTS: usize = 3;
 
 /// A column that the user has settled: what it is, or nothing for one that is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,17 +76,8 @@ impl<'a> Search<'a> {
         each.sum::<f64>() + self.physics.odds(of) + whole::odds(of) - 1e3 * kept as f64
     }
 
-    /// The best assignment that is found, from headers and from relations.
-    pub(crate) fn best(&self, time_factor: f64) -> (Assignment, f64) {
-        let named = self.start(time_factor);
-        let related = starts::related(self, &named, STARTS);
-        let each = related.into_iter().chain([named]).map(|start| self.improved(start));
-        let best = each.max_by(|a, b| a.1.total_cmp(&b.1));
-        best.unwrap_or_else(|| (self.start(time_factor), f64::NEG_INFINITY))
-    }
-
     /// An assignment improved by pairs of columns, single columns and signs, until nothing gains.
-    fn improved(&self, start: Assignment) -> (Assignment, f64) {
+    pub(crate) fn improved(&self, start: Assignment) -> (Assignment, f64) {
         let (mut best, mut odds) = (start.clone(), self.odds(&start));
         for pass in 0..PASSES {
             let before = odds;
@@ -119,7 +107,7 @@ impl<'a> Search<'a> {
     }
 
     /// Each column by itself, the clearest first.
-    fn start(&self, time_factor: f64) -> Assignment {
+    pub(crate) fn start(&self, time_factor: f64) -> Assignment {
         let columns = vec![None; self.own.len()];
         let mut start = Assignment { columns, time_factor };
         let mut all: Vec<(f64, usize, Hypothesis)> = Vec::new();
@@ -217,7 +205,10 @@ impl<'a> Search<'a> {
                 self.physics.rate(of, pair.0, pair.1, "")
             }
             (Role::X, Role::Y) | (Role::Latitude, Role::Longitude) => {
-                return self.physics.track(of).map_or(0.0, |track| track.odds(&self.physics, of));
+                return self
+                    .physics
+                    .track(of)
+                    .map_or(0.0, |track| track.odds(self.physics.observed, of));
             }
             (Role::VNorth, Role::VEast) => {
                 let of_axis = |whole, rate| self.physics.rate(of, whole, rate, "");

@@ -1,4 +1,4 @@
-//! Starts of the search that need no header: columns of which one is the rate of the other.
+//! Starts of the search, by headers and without: columns of which one is the rate of the other.
 
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::role::Role;
@@ -7,14 +7,25 @@ use crate::search::Search;
 
 /// Correlation of changes and integrals from which one column is another's rate.
 const RATE: f64 = 0.9;
+/// Starts, besides that of headers, from which an assignment is improved.
+const STARTS: usize = 3;
 /// Pairs that are looked at.
 const MOST: usize = 6;
 /// Quantities and their rates.
 const PAIRS: [(Role, Role); 4] =
     [(Role::Psi, Role::R), (Role::X, Role::VNorth), (Role::Y, Role::VEast), (Role::Phi, Role::P)];
 
+/// The best assignment that is found, from headers and from relations, and its log odds.
+pub(crate) fn best(search: &Search, time_factor: f64) -> (Assignment, f64) {
+    let named = search.start(time_factor);
+    let related = related(search, &named, STARTS);
+    let each = related.into_iter().chain([named]).map(|start| search.improved(start));
+    let best = each.max_by(|a, b| a.1.total_cmp(&b.1));
+    best.unwrap_or_else(|| (search.start(time_factor), f64::NEG_INFINITY))
+}
+
 /// The likeliest assignments in which each such pair is one of those quantities, or none.
-pub(crate) fn related(search: &Search, base: &Assignment, count: usize) -> Vec<Assignment> {
+fn related(search: &Search, base: &Assignment, count: usize) -> Vec<Assignment> {
     let pairs = rates(search);
     let mut found = Vec::new();
     extend(search, &pairs, base, &mut found);
@@ -25,7 +36,7 @@ pub(crate) fn related(search: &Search, base: &Assignment, count: usize) -> Vec<A
 
 /// Columns and those that are their rates, the closest first.
 fn rates(search: &Search) -> Vec<(usize, usize)> {
-    let signals = search.physics.signals;
+    let signals = search.physics.observed.signals;
     let mut found = Vec::new();
     for i in (0..search.own.len()).filter(|&i| !search.hypotheses[i].is_empty()) {
         for j in (0..search.own.len()).filter(|&j| j != i && !search.hypotheses[j].is_empty()) {

@@ -1,7 +1,7 @@
 //! Positions and heading against velocities: which axis is north, units, signs, ground or water.
 
 use crate::hypothesis::Assignment;
-use crate::physics::{Fit, PER_FOLD, Physics, Relation, odds_of};
+use crate::relation::{Fit, Observed, PER_FOLD, Relation, odds_of};
 use crate::role::Role;
 use crate::signals::Signals;
 
@@ -56,28 +56,28 @@ impl Track {
     }
 
     /// Its relations with heading, course, and velocities.
-    pub(crate) fn relations(&self, physics: &Physics, of: &Assignment) -> Vec<Relation> {
-        let mut all: Vec<Relation> = self.heading(physics).into_iter().collect();
+    pub(crate) fn relations(&self, observed: Observed<'_>, of: &Assignment) -> Vec<Relation> {
+        let mut all: Vec<Relation> = self.heading(observed).into_iter().collect();
         if let Some((along, across)) = &self.ship {
             let body = [(Role::U, along, "along"), (Role::V, across, "across")];
             all.extend(
                 body.iter()
-                    .filter_map(|&(role, steps, text)| self.moved(physics, of, role, steps, text)),
+                    .filter_map(|&(role, steps, text)| self.moved(observed, of, role, steps, text)),
             );
-            all.extend(self.water(physics, of, along));
+            all.extend(self.water(observed, of, along));
         }
-        all.extend(self.moved(physics, of, Role::Speed, &self.length, "over ground"));
-        all.extend(self.course(physics, of));
+        all.extend(self.moved(observed, of, Role::Speed, &self.length, "over ground"));
+        all.extend(self.course(observed, of));
         all
     }
 
     /// Sum of the log odds of its relations.
-    pub(crate) fn odds(&self, physics: &Physics, of: &Assignment) -> f64 {
-        self.relations(physics, of).iter().map(|relation| relation.odds).sum()
+    pub(crate) fn odds(&self, observed: Observed<'_>, of: &Assignment) -> f64 {
+        self.relations(observed, of).iter().map(|relation| relation.odds).sum()
     }
 
     /// A ship moves where it points: what it moves across is the smaller part.
-    fn heading(&self, physics: &Physics) -> Option<Relation> {
+    fn heading(&self, observed: Observed<'_>) -> Option<Relation> {
         let (along, across) = self.ship.as_ref()?;
         let (ahead, aside): (f64, f64) = (squares(along), squares(across));
         let part = aside / (ahead + aside);
@@ -91,7 +91,7 @@ impl Track {
             - backwards;
         let told =
             || format!("{:.1} % of the track's squares lie across the heading", 100.0 * part);
-        let figure = physics.figure(told);
+        let figure = observed.figure(told);
         Some(Relation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
     }
 
@@ -105,7 +105,7 @@ impl Track {
 
     fn moved(
         &self,
-        physics: &Physics,
+        observed: Observed<'_>,
         of: &Assignment,
         role: Role,
         steps: &[f64],
@@ -113,19 +113,19 @@ impl Track {
     ) -> Option<Relation> {
         let (at, factor) = of.find(role)?;
         let factor = factor * of.time_factor;
-        let integral = &physics.signals.scales.last()?.columns[at].integral;
+        let integral = &observed.signals.scales.last()?.columns[at].integral;
         let fit = Fit::new(steps, 1.0, integral, factor)?;
         let times = fit.slope;
         let told = || format!("positions move {times:.2} times as fast {text} as it says");
-        let figure = physics.figure(told);
+        let figure = observed.figure(told);
         let roles = [self.roles.0, self.roles.1, role];
         Some(Relation { roles, odds: fit.odds(FLOOR), figure })
     }
 
     /// Speed through the water: the track's less a steady current, which two figures describe.
-    fn water(&self, physics: &Physics, of: &Assignment, along: &[f64]) -> Option<Relation> {
+    fn water(&self, observed: Observed<'_>, of: &Assignment, along: &[f64]) -> Option<Relation> {
         let (at, factor) = of.find(Role::UWater)?;
-        let scale = physics.signals.scales.last()?;
+        let scale = observed.signals.scales.last()?;
         let integral = &scale.columns[at].integral;
         let factor = factor * of.time_factor;
         let seconds: Vec<f64> = scale.duration.iter().map(|t| t * of.time_factor).collect();
@@ -146,7 +146,7 @@ impl Track {
             .zip(c.iter().zip(&s))
             .map(|(rest, (c, s))| (rest - north * c - east * s).powi(2))
             .sum();
-        let figure = physics.figure(|| {
+        let figure = observed.figure(|| {
             format!(
                 "agrees with the track less a current of {:.2} m/s towards {:.0} deg",
                 north.hypot(east),
@@ -169,9 +169,9 @@ impl Track {
         Some(Relation { roles: [Role::UWater, Role::Psi, Role::Other], odds, figure })
     }
 
-    fn course(&self, physics: &Physics, of: &Assignment) -> Option<Relation> {
+    fn course(&self, observed: Observed<'_>, of: &Assignment) -> Option<Relation> {
         let (at, factor) = of.find(Role::Course)?;
-        let course = &physics.signals.scales.last()?.columns[at].mean;
+        let course = &observed.signals.scales.last()?.columns[at].mean;
         let steps = self.north.iter().zip(&self.east);
         let (mut said, mut all) = (0.0, 0.0);
         for ((n, e), course) in steps.zip(course) {
@@ -185,7 +185,7 @@ impl Track {
             .min(STRAIGHT - PER_FOLD * (off.max(1e-4) / straight.max(1e-4)).ln())
             .clamp(-8.0, 20.0);
         let told = || format!("{:.1} % of the way made good lies along it", 100.0 * (1.0 - off));
-        let figure = physics.figure(told);
+        let figure = observed.figure(told);
         Some(Relation { roles: [self.roles.0, self.roles.1, Role::Course], odds, figure })
     }
 }

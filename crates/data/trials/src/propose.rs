@@ -10,6 +10,7 @@ use sistership_model::manifest::{
 
 use crate::declarations::{Declarations, Derivable, SensorFile};
 use crate::file_set::{Part, SetFile, Span, parts};
+use crate::guess::Guess;
 use crate::manifest_file::ManifestFile;
 use crate::preview::preview;
 use crate::sampling::{FileSample, sample};
@@ -24,27 +25,6 @@ pub struct Proposal {
     pub guesses: Vec<Guess>,
     /// Remarks on columns together.
     pub notes: Vec<String>,
-}
-
-/// What a column was taken for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Guess {
-    /// The file, as the manifest names it.
-    pub file: String,
-    /// The column's header; `#3` for the third of a file without one.
-    pub column: String,
-    /// The channel's name in manifests; absent for a column that is left out.
-    pub channel: Option<String>,
-    /// Its unit.
-    pub unit: Option<String>,
-    /// Whether it counts the other way than the channel.
-    pub reversed: bool,
-    /// Why.
-    pub why: String,
-    /// Whether the evidence settles it; otherwise someone should look.
-    pub certain: bool,
-    /// Where a second reading is nearly as likely: which, and what answers it.
-    pub question: Option<String>,
 }
 
 /// Files for which a manifest is wanted.
@@ -242,7 +222,7 @@ impl FileSet {
     }
 
     /// A guess for each column of each file.
-    fn guesses(&self) -> Vec<crate::propose::Guess> {
+    fn guesses(&self) -> Vec<Guess> {
         let of_file = |file: &SetFile| {
             let each = self.shapes[file.shape].guesses.iter();
             each.map(|guess| Guess { file: file.name.clone(), ..guess.clone() }).collect::<Vec<_>>()

@@ -6,8 +6,8 @@ use sistership_columns::{
 };
 use sistership_model::manifest::ColumnMapping;
 
+use crate::guess::Guess;
 use crate::preview::Preview;
-use crate::propose::Guess;
 use crate::table::Target;
 use crate::units::Kind;
 

@@ -135,7 +135,8 @@ fn reference_simulations_and_examples_are_accepted() {
 fn broken_conventions_are_found_in_most_real_files() {
     let Some(folder) = shared() else { return };
     let (mut files, mut rudder, mut degrees) = (0, 0, 0);
-    let sets = ["esso-osaka", "esso-tanker", "mariner", "sr108"].map(|set| csv_files(&folder.join(set)));
+    let sets =
+        ["esso-osaka", "esso-tanker", "mariner", "sr108"].map(|set| csv_files(&folder.join(set)));
     for file in sets.concat() {
         if file.to_string_lossy().contains("berthing") {
             continue;

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Serialize;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
 use sistership_trials::{
-    Exclusion, GivenColumn, Guess, Loaded, ManifestFile, ProposalRequest, Role, find_faults,
-    lacking, load_path, propose_files,
+    Exclusion, GivenColumn, Loaded, ManifestFile, ProposalRequest, Role, find_faults, lacking,
+    load_path, propose_files,
 };
 
 use super::import_bundle;
-use super::import_log::{SearchedLog, searched};
+use super::import_log::searched;
+use super::import_outcome::{GuessRow, Import, LawNeeds};
 use super::import_text;
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
@@ -73,53 +73,6 @@ pub struct ImportArguments {
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
-}
-
-/// What was made of the files.
-#[derive(Serialize)]
-pub(super) struct Import {
-    pub manifest: PathBuf,
-    pub guesses: Vec<GuessRow>,
-    /// Remarks on columns together.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-    /// Files of which stretches were taken.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub logs: Vec<SearchedLog>,
-    /// What is left out of the files as faulty.
-    pub excluded: Vec<Exclusion>,
-    pub trials: Vec<String>,
-    pub errors: Vec<String>,
-    /// By law, what the trials do not have; laws for which nothing is missing are empty.
-    pub lacking: Vec<LawNeeds>,
-    #[serde(skip)]
-    pub explain: bool,
-}
-
-#[derive(Serialize)]
-pub(super) struct GuessRow {
-    pub file: String,
-    pub column: String,
-    pub channel: Option<String>,
-    pub unit: Option<String>,
-    pub reversed: bool,
-    pub certain: bool,
-    pub why: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub question: Option<String>,
-}
-
-#[derive(Serialize)]
-pub(super) struct LawNeeds {
-    pub law: String,
-    pub lacks: Vec<String>,
-}
-
-impl From<Guess> for GuessRow {
-    fn from(guess: Guess) -> Self {
-        let Guess { file, column, channel, unit, reversed, why, certain, question } = guess;
-        Self { file, column, channel, unit, reversed, certain, why, question }
-    }
 }
 
 /// A column as the user settles it.

@@ -1,6 +1,6 @@
 //! What `sistership import` prints: a summary, and every column where it is asked for.
 
-use super::import::{GuessRow, Import, LawNeeds};
+use super::import_outcome::{GuessRow, Import, LawNeeds};
 use crate::output::count;
 use crate::table::TextTable;
 

@@ -19,6 +19,7 @@ pub mod gc;
 pub mod import;
 mod import_bundle;
 mod import_log;
+mod import_outcome;
 mod import_text;
 pub mod keys;
 mod log;

@@ -1,0 +1,55 @@
+//! What `sistership import` says of the files.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+use sistership_trials::{Exclusion, Guess};
+
+use super::import_log::SearchedLog;
+
+/// What was made of the files.
+#[derive(Serialize)]
+pub(super) struct Import {
+    pub manifest: PathBuf,
+    pub guesses: Vec<GuessRow>,
+    /// Remarks on columns together.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+    /// Files of which stretches were taken.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub logs: Vec<SearchedLog>,
+    /// What is left out of the files as faulty.
+    pub excluded: Vec<Exclusion>,
+    pub trials: Vec<String>,
+    pub errors: Vec<String>,
+    /// By law, what the trials do not have; laws for which nothing is missing are empty.
+    pub lacking: Vec<LawNeeds>,
+    #[serde(skip)]
+    pub explain: bool,
+}
+
+#[derive(Serialize)]
+pub(super) struct GuessRow {
+    pub file: String,
+    pub column: String,
+    pub channel: Option<String>,
+    pub unit: Option<String>,
+    pub reversed: bool,
+    pub certain: bool,
+    pub why: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub question: Option<String>,
+}
+
+#[derive(Serialize)]
+pub(super) struct LawNeeds {
+    pub law: String,
+    pub lacks: Vec<String>,
+}
+
+impl From<Guess> for GuessRow {
+    fn from(guess: Guess) -> Self {
+        let Guess { file, column, channel, unit, reversed, why, certain, question } = guess;
+        Self { file, column, channel, unit, reversed, certain, why, question }
+    }
+}
