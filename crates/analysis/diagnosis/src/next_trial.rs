@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use sistership_model::Trial;
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::state::at;
 
 use super::as_recorded::as_recorded;
 use super::confounded::Responses;
@@ -116,8 +117,8 @@ impl<'d, 'a> Doubt<'d, 'a> {
         Self { search, base, judged, place, names, columns, total }
     }
 
-    /// The evidence by which the nearest of the others would be behind after a planned trial; none
-    /// where the ship does not sail it, or no other is beside it then.
+    /// Evidence by which the nearest of the others would be behind after a planned trial; none
+    /// where the model does not simulate it, or no other is confounded with it then.
     fn separated(
         &self,
         ship: &Ship,
@@ -168,6 +169,9 @@ fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> O
         Some(switch) => zigzag(ship, rudder, switch, &settings).ok()?.track,
         None => turn(ship, rudder, &settings).ok()?.track,
     };
-    let model = workspace.trials.first()?;
+    // All are planned ahead: a model that turns astern in them is simulated far from its trials,
+    // and what it would tell there is no expectation.
+    let is_ahead = track.column(at::U).iter().all(|u| *u > 0.0);
+    let model = workspace.trials.first().filter(|_| is_ahead)?;
     Some(as_recorded(&track, model, planned.heading_deg.to_radians()))
 }

@@ -20,19 +20,22 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The model as it is where its law has a propeller, or the trials stopped it, and it stops and
-    /// goes astern; otherwise with a surge balance, where its revolutions are known. Both with the
-    /// range of the trials.
+    /// The model as it is where its trials stopped or reversed the propeller, or its law has a
+    /// propeller of its own that passes the check; otherwise with a surge balance, where its
+    /// revolutions are known. Both with the range of the trials.
     pub fn with_propulsion(&self, model: Model) -> Model {
         let model = self.with_range(model);
+        // What was measured with the propeller stopped stays as it was fitted: a balance about a
+        // self-propulsion point is no better there, and trials at low speed have no such point.
         let least = model.validity.as_ref().and_then(|region| region.ranges.get("n"));
-        let is_told = !needs_balance(self.law) || least.is_some_and(|[least, _]| *least <= 0.0);
-        if is_told && self.fault(&model).is_none() {
+        let is_measured = least.is_some_and(|[least, _]| *least <= 0.0);
+        let has_propeller = !needs_balance(self.law);
+        if is_measured || has_propeller && self.fault(&model).is_none() {
             return model;
         }
         let balanced = self.with_balance(model.clone());
         // A propeller of the law's own is kept where a balance would not mend it.
-        let keeps = !needs_balance(self.law) && self.fault(&balanced).is_some();
+        let keeps = has_propeller && self.fault(&balanced).is_some();
         if keeps || balanced.propulsion.is_none() { model } else { balanced }
     }
 
