@@ -14,7 +14,7 @@ use super::blocks::Blocks;
 use super::envelope::OperatingEnvelope;
 use super::measure::PriorMeasure;
 use super::outcome::RefineError;
-use super::thresholds::{MIXTURE, Misfit};
+use super::thresholds::{LEARNED_POSITION, MIXTURE, Misfit};
 
 /// What estimates are made of.
 struct Regressions {
@@ -130,15 +130,13 @@ pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
 /// The estimate's share at a position: none at 0, that of the least variance at a half, all at 1.
 fn at(position: f64, misfit: Misfit) -> f64 {
     let learned = share(misfit);
-    match position <= LEARNED {
-        true => learned * position / LEARNED,
-        false => learned + (1.0 - learned) * (position - LEARNED) / (1.0 - LEARNED),
+    match position <= LEARNED_POSITION {
+        true => learned * position / LEARNED_POSITION,
+        false => {
+            learned + (1.0 - learned) * (position - LEARNED_POSITION) / (1.0 - LEARNED_POSITION)
+        }
     }
 }
-
-/// The position of the learned shares, and of the estimate.
-pub(super) const LEARNED: f64 = 0.5;
-pub(super) const ESTIMATE: f64 = 1.0;
 
 /// The estimate's share in the mean of least variance: with `C` the covariance of both errors,
 /// `C^-1 1 / (1' C^-1 1)` (Bates and Granger 1969, Eq. 2).
@@ -212,7 +210,8 @@ mod tests {
         let (target, law) = (zoo.vessel("kcs").unwrap(), zoo.law(&source.law).unwrap());
         let carried = transfer(&source, law, target, None);
         let own = OperatingEnvelope::new(&carried, law, &[]).unwrap();
-        let (model, measure) = of_same_law(carried.clone(), law, target, (&[], LEARNED)).unwrap();
+        let (model, measure) =
+            of_same_law(carried.clone(), law, target, (&[], LEARNED_POSITION)).unwrap();
         let PriorMeasure::Mixture(mixed) = measure else { panic!("another measure") };
         let said = own.moved_to((&model, law), &[1.0; 4], &[]).unwrap();
         for axis in [Axis::X, Axis::Y, Axis::N] {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cma_es::CmaEs;
 use super::family::Family;
-use super::mixture::ESTIMATE;
+use super::thresholds::ESTIMATE_POSITION;
 use crate::constraints::Constraints;
 use sistership_assessment::uncertainty::Sampling;
 
@@ -363,7 +363,7 @@ impl Settings {
     /// stands in its place; [`TRIALS_ALONE`] where there is no source.
     pub fn origin<'a>(&self, source: Option<&'a str>) -> &'a str {
         match self.prior {
-            Prior::Mixture if self.mixture_positions == [ESTIMATE] => {
+            Prior::Mixture if self.mixture_positions == [ESTIMATE_POSITION] => {
                 "the estimate from particulars"
             }
             Prior::Population => "a population of ships",

@@ -15,6 +15,7 @@ use super::outcome::RefineError;
 use super::population;
 use super::request::Request;
 use super::settings::Prior;
+use super::thresholds::{ESTIMATE_POSITION, LEARNED_POSITION};
 use super::unrecorded;
 use sistership_numerics::merged;
 use sistership_priors::rolling::with_roll;
@@ -99,7 +100,7 @@ impl Starting<'_> {
     fn mixed(&self, own: &Law) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
         let Request { target, law, settings, .. } = *self.request;
         let (model, envelope) = self.begun(own)?;
-        if self.position() != mixture::ESTIMATE {
+        if self.position() != ESTIMATE_POSITION {
             let by = (self.whole, self.position());
             let mixed = mixture::mixed(&envelope, target, model.speed_m_s, by)?;
             return Ok((model, Arc::new(mixed)));
@@ -136,6 +137,6 @@ impl Starting<'_> {
     /// Where between source and estimate a mixture is.
     fn position(&self) -> f64 {
         let asked = &self.request.settings.mixture_positions;
-        asked.first().copied().unwrap_or(mixture::LEARNED)
+        asked.first().copied().unwrap_or(LEARNED_POSITION)
     }
 }

@@ -79,6 +79,12 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     roll_strength_count: 50,
 };
 
+/// Positions of a mixture between the source (0) and the estimate from particulars: where the
+/// learned shares put the mean, and the estimate.
+pub(super) const LEARNED_POSITION: f64 = 0.5;
+/// The estimate's end.
+pub(super) const ESTIMATE_POSITION: f64 = 1.0;
+
 /// How far what is said of a ship's acceleration is from the truth, by the mean square of that
 /// acceleration over its standard manoeuvres, dimensionless.
 #[derive(Debug, Clone, Copy)]
