@@ -1,7 +1,7 @@
-//! A calibrated model: its coefficients moved, and the terms that it lacks added to its law.
+//! A calibrated model: its coefficients shifted, and the terms that it lacks added to its law.
 //!
-//! Residuals are linearised about this one. The columns of coefficients alone would not do: how a
-//! lacked term answers to a sensor that errs would be left out.
+//! Residuals are linearised about this model. The columns of coefficients alone would not suffice:
+//! the response of a missing term to the error of a sensor would be ignored.
 
 use sistership_formula::Expr;
 use sistership_model::Model;
@@ -11,24 +11,25 @@ use super::nuisance::{Terms, regressor};
 use sistership_filtering::{Nuisance, NuisanceKind, lacked_name};
 use sistership_identification::refine::RefineError;
 
-/// A model that has learned, with its law in the dress of the effects that the model carries.
+/// A model with learned coefficients, and its law with the effects that the model carries.
 #[derive(Debug, Clone)]
 pub struct CalibratedModel {
     pub model: Model,
     pub law: Law,
-    /// Whether instruments follow the rates that the filter expects: as on its own trials.
+    /// True if instruments depend on the rates that the filter expects, as on the model's own
+    /// trials.
     pub expected_rates: bool,
-    /// From one reading to the next at least, s, as on its own trials; by the samples that are used
-    /// where absent.
+    /// Least interval between readings, s, as on the model's own trials; determined from the
+    /// samples that are used where absent.
     pub reading_interval_s: Option<f64>,
 }
 
 impl CalibratedModel {
-    /// A model with coefficients moved by `shift`, by column, read by instruments that err as they
-    /// did on its own trials.
+    /// Creates a model with coefficients moved by `shift`, by column, and with the systematic
+    /// errors of the instruments on its own trials.
     ///
     /// # Errors
-    /// Names the field of an effect that the model carries.
+    /// Returns an error that names the field of an effect that the model carries.
     pub fn new(
         model: &Model,
         law: &Law,
@@ -37,6 +38,7 @@ impl CalibratedModel {
         shift: &[f64],
     ) -> Result<Self, RefineError> {
         let (mut model, mut law) = (model.clone(), law.clone());
+        // Known errors of the instruments act on the readings like any other effect.
         let systematic_errors = model
             .uncertainty
             .iter()
@@ -57,12 +59,14 @@ impl CalibratedModel {
                         continue;
                     };
                     let name = lacked_name(&nuisance.name);
+                    // A term without a shift is only named, so that its regressor has a column.
                     if let Some(axis) = law.axes.get_mut(&axis).filter(|_| *shift != 0.0) {
                         let term = Expr::Name(name.clone()).times(Expr::Number(*shift));
                         axis.rest = Expr::Add(Box::new(axis.rest.clone()), Box::new(term));
                     }
                     law.add_value(name, expr);
                 }
+                // Masses keep their values; their prior fixes them.
                 NuisanceKind::Mass(..) => {}
             }
         }

@@ -1,4 +1,4 @@
-//! From single effects to those that are missing together.
+//! Search from single effects to those that are missing together.
 
 use std::collections::BTreeSet;
 
@@ -20,48 +20,52 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
-/// Every hypothesis that was judged.
+/// All hypotheses that were judged.
 pub(super) struct EffectChoice {
     /// The model alone.
     pub alone: JudgedHypothesis,
-    /// Logarithm of its probability at whichever level it is most probable, also below what
-    /// calibration saw.
+    /// Logarithm of its probability at its most probable level, including levels below that of the
+    /// calibration.
     alone_at_any: f64,
-    /// How small each effect would have been shown.
+    /// Detection limit of each effect.
     pub limits: Vec<DetectionLimit>,
     pub tried: Vec<JudgedHypothesis>,
-    /// Place of the one taken; none where the model alone stands.
+    /// Index of the accepted one; none where the model alone is accepted.
     pub taken: Option<usize>,
-    /// Levels of the discrepancy that are still weighed.
+    /// Levels of the discrepancy that are considered.
     levels: Vec<DiscrepancyFactor>,
 }
 
-/// Effects and coefficients where both stay, and the search about the model so calibrated.
+/// Converged effects and coefficients, with the search about the model so calibrated.
 pub(super) struct ConvergedChoice<'a> {
     pub search: HypothesisSearch<'a>,
     pub base: FilteredBase<'a>,
     pub best: JudgedHypothesis,
 }
 
-/// Judges single effects, then what stands together with the best, exchanging each of a set for
-/// every other. `base` is that without effects.
+/// Judges single effects, then further ones together with the best, and exchanges each of a set for
+/// every other. `base` is the one without effects.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn choose(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     settings: &Settings,
 ) -> Result<EffectChoice, RefineError> {
+    // The model alone at its most probable level is the reference of all evidence.
     let (level, alone) = search.alone(base)?;
     let limits = match search.states_odds {
         true => limits(search, base, level, settings.least_evidence)?,
         false => Vec::new(),
     };
+    // Also at levels below that of the calibration.
     let alone_at_any = search.alone_at(base, &|_| true)?.1.log_evidence;
     let (tried, levels) = (Vec::new(), search.levels.clone());
     let mut choice = EffectChoice { alone, alone_at_any, limits, tried, taken: None, levels };
     choice.add(search, settings, base, THRESHOLDS.search.judged)?;
+    // One effect is added at a time, until none is accepted; after each, the earlier ones may be
+    // exchanged.
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
         let base = search.base(&kept, &choice.levels)?;
@@ -74,7 +78,7 @@ pub(super) fn choose(
     Ok(choice)
 }
 
-/// The evidence for the effect that came last.
+/// Evidence for the last effect of a hypothesis.
 fn last_evidence(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
@@ -82,7 +86,8 @@ fn last_evidence(
     search.evidence(judged, judged.candidates.len() - 1)
 }
 
-/// The most probable sets of those of a base and one more, judged where they stand.
+/// Most probable sets of the effects of a base and one more, linearised and judged at their
+/// estimates.
 fn companions(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
@@ -95,8 +100,8 @@ fn companions(
     likely.par_iter().map(judged).collect()
 }
 
-/// The most probable, those that are believed most after their false-alarm levels, and whatever
-/// follows a record from outside: its sensor is there to be asked.
+/// Candidates to be judged: half of them the most probable, then those with the most evidence after
+/// their false-alarm levels, and in addition all that depend on a recorded external signal.
 fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
     let mut by_discounted = screened.clone();
     by_discounted.sort_by(|a, b| b.discounted.total_cmp(&a.discounted));
@@ -125,8 +130,8 @@ impl EffectChoice {
         self.tried.extend(found);
     }
 
-    /// What is taken judged anew by the filter of a base that stands where it does: what is tried
-    /// beside it passes the same.
+    /// Judges the accepted hypothesis again by the filter of a base linearised at its estimates,
+    /// which is also that of further candidates.
     fn seen_from(
         &mut self,
         search: &HypothesisSearch<'_>,
@@ -138,7 +143,7 @@ impl EffectChoice {
         Ok(())
     }
 
-    /// One effect more, if any is believed.
+    /// Adds one effect, if any is accepted; returns true if so.
     fn add(
         &mut self,
         search: &HypothesisSearch<'_>,
@@ -154,12 +159,14 @@ impl EffectChoice {
                 believed.push((evidence, place));
             }
         }
-        // What is believed decides, not what fits: an instrument that always erred would stand
-        // before what is new.
+        // Accepted evidence decides, not the fit: a permanent error of an instrument would precede
+        // what is new.
         believed.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut accepted: Vec<usize> = believed.into_iter().map(|(_, place)| place).collect();
         fitting_first(search, &found, &mut accepted);
         let mut better = None;
+        // Placebos are costly, so they are judged only for those that could be accepted, best
+        // first.
         for place in accepted {
             if !is_placebo(search, &found[place], base)? {
                 better = Some(place);
@@ -170,9 +177,9 @@ impl EffectChoice {
         Ok(better.is_some())
     }
 
-    /// Undoes a wrong step: each of those taken together but the last is exchanged for whatever is
-    /// more probable in its place. What goes with the others than the last has been tried just
-    /// before.
+    /// Reverses a wrong step: each effect of a set except the last is exchanged for one that is
+    /// more probable in its place. Combinations of the others with a new last one were evaluated
+    /// just before.
     fn exchange(
         &mut self,
         search: &HypothesisSearch<'_>,
@@ -184,6 +191,7 @@ impl EffectChoice {
             others.remove(place);
             let base = search.base(&others, &self.levels)?;
             let found = companions(search, &base, THRESHOLDS.search.companions)?;
+            // The evidence of the effect to be replaced has to be exceeded by a margin.
             let best = search.evidence(self.best(), place)? + THRESHOLDS.search.exchange;
             let mut better: Option<(f64, usize)> = None;
             for (at, judged) in found.iter().enumerate() {
@@ -195,6 +203,7 @@ impl EffectChoice {
             }
             let better = better.map(|(_, at)| at);
             self.take(found, better);
+            // One exchange at a time: the other effects are then part of a different set.
             if better.is_some() {
                 break;
             }
@@ -202,11 +211,11 @@ impl EffectChoice {
         Ok(())
     }
 
-    /// Effects fitted together with the coefficients until both stay, without what the others then
-    /// make needless.
+    /// Fits effects together with the coefficients until both converge, and removes effects that
+    /// become redundant.
     ///
     /// # Errors
-    /// Names what a trial lacks.
+    /// Returns an error that names what a trial lacks.
     pub(super) fn settled<'a>(
         &self,
         search: &HypothesisSearch<'a>,
@@ -215,10 +224,10 @@ impl EffectChoice {
         self.settled_from(self.best().clone(), search, request)
     }
 
-    /// The model alone, its coefficients fitted until they stay.
+    /// Fits the coefficients of the model alone until they converge.
     ///
     /// # Errors
-    /// Names what a trial lacks.
+    /// Returns an error that names what a trial lacks.
     pub(super) fn alone_settled<'a>(
         &self,
         search: &HypothesisSearch<'a>,
@@ -236,6 +245,8 @@ impl EffectChoice {
         let mut search = search.clone();
         let mut rounds = THRESHOLDS.search.joint_rounds;
         loop {
+            // Coefficients and effects are fitted in turn, each with the others at their last
+            // values.
             search = search.calibrated_by(request, &best)?;
             let base = search.bare(&best.candidates, &self.levels)?;
             best = search.alone(&base)?.1;
@@ -247,11 +258,12 @@ impl EffectChoice {
                 return Ok(ConvergedChoice { search, base, best });
             };
             best = self.without(&search, &best, place)?;
+            // After a removal one round suffices: the others are near their estimates.
             rounds = 1;
         }
     }
 
-    /// This choice, with what an earlier one has tried besides.
+    /// Appends the hypotheses of an earlier search that this one has not judged again.
     pub(super) fn after(mut self, earlier: Self) -> Self {
         let keys = |judged: &JudgedHypothesis| {
             judged.candidates.iter().map(EffectCandidate::key).collect::<Vec<_>>()
@@ -262,10 +274,10 @@ impl EffectChoice {
         self
     }
 
-    /// A set of effects but one.
+    /// Judges a set of effects with one removed.
     ///
     /// # Errors
-    /// Names what a trial lacks.
+    /// Returns an error that names what a trial lacks.
     fn without(
         &self,
         search: &HypothesisSearch<'_>,
@@ -281,9 +293,9 @@ impl EffectChoice {
         self.taken.map_or(&self.alone, |taken| &self.tried[taken])
     }
 
-    /// The evidence for the effect that came last, which is not more than what the whole hypothesis
-    /// has over the one without it: seen from where both stand, an effect of which the columns
-    /// change with its size would be worth more.
+    /// Evidence for the last effect, limited to that of the whole hypothesis over the one without
+    /// it: with columns linearised at the estimates, an effect whose columns change with its size
+    /// would seem to have more.
     fn last_evidence(
         &self,
         search: &HypothesisSearch<'_>,
@@ -291,12 +303,13 @@ impl EffectChoice {
     ) -> Result<f64, RefineError> {
         let best = self.best().log_evidence;
         let is_outside = found.candidates.last().is_some_and(is_from_outside);
+        // An effect of a recorded external signal is part of the discrepancy of the calibration, so
+        // it also competes with lower levels.
         let than = if is_outside { best.max(self.alone_at_any) } else { best };
         Ok(last_evidence(search, found)?.min(found.log_evidence - than))
     }
 
-    /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has
-    /// not seen.
+    /// Returns true if a hypothesis is more probable by enough, also on held-out trials.
     fn accepts(
         &self,
         search: &HypothesisSearch<'_>,
@@ -309,8 +322,8 @@ impl EffectChoice {
             && held_out(found)? > held_out(self.best())?)
     }
 
-    /// Whether all are such as authors have them, and the evidence for the one that came last is
-    /// enough, and more than a shadow of the others'.
+    /// Returns true if all forms agree with published coefficients, and the evidence for the last
+    /// one is sufficient and above the misfit allowance of the others.
     fn stands(
         &self,
         search: &HypothesisSearch<'_>,
@@ -324,8 +337,8 @@ impl EffectChoice {
             && of_last > settings.least_evidence.max(self.shadow(found, &evidence, last)))
     }
 
-    /// One of effects that are judged together which has become another's, or the weakest, where
-    /// the evidence for it is not enough.
+    /// Index of an effect, of those judged together, that no longer agrees with its published form,
+    /// or of the weakest one, if the evidence for it is not sufficient.
     fn needless(
         &self,
         search: &HypothesisSearch<'_>,
@@ -334,20 +347,22 @@ impl EffectChoice {
     ) -> Result<Option<usize>, RefineError> {
         let evidence = all_evidence(search, best)?;
         let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
+        // An effect whose form does not agree with published ones is removed first.
         let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
         Ok(other.or(weakest.filter(|&place| {
             evidence[place] <= settings.least_evidence.max(self.shadow(best, &evidence, place))
         })))
     }
 
-    /// What the others of a set leave unexplained where their forms are another author's than
-    /// nature's: an effect beside them that explains no more may be that. It does not follow a
-    /// record from outside: placebos would explain as much of it.
+    /// Allowance for the misfit of the other effects of a set, whose published forms differ from
+    /// the true ones: an effect with no more evidence than that may be due to this difference. It
+    /// is zero for an effect of a recorded external signal, for which placebos would explain as
+    /// much.
     ///
-    /// The others explain what the set has over the model alone but for this effect, each its share
-    /// of that. Seen from where all stand, one is worth a hundred times what it explains, for the
-    /// level of the random accelerations is that of the whole set; or next to nothing, where
-    /// another explains the same.
+    /// The others explain the evidence of the set over the model alone except for this effect, each
+    /// by its share. Evidence at the estimates of all is no measure of that: one may have a hundred
+    /// times what it explains, since the level of the random accelerations is that of the whole
+    /// set, or nearly none where another explains the same.
     fn shadow(&self, judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
         if is_from_outside(&judged.candidates[place]) {
             return 0.0;
@@ -361,9 +376,9 @@ impl EffectChoice {
     }
 }
 
-/// Puts in front whatever fits better than what is believed most by so much that what it explained
-/// of clean trials cannot be the reason: where the information on an effect is divided by its
-/// false-alarm level, so is the lead that it has.
+/// Moves forward the candidates that fit better than the most evident one by so much that their
+/// improvement on clean trials cannot be the reason: the lead is divided by the false-alarm level,
+/// as the information on the effect is.
 fn fitting_first(
     search: &HypothesisSearch<'_>,
     found: &[JudgedHypothesis],
@@ -371,6 +386,7 @@ fn fitting_first(
 ) {
     let lead = |before: usize, than: usize| {
         let lead = found[before].log_evidence - found[than].log_evidence;
+        // The lead of a candidate is divided by its own false-alarm level.
         let discount = |last: &EffectCandidate| search.discount(last);
         lead / found[before].candidates.last().map_or(1.0, discount)
     };

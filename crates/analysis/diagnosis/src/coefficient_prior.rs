@@ -1,11 +1,11 @@
-//! What is known of the coefficients, in the information form of a normal distribution.
+//! Prior of the coefficients, in the information form of a normal distribution.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use sistership_filtering::{Nuisance, NuisanceKind};
 
-/// What is known of the coefficients before these trials: `information`, and `information * mean`,
-/// by column.
+/// Prior of the coefficients before these trials: `information`, and `information * mean`, by
+/// column.
 #[derive(Debug, Clone)]
 pub struct CoefficientPrior {
     /// Information matrix, coefficients by coefficients.
@@ -15,17 +15,18 @@ pub struct CoefficientPrior {
 }
 
 impl CoefficientPrior {
-    /// The expected change of the coefficients; `None` where the information is not positive.
+    /// Expected change of the coefficients; `None` where the information is not positive.
     pub fn mean(&self) -> Option<DVector<f64>> {
         Some(Cholesky::new(self.information.clone())?.solve(&self.weighted_mean))
     }
 
-    /// The expected change of what a law can take over: of everything but masses, as if these were
-    /// right.
+    /// Expected change of the columns that a law can include: all but masses, which are assumed to
+    /// be right.
     pub fn expected_shift(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
         let free: Vec<usize> = (0..nuisance.len())
             .filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..)))
             .collect();
+        // Rows and columns of masses are removed: this conditions on no change of them.
         let information =
             DMatrix::from_fn(free.len(), free.len(), |i, j| self.information[(free[i], free[j])]);
         let weighted_mean = DVector::from_fn(free.len(), |i, _| self.weighted_mean[free[i]]);
@@ -35,7 +36,7 @@ impl CoefficientPrior {
         Some(shift)
     }
 
-    /// What is known of the changes from a model that has been moved by `shift` already.
+    /// Prior of the changes relative to a model that has been moved by `shift` already.
     pub fn from(mut self, shift: &[f64]) -> Self {
         self.weighted_mean -= &self.information * DVector::from_column_slice(shift);
         self

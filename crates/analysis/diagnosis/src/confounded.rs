@@ -1,4 +1,4 @@
-//! Effects that these trials can hardly tell from those that were found.
+//! Effects that these trials can hardly distinguish from those that were found.
 
 use std::collections::BTreeMap;
 
@@ -16,17 +16,17 @@ use sistership_identification::refine::RefineError;
 pub(super) struct Responses<'a> {
     found: Vec<&'a EffectCandidate>,
     others: Vec<&'a EffectCandidate>,
-    /// Places of each in the information, the found first.
+    /// Indices of the columns of each in the information, those found first.
     places: Vec<Vec<usize>>,
     information: DMatrix<f64>,
 }
 
 impl<'a> Responses<'a> {
-    /// From products of columns: those of coefficients, of what was found, and of the others that
-    /// are asked for.
+    /// Creates the responses from products of columns: those of coefficients, of the effects found,
+    /// and of the other effects.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Returns an error if the information is not positive.
     pub fn new(
         search: &'a HypothesisSearch<'_>,
         columns: &Columns,
@@ -39,6 +39,7 @@ impl<'a> Responses<'a> {
             all.iter().map(|candidate| columns.showing(candidate)).collect();
         let select: Vec<usize> =
             (0..search.nuisance.len()).chain(columns.iter().flatten().copied()).collect();
+        // Columns are consecutive in the reduced information, in the order of `all`.
         let mut first = 0;
         let place = |columns: &Vec<usize>| {
             first += columns.len();
@@ -50,12 +51,13 @@ impl<'a> Responses<'a> {
         Ok(Self { found, others, places, information })
     }
 
-    /// The effects that are nearly the same as one found, the nearest first.
+    /// Effects that are nearly the same as one found, the nearest first.
     pub fn beside(&self, found: usize) -> Vec<Confounded> {
         let mut nearest: BTreeMap<&str, Confounded> = BTreeMap::new();
         for other in 0..self.others.len() {
             let Some((angle_deg, behind)) = self.angle(found, other) else { continue };
             let name = self.others[other].effect.as_str();
+            // Of several forms of an effect the nearest one counts.
             let is_nearer = nearest.get(name).is_none_or(|known| angle_deg < known.angle_deg);
             if angle_deg < THRESHOLDS.confounding.apart_deg && is_nearer {
                 nearest.insert(name, Confounded { name: name.to_owned(), angle_deg, behind });
@@ -66,15 +68,15 @@ impl<'a> Responses<'a> {
         all
     }
 
-    /// The least evidence by which any of some others would be behind.
+    /// Least evidence against any of some other effects as the true cause.
     pub fn behind(&self, found: usize, names: &[&str]) -> Option<f64> {
         let named = (0..self.others.len())
             .filter(|&other| names.contains(&self.others[other].effect.as_str()));
         named.filter_map(|other| Some(self.angle(found, other)?.1)).min_by(f64::total_cmp)
     }
 
-    /// The angle between the response of an effect found and the nearest that another could give,
-    /// deg; and the evidence that this other would be behind.
+    /// Angle between the response of an effect found and the nearest that another could give, deg;
+    /// and the evidence against this other one.
     fn angle(&self, found: usize, other: usize) -> Option<(f64, f64)> {
         let change = DVector::from_vec(self.found[found].change());
         let (own, other) = (&self.places[found], &self.places[self.found.len() + other]);
@@ -83,11 +85,13 @@ impl<'a> Responses<'a> {
                 self.information[(rows[i], columns[j])]
             })
         };
+        // Squared length of the response, and its part in the space of the other effect: cos^2 of
+        // the angle.
         let response = change.dot(&(part(own, own) * &change));
         let seen = part(other, own) * &change;
         let mut information = part(other, other);
-        // A ridge far below what matters: some parameters of an effect may say the same on these
-        // trials.
+        // A ridge far below any information of interest: some parameters of an effect may have the
+        // same response on these trials.
         let ridge = THRESHOLDS.confounding.ridge * information.diagonal().max();
         (0..other.len()).for_each(|i| information[(i, i)] += ridge);
         let followed = seen.dot(&Cholesky::new(information)?.solve(&seen));

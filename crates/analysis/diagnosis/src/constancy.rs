@@ -1,6 +1,5 @@
-//! Whether an effect is the same at all times. What only resembles something else is needed in one
-//! size here and in another there: the pieces of the trials, each by itself, ask for more than what
-//! all together gave.
+//! Constancy of effects in time. An effect that only resembles the missing one is needed with one
+//! size here and another there: the pieces of the trials, each by itself, have different estimates.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -16,11 +15,12 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::Gram;
 use sistership_identification::refine::RefineError;
 
-/// The effects that are not. One that follows a record from outside may vary where records of other
-/// times explain the trials less ([`follow_records`]): what is unknown does not follow that record.
+/// Indices of the effects that are not constant. An effect of a recorded external signal may vary
+/// where records of other times explain the trials less ([`follow_records`]), since an unknown
+/// cause does not follow that record.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn inconstant(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
@@ -31,6 +31,7 @@ pub(super) fn inconstant(
         .linearised(&search.calibrated_model, &judged.linearised_at)?
         .pieces(judged.level, THRESHOLDS.constancy.pieces)?;
     let known = known_after(&search.fixed, judged);
+    // Each piece alone, with the coefficients as all trials determine them.
     let reduced: Vec<MarginalInformation> = pieces
         .iter()
         .map(|piece| MarginalInformation::new(piece, &known))
@@ -38,7 +39,7 @@ pub(super) fn inconstant(
     let one =
         |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
     let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
-    // A form that is not nature's asks for another size where the ship moves otherwise, too.
+    // A form that differs from the true one also needs another size in other motions.
     let limit =
         |place: usize| THRESHOLDS.constancy.limit.max(shadow_share(&judged.candidates[place]));
     let mut places: Vec<usize> =
@@ -50,7 +51,7 @@ pub(super) fn inconstant(
     Ok(places)
 }
 
-/// What is known of the coefficients after all trials, whose change has been fitted.
+/// Prior of the coefficients after all trials, whose change has been fitted.
 fn known_after(fixed: &CoefficientPrior, judged: &JudgedHypothesis) -> CoefficientPrior {
     let size = fixed.weighted_mean.len();
     let total =
@@ -59,7 +60,8 @@ fn known_after(fixed: &CoefficientPrior, judged: &JudgedHypothesis) -> Coefficie
     CoefficientPrior { weighted_mean: &information * &judged.shift, information }
 }
 
-/// What pieces ask for beyond the common size and beyond chance, by the response to that size.
+/// Improvement by separate sizes in the pieces, beyond the common size and beyond chance, relative
+/// to the response to the common size.
 fn varies(
     judged: &JudgedHypothesis,
     place: usize,
@@ -74,6 +76,8 @@ fn varies(
     let change = DVector::from_vec(judged.candidates[place].change());
     let (mut asked, mut chance, mut response) = (0.0, 0.0, 0.0);
     for piece in pieces {
+        // The gradient that the common estimate leaves in this piece, and the information on its
+        // own size.
         let left =
             (&piece.right - &piece.information * &moved).rows(own.start, own.len()).into_owned();
         let information =
@@ -82,6 +86,7 @@ fn varies(
             own.len(),
             fixing.iter().map(|f| f.deviation.powi(-2)),
         ));
+        // A piece whose information is not positive is skipped.
         let Some(factor) = Cholesky::new(&information + prior) else { continue };
         asked += left.dot(&factor.solve(&left));
         chance += factor.solve(&information).trace();

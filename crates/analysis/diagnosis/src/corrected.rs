@@ -1,5 +1,5 @@
-//! Trials as instruments would have shown them that do not err: what a regression takes for the
-//! ship's motion.
+//! Trials corrected for the errors of their instruments, as records of the ship's motion for a
+//! regression.
 
 use std::borrow::Cow;
 
@@ -13,8 +13,9 @@ use sistership_priors::transfer::ready;
 pub(super) struct CorrectedRecords<'a>(Vec<Cow<'a, Trial>>);
 
 impl<'a> CorrectedRecords<'a> {
-    /// The trials of a request without the errors of a model's instruments; none where the model
-    /// has no effect on the ship, or one that changes with time, which a regression does not know.
+    /// Corrects the trials of a request for the errors of a model's instruments. Returns none where
+    /// the model has no effect on the ship, or one that changes with time, which a regression
+    /// cannot include.
     pub fn new(request: &Request<'a>, model: &Model) -> Option<Self> {
         let (ship, instruments) = split(model);
         let law = request.law.with_effects(&ship).ok()?;
@@ -27,6 +28,7 @@ impl<'a> CorrectedRecords<'a> {
         let erring =
             ready(&Model { effects: instruments, ..model.clone() }, request.law, request.trials)
                 .ok()?;
+        // An instrument model may diverge on a record; then no trial is corrected.
         let right = |trial: &&Trial| {
             as_true_instruments_say(&erring, trial).ok().filter(is_finite).map(Cow::Owned)
         };
@@ -42,14 +44,14 @@ fn is_finite(trial: &Trial) -> bool {
     trial.channels.values().flatten().all(|value| value.is_finite())
 }
 
-/// A model with its effects on the ship, and those on instruments.
+/// Splits a model into one with its effects on the ship, and its effects on instruments.
 pub(super) fn split(model: &Model) -> (Model, Vec<AppliedEffect>) {
     let (instruments, effects) =
         model.effects.iter().cloned().partition(|effect| effect.acts_on == ActsOn::Measurement);
     (Model { effects, ..model.clone() }, instruments)
 }
 
-/// The opposite of [`split`].
+/// Joins a model with its effects on the ship and its effects on instruments.
 pub(super) fn joined(mut ship: Model, instruments: Vec<AppliedEffect>) -> Model {
     ship.effects.extend(instruments);
     ship

@@ -1,4 +1,5 @@
-//! What is not known of an effect's parameters: by noise and slack, and by what no trial tells.
+//! Uncertainty of an effect's parameters: by noise and slack, and by errors that no trial can
+//! reduce.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -9,9 +10,9 @@ use super::thresholds::THRESHOLDS;
 use super::values::own_covariance;
 use sistership_filtering::{Gram, Nuisance, NuisanceKind};
 
-/// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its
-/// own law is uncertain by, and what the virtual masses leave open. `discount` is what the
-/// information on the effect is divided by.
+/// Covariance of an effect's parameters, with its false-alarm level on clean trials, the error of
+/// its own law, and the uncertainty of the virtual masses. `discount` is the divisor of the
+/// information on the effect.
 pub(super) fn covariance(
     judged: &JudgedHypothesis,
     place: usize,
@@ -21,10 +22,12 @@ pub(super) fn covariance(
     let candidate = &judged.candidates[place];
     let own = own_covariance(&judged.candidates, place, &judged.covariance);
     let change = DVector::from_vec(candidate.change());
+    // Squared response of the effect in standard deviations: the error of its shape grows with it.
     let response =
         Cholesky::new(own.clone()).map_or(0.0, |factor| change.dot(&factor.solve(&change)));
     let size = of_size(candidate);
     let mut covariance = own * (discount + THRESHOLDS.effect.shape.powi(2) * response);
+    // An error of size scales all parameters together.
     covariance += &change * change.transpose() * size.powi(2);
     if let Some(answers) = answers_to_masses(judged, place, nuisance, fixed) {
         covariance += &answers * answers.transpose() * THRESHOLDS.effect.mass_deviation.powi(2);
@@ -32,8 +35,8 @@ pub(super) fn covariance(
     covariance
 }
 
-/// How an effect's parameters answer to each virtual mass, the coefficients giving way by all that
-/// is known of them: a consider analysis (Schmidt 1966, Adv Control Syst 3, 293-340).
+/// Derivatives of an effect's parameters with each virtual mass, the coefficients adjusting within
+/// their uncertainty: a consider analysis (Schmidt 1966, Adv Control Syst 3, 293-340).
 fn answers_to_masses(
     judged: &JudgedHypothesis,
     place: usize,
@@ -53,6 +56,7 @@ fn answers_to_masses(
         .map(|prior| prior.deviation.powi(-2))
         .collect();
     let known = nuisance.len();
+    // Information of data and priors: coefficients first, then the parameters of effects.
     let information = |i: usize, j: usize| {
         let before = if i < known && j < known { fixed.information[(i, j)] } else { 0.0 };
         let prior = if i == j && i >= known { fixing[i - known] } else { 0.0 };

@@ -1,7 +1,7 @@
-//! On which recorded variables depends what no effect explains: a random forest is learned from
-//! what is left of an acceleration, and asked on parts of the trials that it has not seen.
+//! Dependence of the unexplained remainder on recorded variables: a random forest is trained on the
+//! remainder of an acceleration, and evaluated on parts of the trials that it has not seen.
 //!
-//! A term of the law that would say the same is tried before, as the effect `missing-term`.
+//! A term of the law that would explain the same is evaluated before, as the effect `missing-term`.
 
 use sistership_learned::{LearnedDependence, Sample, dependence};
 use sistership_model::Trial;
@@ -15,11 +15,11 @@ use super::outcome::{
 use super::series::recorded;
 use super::thresholds::THRESHOLDS;
 
-/// The name of time among the variables: what begins or ends is told by it.
+/// Name of time among the variables; a beginning or an end depends on it.
 const TIME: &str = "t";
 
-/// What is left of each acceleration in which something is unexplained or from which it comes, by
-/// what it depends on.
+/// Dependence of the remainder of each acceleration that has an unexplained segment or is the
+/// origin of one.
 pub(super) fn of_remainder(
     trials: &[&Trial],
     residuals: &[ResidualSeries],
@@ -29,7 +29,7 @@ pub(super) fn of_remainder(
         let first = origins.first().filter(|origin| origin.of == OriginKind::Acceleration);
         first.is_some_and(|origin| origin.channel == channel)
     };
-    // A heading that does not follow is asked of the yaw acceleration.
+    // A heading that is not followed belongs to the yaw acceleration.
     let is_of = |stretch: &Unexplained, channel: &str| {
         stretch.channel == channel || (stretch.channel == "psi" && channel == "r")
     };
@@ -37,7 +37,7 @@ pub(super) fn of_remainder(
     let mut channels: Vec<&str> = residuals.iter().map(|series| &*series.channel).collect();
     channels.sort_unstable();
     channels.dedup();
-    // What it comes from is read first.
+    // The origin is listed first.
     channels.sort_by_key(|channel| !is_origin(channel));
     channels
         .into_iter()
@@ -54,6 +54,7 @@ fn of_channel(
     channel: &str,
     series: &[&ResidualSeries],
 ) -> Option<RemainderDependence> {
+    // Too few samples to train on half of them.
     let samples: usize = series.iter().map(|one| one.t_s.len()).sum();
     if samples < THRESHOLDS.dependence.samples {
         return None;
@@ -61,6 +62,7 @@ fn of_channel(
     let variables = variables(trials, series);
     let halves = [0, 1].map(|half| sample(&variables, series, half));
     let learner = learner(variables.len());
+    // Trained on each half and evaluated on the other one.
     let told: Vec<LearnedDependence> = [(0, 1), (1, 0)]
         .into_iter()
         .filter_map(|(seen, unseen)| {
@@ -86,7 +88,7 @@ fn of_channel(
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
     all.truncate(THRESHOLDS.dependence.shown);
     let explained = mean(&|told| told.explained).max(0.0);
-    // What says hardly more than the mean depends on nothing that it was told.
+    // A forest that explains hardly more than the mean has found no dependence.
     let variables = if explained > THRESHOLDS.dependence.share { all } else { Vec::new() };
     Some(RemainderDependence { channel: channel.to_owned(), explained, variables })
 }
@@ -104,7 +106,7 @@ fn learner(variables: usize) -> Learner {
 /// A variable by name, with its values along each series.
 type Variable = (&'static str, Vec<Vec<f64>>);
 
-/// The variables that every series has and that vary, and time.
+/// Variables that every series has and that vary, and time.
 fn variables(trials: &[&Trial], series: &[&ResidualSeries]) -> Vec<Variable> {
     let along = |channel: &Channel| -> Option<Variable> {
         let values: Option<Vec<Vec<f64>>> =
@@ -123,11 +125,12 @@ fn variables(trials: &[&Trial], series: &[&ResidualSeries]) -> Vec<Variable> {
     channels.filter(varies).chain([time]).collect()
 }
 
-/// Every second block of each series, or all of every second series where they are short:
-/// neighbours in time are alike, so that single samples would tell of one another.
+/// Samples of every second block of each series, or all of every second series where they are
+/// short: neighbours in time are alike, so that single samples would not be independent.
 fn sample(variables: &[Variable], series: &[&ResidualSeries], half: usize) -> Sample {
     let taken = |(place, values): (usize, &Vec<f64>)| -> Vec<f64> {
         let blocks = THRESHOLDS.dependence.blocks;
+        // Short series are not divided: each belongs to one half.
         let is_short = values.len() < THRESHOLDS.dependence.block * blocks;
         let block = |k: usize| if is_short { place } else { k * blocks / values.len() };
         let kept = values.iter().enumerate().filter(|(k, _)| block(*k) % 2 == half);

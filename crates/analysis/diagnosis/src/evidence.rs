@@ -1,10 +1,10 @@
-//! The evidence for hypotheses: how much more probable they make the readings than the model alone
-//! does.
+//! Evidence for hypotheses: the ratio of the probability of the readings to that under the model
+//! alone.
 //!
-//! The coefficients are left the slack of their prior and integrated out, and so are the parameters
-//! of an effect under theirs: the logarithm of the likelihood ratio that remains has paid for every
-//! parameter (Kass and Raftery 1995, J Am Stat Assoc 90, 773-795). The autocorrelation of what no
-//! coefficient explains is in the filter's discrepancy.
+//! The coefficients vary within their prior and are integrated out, and so are the parameters of an
+//! effect within theirs: the logarithm of the likelihood ratio that remains includes the cost of
+//! every parameter (Kass and Raftery 1995, J Am Stat Assoc 90, 773-795). The autocorrelation of the
+//! unexplained accelerations is in the filter's discrepancy.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -13,7 +13,7 @@ use super::discount::is_from_outside;
 use sistership_filtering::{EffectCandidate, Gram};
 use sistership_identification::refine::RefineError;
 
-/// The columns of effects with the coefficients integrated out.
+/// Information on the columns of effects with the coefficients integrated out.
 #[derive(Debug, Clone)]
 pub struct MarginalInformation {
     /// Minus twice the logarithm of the likelihood of the model without any effect, less a
@@ -21,15 +21,15 @@ pub struct MarginalInformation {
     pub deviance: f64,
     /// Information of the effects' columns.
     pub information: DMatrix<f64>,
-    /// Their products with what remains of the residual.
+    /// Products of the columns with the remaining residual.
     pub right: DVector<f64>,
-    /// `A^-1 G_ce` and `A^-1 b_c`: how the coefficients answer to the effects.
+    /// `A^-1 G_ce` and `A^-1 b_c`: response of the coefficients to the effects.
     pub answers: DMatrix<f64>,
-    /// The change of the coefficients without any effect.
+    /// Change of the coefficients without any effect.
     pub shift: DVector<f64>,
 }
 
-/// A normal prior of one column, as a distance from where the column is a tangent.
+/// Normal prior of one column, as a distance from the point at which the column is a tangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalPrior {
     /// Mean.
@@ -38,18 +38,18 @@ pub struct NormalPrior {
     pub deviation: f64,
 }
 
-/// What a hypothesis gives.
+/// Estimate of a hypothesis.
 #[derive(Debug, Clone)]
 pub struct HypothesisEstimate {
-    /// Logarithm of how much more probable the readings are than under the model alone.
+    /// Logarithm of the ratio of the probability of the readings to that under the model alone.
     pub gain: f64,
-    /// The parameters, as distances from where the columns are tangents.
+    /// Parameters, as distances from the point at which the columns are tangents.
     pub mean: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the parameters.
     pub covariance: DMatrix<f64>,
 }
 
-/// The level of the discrepancy, as a factor on what is expected of it.
+/// Level of the discrepancy, as a factor on its expected value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiscrepancyFactor {
     /// The factor.
@@ -59,8 +59,8 @@ pub struct DiscrepancyFactor {
 }
 
 impl DiscrepancyFactor {
-    /// Whether it is weighed for an effect, or for the model alone: a level below what calibration
-    /// saw is for what was there on its trials, too.
+    /// Returns true if the level is considered for an effect, or for the model alone: a level below
+    /// that of the calibration applies only to influences that were also present on its trials.
     pub fn is_weighed(self, of: Option<&EffectCandidate>) -> bool {
         self.factor >= 1.0 || of.is_some_and(is_from_outside)
     }
@@ -70,11 +70,12 @@ impl MarginalInformation {
     /// Integrates the first `coefficients` columns out.
     ///
     /// # Errors
-    /// Says that the information on the coefficients is not positive.
+    /// Returns an error if the information on the coefficients is not positive.
     pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Result<Self, RefineError> {
         let c = fixed.weighted_mean.len();
         let e = gram.products.nrows() - 1 - c;
         let products = &gram.products;
+        // With A the information on the coefficients: the Schur complement G_ee - G_ce' A^-1 G_ce.
         let own = products.view((1, 1), (c, c)) + &fixed.information;
         let cross = products.view((1, 1 + c), (c, e)).into_owned();
         let right = products.view((1, 0), (c, 1)).column(0) + &fixed.weighted_mean;
@@ -83,13 +84,14 @@ impl MarginalInformation {
         let shift = coefficients.solve(&right);
         let information = products.view((1 + c, 1 + c), (e, e)) - cross.transpose() * &answers;
         let remaining = products.view((1 + c, 0), (e, 1)).column(0) - cross.transpose() * &shift;
+        // Only the diagonal of the factor is needed, which `l_dirty` gives without a copy.
         let log_determinant: f64 =
             2.0 * coefficients.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         let deviance = products[(0, 0)] + gram.log_variance - right.dot(&shift) + log_determinant;
         Ok(Self { deviance, information, right: remaining, answers, shift })
     }
 
-    /// Some of the effects' columns, with others integrated out under their priors.
+    /// Selects some of the effects' columns, with others integrated out under their priors.
     pub fn given(
         &self,
         others: &[usize],
@@ -100,6 +102,7 @@ impl MarginalInformation {
         let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| {
             self.information[(others[i], columns[j])]
         });
+        // Schur complement of the others: G_oo - G_ao' (G_aa + P)^-1 G_ao.
         let factor = Cholesky::new(own)?;
         let part = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
             self.information[(columns[i], columns[j])]
@@ -112,7 +115,7 @@ impl MarginalInformation {
         })
     }
 
-    /// What other trials say of the same columns besides.
+    /// Adds the information of other trials on the same columns.
     pub fn plus(mut self, other: Self) -> Self {
         self.information += other.information;
         self.right += other.right;
@@ -120,20 +123,21 @@ impl MarginalInformation {
         self
     }
 
-    /// Logarithm of the likelihood at a distance from where the columns are tangents, by that at no
-    /// distance.
+    /// Logarithm of the likelihood at a distance from the point at which the columns are tangents,
+    /// relative to that at no distance.
     pub fn at(&self, distance: &DVector<f64>) -> f64 {
         self.right.dot(distance) - 0.5 * distance.dot(&(&self.information * distance))
     }
 
-    /// As if the trials said less by a factor.
+    /// Divides the information by a factor.
     pub fn discounted(mut self, by: f64) -> Self {
         self.information /= by;
         self.right /= by;
         self
     }
 
-    /// The columns that are sums of these by a matrix, these by those.
+    /// Transforms the information to columns that are sums of these by a matrix (old columns by new
+    /// ones).
     pub fn through(&self, sums: &DMatrix<f64>) -> Self {
         Self {
             information: sums.tr_mul(&(&self.information * sums)),
@@ -142,7 +146,7 @@ impl MarginalInformation {
         }
     }
 
-    /// Some of the columns alone.
+    /// Selects some of the columns, the others at zero.
     pub fn of_columns(&self, columns: &[usize]) -> Self {
         let size = columns.len();
         let one = |i: usize, j: usize| self.information[(columns[i], columns[j])];
@@ -153,13 +157,14 @@ impl MarginalInformation {
         }
     }
 
-    /// What some columns explain (in squared deviations), and what chance lets them explain: of a
+    /// Improvement by some columns (in squared deviations), and its expected value by chance: for a
     /// right model without an effect, the first is a chi-square whose mean is the second.
     pub fn explained(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<(f64, f64)> {
         let free: Vec<NormalPrior> =
             priors.iter().map(|prior| NormalPrior { mean: 0.0, ..*prior }).collect();
         let (posterior, right) = self.posterior(columns, &free);
         let factor = Cholesky::new(posterior)?;
+        // The prior holds part of each parameter: n - tr(S P) degrees of freedom are left.
         let left: f64 = (0..columns.len())
             .map(|i| factor.inverse()[(i, i)] * priors[i].deviation.powi(-2))
             .sum();
@@ -180,7 +185,7 @@ impl MarginalInformation {
         (information, right)
     }
 
-    /// The estimate of a hypothesis that has some of the effects' columns, with their priors.
+    /// Estimate of a hypothesis that has some of the effects' columns, with their priors.
     pub fn estimate(
         &self,
         columns: &[usize],
@@ -196,6 +201,7 @@ impl MarginalInformation {
         let log_determinant: f64 =
             2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         Some(HypothesisEstimate {
+            // log of the marginal likelihood ratio: (b' S b - m' P m + ln |P| + ln |S|) / 2.
             gain: 0.5 * (right.dot(&mean) - prior - log_determinant),
             mean,
             covariance: factor.inverse(),
@@ -203,7 +209,7 @@ impl MarginalInformation {
     }
 }
 
-/// The refusal where information has no root.
+/// Error for information that is not positive definite.
 pub(super) fn not_positive() -> RefineError {
     RefineError::Data("the trials' information is not positive".into())
 }

@@ -1,10 +1,11 @@
-//! What a trial tells of coefficients and of effects' parameters, also before anybody sails it.
+//! Expected information of a trial on coefficients and on effects' parameters, also before it is
+//! carried out.
 //!
 //! The information is that of the filter by which trials are diagnosed: sums of products of its
 //! whitened columns (Ljung 1999, System identification, 2nd edition, section 7.4: the information
-//! of prediction errors). What else may move, terms that the law lacks and virtual masses, is
-//! integrated out trial by trial, as if each trial had its own: the law's form errs otherwise in
-//! every manoeuvre, and repeating one does not tell by how much.
+//! of prediction errors). All other columns, terms that the law lacks and virtual masses, are
+//! integrated out trial by trial, as if each trial had its own: the error of the law's form differs
+//! between manoeuvres, and repeating one does not reveal it.
 
 use std::sync::Arc;
 
@@ -25,49 +26,52 @@ use sistership_filtering::{
     filter,
 };
 
-/// What trials are to tell.
+/// Unknowns that trials shall determine.
 #[derive(Debug, Clone, Copy)]
 pub struct Unknowns<'a> {
-    /// The model, without the effects that are to be told.
+    /// The model, without the effects that are unknown.
     pub model: &'a Model,
     /// Its law, without effects.
     pub law: &'a Law,
-    /// The library.
+    /// Library of effects.
     pub library: &'a [Arc<Effect>],
-    /// Names of coefficients.
+    /// Names of unknown coefficients.
     pub coefficients: &'a [String],
-    /// Forms of effects, where their columns are tangents.
+    /// Forms of unknown effects, at the values at which their columns are tangents.
     pub effects: &'a [EffectCandidate],
-    /// How far a published coefficient may be from the truth, as a share of its value, where the
-    /// model does not say what its own trials leave open.
+    /// Relative error of a published coefficient, for a model without the uncertainty of its own
+    /// trials.
     pub slack: f64,
     /// Random accelerations of such a model that no coefficient explains, by the typical ones
     /// (`U^2/L`, or `(U/L)^2`).
     pub discrepancy_level: f64,
 }
 
-/// The information of trials on unknowns.
+/// Information of trials on unknowns.
 pub struct ExpectedInformation<'a> {
     unknowns: Unknowns<'a>,
     calibrated: CalibratedModel,
     columns: Columns,
-    /// Places of what is asked for: coefficients, then parameters of effects.
+    /// Indices of the unknowns: coefficients, then parameters of effects.
     asked: Vec<usize>,
-    /// Places of what else may move, and what is known of it.
+    /// Indices of all other free columns, and the prior information on them.
     others: Vec<usize>,
     known: DMatrix<f64>,
 }
 
 impl<'a> ExpectedInformation<'a> {
-    /// For trials with the channels of one that they will be like.
+    /// Prepares the information for trials with the channels of the trial `like`.
     ///
     /// # Errors
-    /// Names a coefficient that the law does not have, or what the model does not give.
+    /// Returns an error that names a coefficient that the law does not have, or what the model does
+    /// not provide.
     pub fn new(unknowns: Unknowns<'a>, like: &Trial) -> Result<Self, RefineError> {
         let Unknowns { model, law, library, .. } = unknowns;
         let terms = learned(model, law, library, &[like]);
         let mut nuisance = columns(model, law);
         let known = known(&unknowns, &nuisance, &terms)?;
+        // The first columns have a prior; coefficients that the model does not name are appended
+        // without one.
         let still = nuisance.len();
         nuisance.extend(missing(&unknowns, &nuisance)?);
         let shift = vec![0.0; nuisance.len()];
@@ -82,10 +86,11 @@ impl<'a> ExpectedInformation<'a> {
         Ok(Self { unknowns, calibrated, columns, asked, others, known })
     }
 
-    /// Information of trials that nobody has sailed, unknowns by unknowns, read by instruments.
+    /// Returns the information of planned trials, unknowns by unknowns, recorded by given
+    /// instruments.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn planned(
         &self,
         trials: &[&Trial],
@@ -97,10 +102,10 @@ impl<'a> ExpectedInformation<'a> {
         self.each(&ready)
     }
 
-    /// Information of trials that were sailed, and the instruments as they were there.
+    /// Returns the information of recorded trials, and the noise of their instruments.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn sailed(&self, trials: &[&Trial]) -> Result<(Vec<DMatrix<f64>>, Noise), RefineError> {
         let columns = self.columns.clone();
         let ready = LinearisedTrials::one_at_a_time(&self.calibrated, columns, trials, None)?;
@@ -121,8 +126,8 @@ impl<'a> ExpectedInformation<'a> {
         (0..ready.trials.len()).into_par_iter().map(of_trial).collect()
     }
 
-    /// Accelerations that no coefficient explains: those that the model brings with it, or those
-    /// that are stated for one that brings none.
+    /// Accelerations that no coefficient explains: those of the model's calibration, or those of
+    /// the given level for a model without one.
     fn discrepancies(&self, ready: &LinearisedTrials<'_>) -> Discrepancies {
         let mut all = ready.scales().discrepancies(self.unknowns.discrepancy_level);
         if let Some(uncertainty) = &self.unknowns.model.uncertainty {
@@ -133,7 +138,7 @@ impl<'a> ExpectedInformation<'a> {
         all
     }
 
-    /// What an instrument's rate and the velocities disagree by is the ship's own, where it knows.
+    /// Instruments with at least the drift of the model's calibration.
     fn drifting(&self, instruments: &Noise) -> Noise {
         let known = self.unknowns.model.uncertainty.as_ref();
         let one = |(channel, own): (&_, &Instrument)| {
@@ -141,13 +146,15 @@ impl<'a> ExpectedInformation<'a> {
                 let channel: &sistership_model::trial::Channel = channel;
                 known.instruments.get(channel.name())
             });
+            // The larger drift: planned instruments are assumed no better than the ship's own.
             let drift = fitted.map_or(own.drift, |fitted| own.drift.max(fitted.drift));
             (*channel, Instrument { drift, ..*own })
         };
         instruments.iter().map(one).collect()
     }
 
-    /// With everything else integrated out: `G_aa - G_ao (G_oo + P)^-1 G_oa`.
+    /// Information on the unknowns with all other columns integrated out: `G_aa - G_ao (G_oo +
+    /// P)^-1 G_oa`.
     fn of_asked(&self, gram: &Gram) -> Option<DMatrix<f64>> {
         let block = |rows: &[usize], columns: &[usize]| {
             DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
@@ -160,7 +167,7 @@ impl<'a> ExpectedInformation<'a> {
     }
 }
 
-/// What is known of everything that may move.
+/// Prior of all free columns.
 fn known(
     unknowns: &Unknowns<'_>,
     nuisance: &[Nuisance],
@@ -172,7 +179,7 @@ fn known(
     }
 }
 
-/// Coefficients that are asked for and that the model's uncertainty does not name.
+/// Unknown coefficients that the model's uncertainty does not name.
 fn missing(unknowns: &Unknowns<'_>, nuisance: &[Nuisance]) -> Result<Vec<Nuisance>, RefineError> {
     let there = |name: &&String| nuisance.iter().any(|own| own.name == **name);
     let one = |name: &String| {
@@ -185,17 +192,18 @@ fn missing(unknowns: &Unknowns<'_>, nuisance: &[Nuisance]) -> Result<Vec<Nuisanc
     unknowns.coefficients.iter().filter(|name| !there(name)).map(one).collect()
 }
 
-/// The information on some columns alone, whatever the others are.
+/// Information on some columns alone, marginal over the others.
 fn of_others(known: &CoefficientPrior, others: &[usize]) -> Option<DMatrix<f64>> {
+    // Marginal information: the covariance of the selected columns, inverted again.
     let covariance = Cholesky::new(known.information.clone())?.inverse();
     let own =
         DMatrix::from_fn(others.len(), others.len(), |i, j| covariance[(others[i], others[j])]);
     Some(Cholesky::new(own)?.inverse())
 }
 
-/// The forms of an effect that trials with certain channels can show: where a model carries it, its
-/// own form where it stands, otherwise all at its absence. Empty where the library does not have
-/// it, or such trials do not show it.
+/// Returns the forms of an effect that trials with certain channels can show: where a model carries
+/// it, its own form at its values, otherwise all at its absence. Empty where the library does not
+/// have it, or such trials do not show it.
 pub fn forms_of(
     effect: &str,
     model: &Model,
@@ -204,6 +212,7 @@ pub fn forms_of(
     like: &Trial,
 ) -> Vec<EffectCandidate> {
     let carried = model.effects.iter().find(|own| own.name == effect);
+    // Effects that a model carries are no candidates, so the list is made without them.
     let bare = Model { effects: Vec::new(), ..model.clone() };
     let forms = listed(&bare, law, library, &[like]).into_iter();
     let forms = forms.filter(|candidate| candidate.effect == effect);

@@ -1,6 +1,6 @@
-//! A linearisation with everything that may show, filtered at each level of the discrepancy. A
-//! hypothesis near it is then judged by what it moves alone: its own columns pass the same filter,
-//! the coefficients' are there already.
+//! A linearisation with all columns that may be needed, filtered at each level of the discrepancy.
+//! A nearby hypothesis is then judged by its own columns alone, which pass the same filter; those
+//! of the coefficients are already available.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -20,24 +20,24 @@ use sistership_filtering::{
 };
 use sistership_identification::refine::RefineError;
 
-/// Effects that are taken, and all that is there when others are judged beside them.
+/// Accepted effects, and the data for judging others together with them.
 pub(super) struct FilteredBase<'a> {
     pub taken: Vec<EffectCandidate>,
     pub workspace: LinearisedTrials<'a>,
     pub levels: Vec<FilteredLevel>,
     coefficients: usize,
-    /// What has been judged beside it, by the effect and the level that it was first seen at.
+    /// Hypotheses judged already, by the effect and the level of its screening.
     judged: Mutex<BTreeMap<(String, usize), JudgedHypothesis>>,
 }
 
-/// The filter at one level.
+/// Filter at one level.
 pub(super) struct FilteredLevel {
     pub level: DiscrepancyFactor,
     discrepancies: Discrepancies,
     /// Products of all columns, by trial.
     grams: Vec<Gram>,
-    /// Made when a hypothesis is first judged at this level: they are many times as large as the
-    /// trials.
+    /// Computed when a hypothesis is first judged at this level: they are many times as large as
+    /// the trials.
     coefficients: Mutex<Option<WhitenedCoefficients>>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> FilteredBase<'a> {
     /// Filters at each of some levels.
     ///
     /// # Errors
-    /// Names a channel of which no noise is known.
+    /// Returns an error if the noise of a channel is unknown.
     pub fn new(
         taken: &[EffectCandidate],
         workspace: LinearisedTrials<'a>,
@@ -75,19 +75,21 @@ impl<'a> FilteredBase<'a> {
         })
     }
 
-    /// A hypothesis beside it that is judged once, however often it is asked for.
+    /// Judges a hypothesis once, and returns the stored result afterwards.
     ///
     /// # Errors
-    /// What judging it says.
+    /// Returns the error of the judgement.
     pub fn once(
         &self,
         key: (String, usize),
         judge: impl FnOnce() -> Result<JudgedHypothesis, RefineError>,
     ) -> Result<JudgedHypothesis, RefineError> {
+        // A panic of another thread leaves the map complete, so that its poisoning is ignored.
         let all = || self.judged.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());
         }
+        // The lock is not held during the judgement; two threads may compute the same result.
         let judged = judge()?;
         all().insert(key, judged.clone());
         Ok(judged)
@@ -104,8 +106,8 @@ impl<'a> FilteredBase<'a> {
         self.levels[level].grams.iter().map(|gram| gram.select(&columns)).collect()
     }
 
-    /// The whitened columns of the coefficients at a level. Those of levels that are not its
-    /// neighbours are let go: hypotheses are judged at a level and the one below.
+    /// Whitened columns of the coefficients at a level. Those of levels that are not neighbours are
+    /// released: hypotheses are judged at a level and the one below.
     fn coefficients(&self, level: usize) -> Result<WhitenedCoefficients, RefineError> {
         for (_, far) in
             self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)
@@ -113,6 +115,7 @@ impl<'a> FilteredBase<'a> {
             *far.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
         }
         let at = &self.levels[level];
+        // Held during the computation: other threads wait for the result instead of repeating it.
         let mut kept = at.coefficients.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(coefficients) = &*kept {
             return Ok(Arc::clone(coefficients));
@@ -130,10 +133,10 @@ impl<'a> FilteredBase<'a> {
         Ok(fresh)
     }
 
-    /// Readings and columns of a hypothesis where it stands, to be filtered at any level.
+    /// Linearises readings and columns of a hypothesis at its values, to be filtered at any level.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn linearised(
         &self,
         learned: &CalibratedModel,
@@ -148,6 +151,7 @@ impl<'a> FilteredBase<'a> {
             .par_iter()
             .map(|record| linearise(&system, record, Detail::Columns))
             .collect::<Result<_, _>>()?;
+        // The filter of the base is kept: its transitions and readings of deviations.
         let of = |(own, base): (Vec<Linearised>, &Vec<Linearised>)| {
             own.into_iter().zip(base).map(|(own, base)| own.by_filter_of(base)).collect()
         };
@@ -172,7 +176,7 @@ fn gram(
     Ok(gram)
 }
 
-/// A part through the filter: residual and columns by readings.
+/// Residual and columns of a part by readings, after the filter.
 fn rows(
     workspace: &LinearisedTrials<'_>,
     part: &Linearised,
@@ -183,17 +187,17 @@ fn rows(
     Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
 }
 
-/// A hypothesis where it stands.
+/// A hypothesis linearised at its values.
 pub(super) struct LinearisedHypothesis<'b, 'a> {
     base: &'b FilteredBase<'a>,
     linear: Vec<Vec<Linearised>>,
 }
 
 impl LinearisedHypothesis<'_, '_> {
-    /// The products of each trial: residual, coefficients, parameters of the hypothesis.
+    /// Returns the products of each trial: residual, coefficients, parameters of the hypothesis.
     ///
     /// # Errors
-    /// Names a channel of which no noise is known.
+    /// Returns an error if the noise of a channel is unknown.
     pub fn grams(&self, level: usize) -> Result<Vec<Gram>, RefineError> {
         let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
@@ -203,10 +207,10 @@ impl LinearisedHypothesis<'_, '_> {
             .collect()
     }
 
-    /// The products of each trial in pieces of equal duration.
+    /// Returns the products of each trial in pieces of equal duration.
     ///
     /// # Errors
-    /// Names a channel of which no noise is known.
+    /// Returns an error if the noise of a channel is unknown.
     pub fn pieces(&self, level: usize, count: usize) -> Result<Vec<Gram>, RefineError> {
         let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
@@ -226,10 +230,12 @@ impl LinearisedHypothesis<'_, '_> {
     ) -> Result<Vec<Gram>, RefineError> {
         let width = self.base.coefficients + self.width();
         let mut pieces = vec![Gram::empty(width); count];
+        // Only the columns' products are needed, so the likelihood terms stay zero.
         for (part, coefficients) in parts.iter().zip(known) {
             let own = self.rows(part, discrepancies)?.0;
             let readings = own.nrows();
             for (piece, gram) in pieces.iter_mut().enumerate() {
+                // Readings are divided by their number, so that pieces have nearly equal durations.
                 let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
                 let (known, own) =
                     (coefficients.columns(from, to - from), own.rows(from, to - from));
@@ -249,6 +255,7 @@ impl LinearisedHypothesis<'_, '_> {
     ) -> Result<Gram, RefineError> {
         let c = self.base.coefficients;
         let mut gram = Gram::empty(c + self.width());
+        // The coefficients' own products are those of the base, whose filter is the same.
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
         for (part, coefficients) in parts.iter().zip(known) {
             let (rows, log_variance) = self.rows(part, discrepancies)?;
@@ -259,12 +266,12 @@ impl LinearisedHypothesis<'_, '_> {
         Ok(gram)
     }
 
-    /// The residual and the parameters of the hypothesis.
+    /// Number of columns: the residual and the parameters of the hypothesis.
     fn width(&self) -> usize {
         1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
     }
 
-    /// Whitened, readings by columns.
+    /// Whitened columns, readings by columns.
     fn rows(
         &self,
         part: &Linearised,
@@ -279,6 +286,7 @@ impl LinearisedHypothesis<'_, '_> {
 /// Adds products of coefficients with a hypothesis' own columns, and of these among themselves.
 fn add(gram: &mut Gram, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
     let (c, own) = cross.shape();
+    // The residual is at index 0; own columns follow those of the coefficients.
     let place = |i: usize| if i == 0 { 0 } else { c + i };
     for i in 0..own {
         for k in 0..c {

@@ -1,4 +1,4 @@
-//! A hypothesis: effects that may be missing together, where they make the readings most probable.
+//! A hypothesis: effects that may be missing together, at their most probable values.
 
 use nalgebra::{DMatrix, DVector};
 use sistership_model::effect::EffectParameter;
@@ -8,35 +8,35 @@ use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_
 use sistership_filtering::{EffectCandidate, Gram};
 use sistership_identification::refine::RefineError;
 
-/// A hypothesis where it is most probable.
+/// A hypothesis at its most probable values.
 #[derive(Debug, Clone)]
 pub(super) struct JudgedHypothesis {
     pub candidates: Vec<EffectCandidate>,
     /// Logarithm of the probability of the readings and of the hypothesis itself.
     pub log_evidence: f64,
     pub covariance: DMatrix<f64>,
-    /// The level of the discrepancy, among those of the base that it was judged beside.
+    /// Level of the discrepancy, among those of the base by which it was judged.
     pub level: usize,
     /// Change of the coefficients.
     pub shift: DVector<f64>,
     /// Products of each trial under the most probable discrepancies, at `linearised_at`.
     pub grams: Vec<Gram>,
-    /// Where the candidates were when the columns were made.
+    /// Values of the candidates at which the columns are tangents.
     pub linearised_at: Vec<EffectCandidate>,
 }
 
 impl JudgedHypothesis {
-    /// How far each parameter is from where the columns were made.
+    /// Distance of each parameter from the values of the linearisation.
     pub fn moved(&self) -> Vec<f64> {
         let pairs = self.candidates.iter().zip(&self.linearised_at);
         pairs.flat_map(|(here, there)| here.at.iter().zip(&there.at).map(|(a, b)| a - b)).collect()
     }
 
-    /// Logarithm of the probability of some of the trials under this hypothesis, and its estimate
-    /// there.
+    /// Returns the logarithm of the probability of some of the trials under this hypothesis, and
+    /// its estimate on them.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Returns an error if the information is not positive.
     pub fn of_trials(
         &self,
         fixed: &CoefficientPrior,
@@ -52,18 +52,20 @@ impl JudgedHypothesis {
         Ok((estimate.gain - 0.5 * reduced.deviance, placed(self.linearised_at.clone(), &estimate)))
     }
 
-    /// How probable each trial is by a fit on the others: the sum of the logarithms.
+    /// Returns the sum over trials of the logarithm of each trial's probability, given a fit on the
+    /// others.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Returns an error if the information is not positive.
     pub fn held_out(&self, fixed: &CoefficientPrior) -> Result<f64, RefineError> {
         let (all, ..) = self.of_trials(fixed, &|_| true)?;
+        // ln p(trial | others) = ln p(all) - ln p(others).
         let without = |trial: usize| Ok(all - self.of_trials(fixed, &|other| other != trial)?.0);
         (0..self.grams.len()).map(without).sum()
     }
 }
 
-/// Between two places of the same candidates.
+/// Values halfway between two sets of values of the same candidates.
 pub(super) fn halfway(from: &[EffectCandidate], to: &[EffectCandidate]) -> Vec<EffectCandidate> {
     let between = |(from, to): (&EffectCandidate, &EffectCandidate)| {
         let at = from.at.iter().zip(&to.at).map(|(from, to)| 0.5 * (from + to)).collect();
@@ -72,7 +74,7 @@ pub(super) fn halfway(from: &[EffectCandidate], to: &[EffectCandidate]) -> Vec<E
     from.iter().zip(to).map(between).collect()
 }
 
-/// The priors of a candidate's parameters, as distances from where it stands.
+/// Priors of a candidate's parameters, as distances from its values.
 pub(super) fn priors(candidate: &EffectCandidate) -> Vec<NormalPrior> {
     let one = |(at, parameter): (&f64, &EffectParameter)| NormalPrior {
         mean: parameter.prior_mean - at,

@@ -1,4 +1,4 @@
-//! Errors before and after, on trials that the fit of the effects has not seen.
+//! Errors before and after the diagnosis, on trials that the fit of the effects has not seen.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ pub(super) struct SimulatedErrors {
     pub after: BTreeMap<String, f64>,
     pub trials: Vec<TrialErrors>,
     pub manoeuvres: Vec<SailedManoeuvre>,
-    /// Place of the way of fitting that is best on all trials.
+    /// Index of the refit that is best on all trials.
     pub taken: usize,
     /// Mean over channels of the logarithm of the errors' ratio, after by before.
     pub change: f64,
@@ -28,9 +28,9 @@ pub(super) struct SimulatedErrors {
 /// Errors of each trial; none where the simulation stopped.
 type Each = Vec<Option<SquaredError>>;
 
-/// Simulates each trial by the model as it is, and by a model fitted on the others in the way that
-/// does best on the others. A fit by trajectories leaves a trial out by one step from where all of
-/// them were fitted.
+/// Simulates each trial by the given model, and by a model fitted on the others with the refit that
+/// is best on the others. A fit by trajectories holds a trial out by one step from the fit on all
+/// of them.
 pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> SimulatedErrors {
     let count = request.trials.len();
     let before = simulated(request, &vec![request.model; count], restart_s);
@@ -38,6 +38,7 @@ pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) ->
         .iter()
         .map(|refit| simulated(request, &refit.without.iter().collect::<Vec<_>>(), restart_s))
         .collect();
+    // The refit of a trial is chosen on the other trials, so that the choice is held out too.
     let best = |keep: &dyn Fn(usize) -> bool| {
         let changes = each.iter().map(|after| change(&before, after, keep)).enumerate();
         changes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(place, _)| place)
@@ -64,6 +65,7 @@ pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) ->
 fn simulated(request: &Request<'_>, models: &[&Model], restart_s: f64) -> Each {
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
     let one = |(model, trial): (&&Model, &&Trial)| {
+        // A simulation that stopped early has no error.
         let ship = ready(model, request.law, &[trial]).ok()?;
         let run = replay(&ship, trial, &settings).ok().filter(|run| run.stopped.is_none())?;
         Some(SquaredError::of(trial, &run))
@@ -90,6 +92,7 @@ fn change(before: &Each, after: &Each, keep: &dyn Fn(usize) -> bool) -> f64 {
         return f64::INFINITY;
     }
     let (before, after) = (total(before, keep), total(after, keep));
+    // A channel without error has no logarithm and is omitted.
     let logs =
         before.iter().filter_map(|(channel, before)| Some((after.get(channel)? / before).ln()));
     let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
@@ -107,6 +110,7 @@ fn of_trial(
 }
 
 fn manoeuvre(request: &Request<'_>, after: &Model, trial: &Trial) -> Option<SailedManoeuvre> {
+    // Trials that are no standard manoeuvre are not compared.
     let recognised = Recognised::of(trial)?;
     let simulated = |model: &Model| -> Option<ManoeuvreMetrics> {
         let ship = ready(model, request.law, &[trial]).ok()?;

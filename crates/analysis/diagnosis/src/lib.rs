@@ -1,4 +1,4 @@
-//! What the residual says: which effect a model lacks, if any.
+//! Diagnosis of the residual: effects that a model lacks, if any.
 
 mod as_recorded;
 mod calibrate;
@@ -54,14 +54,14 @@ pub use settings::Settings;
 use sistership_model::law::Law;
 use sistership_model::{Effect, Model, Trial};
 
-/// What is to be diagnosed, on what.
+/// Model and trials of a diagnosis.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
-    /// The model, with the effects it carries already.
+    /// The model, with the effects that it carries already.
     pub model: &'a Model,
     /// Its law, without effects.
     pub law: &'a Law,
-    /// The library.
+    /// Library of effects.
     pub effects: &'a [Arc<Effect>],
     /// New trials of the ship, that the model was not fitted on.
     pub trials: &'a [&'a Trial],

@@ -1,4 +1,5 @@
-//! A model, columns and trials made ready: linearised once, filtered at any level of discrepancy.
+//! A model, columns and trials prepared for filtering: linearised once, filtered at any level of
+//! discrepancy.
 
 use std::borrow::Cow;
 
@@ -19,7 +20,7 @@ use sistership_filtering::{
 use sistership_identification::refine::RefineError;
 use sistership_priors::transfer::approach_of;
 
-/// Everything that does not change with the discrepancy.
+/// All data that do not change with the discrepancy.
 pub struct LinearisedTrials<'a> {
     pub trials: &'a [&'a Trial],
     pub noise: Noise,
@@ -27,16 +28,16 @@ pub struct LinearisedTrials<'a> {
     pub speed_m_s: f64,
     system: ResidualSystem,
     records: Vec<TrialReadings<'a>>,
-    /// By trial; empty where each is linearised anew when it is asked for.
+    /// Linearised parts by trial; empty where each is linearised again when it is needed.
     linear: Vec<Vec<Linearised>>,
 }
 
-/// What is typical of a ship.
+/// Typical accelerations and time of a ship.
 #[derive(Debug, Clone)]
 pub struct MotionScales {
     /// Accelerations by axis: U^2/L, or (U/L)^2.
     pub accelerations: Vec<f64>,
-    /// Time over which the discrepancy is correlated, s: the ship sails its length.
+    /// Correlation time of the discrepancy, s: the time in which the ship covers its length.
     pub time_s: f64,
 }
 
@@ -57,10 +58,10 @@ impl MotionScales {
 }
 
 impl<'a> LinearisedTrials<'a> {
-    /// Each trial linearised once and kept.
+    /// Linearises each trial once and keeps it.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn new(
         learned: &CalibratedModel,
         columns: Columns,
@@ -70,10 +71,10 @@ impl<'a> LinearisedTrials<'a> {
         Self::one_at_a_time(learned, columns, trials, least_step_s)?.kept()
     }
 
-    /// The same by instruments that are stated.
+    /// Linearises each trial once, with given instruments.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn new_under(
         learned: &CalibratedModel,
         columns: Columns,
@@ -86,19 +87,20 @@ impl<'a> LinearisedTrials<'a> {
         all.read_by(instruments.clone())?.kept()
     }
 
-    /// With each trial linearised.
+    /// Linearises each trial and keeps it.
     fn kept(mut self) -> Result<Self, RefineError> {
         let whole = |record| linearise(&self.system, record, Detail::Whole);
         self.linear = self.records.par_iter().map(whole).collect::<Result<_, _>>()?;
         Ok(self)
     }
 
-    /// By instruments, of which each channel that is read must have one.
+    /// Sets the instruments; each recorded channel must have one.
     ///
     /// # Errors
-    /// Names the trial and the channel that has none.
+    /// Returns an error that names the trial and the channel without one.
     fn read_by(mut self, noise: Noise) -> Result<Self, RefineError> {
         for record in self.records.iter().filter(|record| !record.is_empty()) {
+            // Only channels that are recorded and known to the filter need an instrument.
             let lacks = |(channel, _): &&(Channel, usize)| {
                 record.trial.channel(*channel).is_some() && !noise.contains_key(channel)
             };
@@ -111,11 +113,12 @@ impl<'a> LinearisedTrials<'a> {
         Ok(self)
     }
 
-    /// Each trial linearised whenever it is asked for: what is kept is as many times as large as
-    /// the trials as there are columns.
+    /// Prepares trials that are linearised again whenever they are needed: the kept data are larger
+    /// than the trials by the number of columns.
     ///
     /// # Errors
-    /// Names what the model lacks; what a trial lacks is said when it is asked for.
+    /// Returns an error that names what the model lacks; what a trial lacks is reported when it is
+    /// needed.
     pub fn one_at_a_time(
         learned: &CalibratedModel,
         columns: Columns,
@@ -129,10 +132,11 @@ impl<'a> LinearisedTrials<'a> {
         all.read_by(noise)
     }
 
-    /// How far apart readings are whose noise is new, s; 0 where every sample is one.
+    /// Returns the interval between readings with independent noise, s; 0 where every sample is a
+    /// reading.
     ///
     /// # Errors
-    /// Names what the model lacks.
+    /// Returns an error that names what the model lacks.
     pub fn own_reading_interval_s(
         learned: &CalibratedModel,
         trials: &'a [&'a Trial],
@@ -141,11 +145,11 @@ impl<'a> LinearisedTrials<'a> {
         Ok(reading_interval(&all.records).unwrap_or_default())
     }
 
-    /// Trials of which every sample is a reading, by instruments that are stated: what nobody has
-    /// sailed yet has no scatter by which either could be told.
+    /// Prepares planned trials of which every sample is a reading, by given instruments: trials
+    /// that are not carried out yet have no noise from which either could be determined.
     ///
     /// # Errors
-    /// Names what the model lacks.
+    /// Returns an error that names what the model lacks.
     pub fn planned(
         learned: &CalibratedModel,
         columns: Columns,
@@ -166,10 +170,12 @@ impl<'a> LinearisedTrials<'a> {
         let lpp_m = lpp_m.ok_or_else(|| {
             RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
         })?;
+        // The approach of the trials takes precedence over the model's speed.
         let approach = approach_of(trials).map(|approach| approach.speed_m_s);
         let speed_m_s = approach
             .or(model.speed_m_s)
             .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        // Both intervals scale with the time in which the ship covers its length.
         let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
         let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
         let records: Vec<TrialReadings<'a>> =
@@ -181,7 +187,7 @@ impl<'a> LinearisedTrials<'a> {
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }
 
-    /// The same by other instruments; a channel of which these know nothing keeps its own scatter.
+    /// Replaces the instruments; a channel that `noise` does not have keeps its own.
     pub fn under(mut self, noise: &Noise) -> Self {
         self.noise.extend(noise);
         self
@@ -203,15 +209,15 @@ impl<'a> LinearisedTrials<'a> {
         &self.records
     }
 
-    /// What is kept ([`Self::new`]).
+    /// Linearised parts by trial, where they are kept ([`Self::new`]).
     pub fn linear(&self) -> &[Vec<Linearised>] {
         &self.linear
     }
 
-    /// A trial linearised, kept or not.
+    /// Returns a trial linearised, from the kept parts or again.
     ///
     /// # Errors
-    /// Names what the trial lacks.
+    /// Returns an error that names what the trial lacks.
     pub fn parts(&self, trial: usize) -> Result<Cow<'_, [Linearised]>, RefineError> {
         match self.linear.get(trial) {
             Some(kept) => Ok(Cow::Borrowed(kept)),
@@ -227,18 +233,19 @@ impl<'a> LinearisedTrials<'a> {
         MotionScales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
     }
 
-    /// The products of each trial.
+    /// Returns the products of each trial.
     ///
     /// # Errors
-    /// Names what a trial lacks.
+    /// Returns an error that names what a trial lacks.
     pub fn each(&self, discrepancies: &Discrepancies) -> Result<Vec<Gram>, RefineError> {
         self.each_of(self.columns().len(), &self.noise, discrepancies)
     }
 
-    /// The products of each trial with the coefficients' columns alone, by other instruments.
+    /// Returns the products of each trial with the coefficients' columns alone, by other
+    /// instruments.
     ///
     /// # Errors
-    /// Names what a trial lacks.
+    /// Returns an error that names what a trial lacks.
     pub fn coefficients_under(
         &self,
         noise: &Noise,
@@ -263,18 +270,19 @@ impl<'a> LinearisedTrials<'a> {
     }
 }
 
-/// Readings as far apart as their noise asks for, and at least as those of the model's own trials
-/// were.
+/// Sets the interval between readings by their noise, and at least to that of the model's own
+/// trials.
 fn read_apart(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
     let Some(as_before_s) = as_before_s else {
         let every = sparseness(records);
         return records.iter_mut().for_each(|record| record.every = every);
     };
+    // The interval of the model's own trials is a lower limit.
     let interval_s = as_before_s.max(reading_interval(records).unwrap_or_default());
     records.iter_mut().for_each(|record| record.read_every(interval_s));
 }
 
-/// Each instrument over all trials: its scatter, and what is known of it beside.
+/// Noise of each instrument over all trials, by its readings and the model's calibration.
 fn noise(
     records: &[TrialReadings<'_>],
     lpp_m: f64,
@@ -299,6 +307,8 @@ fn noise(
                 .max(floor(channel, lpp_m, speed_m_s)),
         );
         let known = known.and_then(|known| known.instruments.get(channel.name()));
+        // The calibration gives the noise relative to that of the readings, and the drift
+        // absolutely.
         let of = |known: &InstrumentFit| Instrument {
             deviation: scatter.deviation * known.deviation_by_scatter,
             drift: scatter.drift.max(known.drift),

@@ -1,4 +1,4 @@
-//! How probable an effect is before any trial is looked at.
+//! Prior probability of an effect.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use super::discount::is_from_outside;
 use sistership_filtering::EffectCandidate;
 
 /// Logarithm of the odds of each form against the model alone, by its key: those of the settings,
-/// or of the library, shared by the forms of the effect that can be tried. Without any, every
-/// effect is as probable as another, and the model alone as all of them.
+/// or of the library, divided among the forms of the effect that are candidates. Without any, all
+/// effects are equally probable, and the model alone is as probable as all of them.
 pub(super) fn log_priors(
     request: &Request<'_>,
     listed: &[EffectCandidate],
@@ -20,6 +20,7 @@ pub(super) fn log_priors(
     let mut forms: BTreeMap<&str, f64> = BTreeMap::new();
     let all = || listed.iter().chain(freed);
     all().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
+    // Effects that act as a change only do not reduce the odds of the others.
     let equal = (forms.len() as f64).recip();
     changing.iter().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
     let log = |candidate: &EffectCandidate| {
@@ -29,13 +30,13 @@ pub(super) fn log_priors(
     all().chain(changing).map(log).collect()
 }
 
-/// Whether the settings or the library state the odds of any effect.
+/// Returns true if the settings or the library state the odds of any effect.
 pub(super) fn states_odds(request: &Request<'_>) -> bool {
     let stated = |effect: &std::sync::Arc<Effect>| effect.beforehand.is_some();
     !request.settings.prior_odds.is_empty() || request.effects.iter().any(stated)
 }
 
-/// The odds of an effect in all its forms; absent where nobody states them.
+/// Odds of an effect in all its forms; absent where they are not stated.
 fn odds(request: &Request<'_>, candidate: &EffectCandidate) -> Option<f64> {
     let set = request.settings.prior_odds.get(&candidate.effect).copied();
     let is_own = |effect: &&std::sync::Arc<Effect>| effect.name == candidate.effect;

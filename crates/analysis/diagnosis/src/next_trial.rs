@@ -1,6 +1,6 @@
-//! The trial that would tell apart what these cannot: each of a set of manoeuvres is sailed with
-//! the model and what was found, and what it would add to the evidence is computed before anybody
-//! sails it.
+//! Proposal of the trial that would distinguish effects that these trials cannot: each of a set of
+//! manoeuvres is simulated with the model and the effects found, and its additional evidence is
+//! computed in advance.
 
 use rayon::prelude::*;
 use sistership_model::Trial;
@@ -20,7 +20,7 @@ use super::values::model_with;
 use sistership_filtering::{Columns, EffectCandidate, Gram, filter};
 use sistership_identification::refine::RefineError;
 
-/// One that could be sailed.
+/// A possible trial.
 #[derive(Clone, Copy)]
 struct PlannedManoeuvre {
     helm: PlannedHelm,
@@ -28,17 +28,19 @@ struct PlannedManoeuvre {
     heading_deg: f64,
 }
 
-/// The trial that separates an effect found from those beside it best; none where nothing is to be
-/// separated, or the ship sails none of the manoeuvres that are planned.
+/// Returns the trial that best separates an effect found from those that are confounded with it;
+/// none where nothing has to be separated, or the ship cannot carry out any of the planned
+/// manoeuvres.
 ///
 /// # Errors
-/// Names what the model lacks, or says that the information is not positive.
+/// Returns an error that names what the model lacks, or one if the information is not positive.
 pub(super) fn next_trial(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     judged: &JudgedHypothesis,
     found: &[Found],
 ) -> Result<Option<NextTrial>, RefineError> {
+    // The effect with the smallest angle to another one is the most doubtful.
     let doubtful = found.iter().filter(|found| !found.confounded_with.is_empty());
     let doubtful = doubtful
         .min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg));
@@ -81,8 +83,8 @@ fn plans(base: &FilteredBase<'_>) -> Vec<PlannedManoeuvre> {
         .collect()
 }
 
-/// An effect that was found and those beside it, with what the trials say of these and of the
-/// coefficients: no other column has a say in what tells them apart.
+/// An effect found and those confounded with it, with the information of the trials on them and on
+/// the coefficients; other columns do not matter for their separation.
 struct Doubt<'d, 'a> {
     search: &'d HypothesisSearch<'a>,
     base: &'d FilteredBase<'a>,
@@ -117,14 +119,15 @@ impl<'d, 'a> Doubt<'d, 'a> {
         Self { search, base, judged, place, names, columns, total }
     }
 
-    /// Evidence by which the nearest of the others would be behind after a planned trial; none
-    /// where the model does not simulate it, or no other is confounded with it then.
+    /// Least evidence against the other effects after a planned trial; none where the ship cannot
+    /// carry it out, or no other effect is confounded then.
     fn separated(
         &self,
         ship: &Ship,
         planned: &PlannedManoeuvre,
     ) -> Result<Option<f64>, RefineError> {
         let Some(trial) = sailed(self.base, ship, planned) else { return Ok(None) };
+        // The planned trial is added to the information of the recorded ones.
         let mut total = self.total.clone();
         total.add(&self.filtered(&trial)?);
         let mut others = self.search.others(&self.judged.candidates);
@@ -133,7 +136,7 @@ impl<'d, 'a> Doubt<'d, 'a> {
         Ok(responses.behind(self.place, &self.names))
     }
 
-    /// The products of the columns over a planned trial.
+    /// Products of the columns over a planned trial.
     fn filtered(&self, trial: &Trial) -> Result<Gram, RefineError> {
         let Self { search, base, judged, columns, .. } = self;
         let trials = [trial];

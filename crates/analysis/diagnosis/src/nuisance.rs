@@ -1,4 +1,4 @@
-//! The coefficients that may move while effects are judged, and what is known of them beforehand.
+//! Free coefficients of a diagnosis, and their prior.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,10 +17,10 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Columns, Nuisance, NuisanceKind};
 use sistership_identification::refine::RefineError;
 
-/// Terms that a grammar spells and a model lacks, by name.
+/// Terms of a grammar that a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;
 
-/// The terms of the library's grammars on trials: all that the model lacks.
+/// Terms of the library's grammars on trials: all that the model lacks.
 pub fn lacked(
     model: &Model,
     law: &Law,
@@ -41,9 +41,9 @@ pub fn lacked(
     effects.iter().flat_map(of).collect()
 }
 
-/// Terms that are learned together with the coefficients: all that the grammars spell, and a
-/// constant on each axis. They take up what the law's own form cannot follow on clean trials, so
-/// that it is not taken for an effect later.
+/// Terms that are learned together with the coefficients: all of the grammars, and a constant on
+/// each axis. They include what the law's own form cannot follow on clean trials, so that it is not
+/// attributed to an effect later.
 pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Terms {
     let axes: Vec<Axis> = law.axes.keys().copied().collect();
     let known = |name: &str| model.coefficients.contains_key(name);
@@ -55,13 +55,15 @@ pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Tri
     terms.chain(constants).map(|form| (form.file.name.clone(), form)).collect()
 }
 
-/// The regressor of a term, in N (N m) per unit of its coefficient, in the names of a law.
+/// Regressor of a term, in N (N m) per unit of its coefficient, in the names of a law.
 pub fn regressor(model: &Model, form: &Form) -> Option<(Axis, Expr)> {
+    // A term acts on one axis and has one parameter.
     let (axis, force) = form.forces.iter().next()?;
     let speed = model
         .speed_m_s
         .or_else(|| sistership_model::particulars::value(&model.particulars, "service_speed_m_s"));
     let parameter = form.parameters.keys().next()?;
+    // The approach speed is inserted as a number, and the coefficient is 1 in its regressor.
     let plain = |name: &str| match name {
         "approach_speed_m_s" => Some(Expr::Number(speed.unwrap_or(1.0))),
         name if name == parameter => Some(Expr::Number(1.0)),
@@ -70,11 +72,10 @@ pub fn regressor(model: &Model, form: &Form) -> Option<(Axis, Expr)> {
     Some((*axis, force.renamed(&plain)))
 }
 
-/// What is known of the coefficients before any trial: the model's own within a share of each, or
-/// of the deviation that the grammar gives a term of its axis; terms that it lacks within the
-/// grammar's deviation. Virtual masses are held: trials would seem to tell them, but what they tell
-/// is how far the law is from the truth. What is not known of them goes into standard errors
-/// (`covariance`).
+/// Prior of the coefficients before any trial: the model's own within a share of each, or of the
+/// deviation that the grammar gives a term of its axis; terms that it lacks within the grammar's
+/// deviation. Virtual masses are fixed: trials would seem to determine them, but would determine
+/// the error of the law. Their uncertainty is part of the standard errors (`covariance`).
 pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> CoefficientPrior {
     let of_axis = |axis: Axis| {
         let of = terms.values().find(|form| form.forces.contains_key(&axis));
@@ -85,6 +86,7 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
     };
     let deviation = |nuisance: &Nuisance| match nuisance.kind {
         NuisanceKind::Own(axis) => {
+            // A coefficient near zero keeps a share of the usual deviation of its axis.
             slack
                 * model
                     .coefficient(&nuisance.name)
@@ -104,13 +106,14 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
     }
 }
 
-/// What the model's own trials say of the coefficients, for the columns that it names.
+/// Prior of the coefficients by the model's own trials, for the columns that it names.
 ///
 /// # Errors
-/// As [`Uncertainty::root`].
+/// Returns the errors of [`Uncertainty::root`].
 pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, RefineError> {
     let rows = uncertainty.root().map_err(|error| RefineError::Law(error.to_string()))?;
     let size = rows.len();
+    // The root is stored row by row from the diagonal, in units of the scales.
     let entry =
         |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };
     let root = DMatrix::from_fn(size, size, entry);
@@ -121,8 +124,7 @@ pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, Refi
     })
 }
 
-/// The columns of a model that knows its uncertainty: those it names; otherwise its own
-/// coefficients.
+/// Columns of a model with an uncertainty: those that it names; otherwise its own coefficients.
 pub fn columns(model: &Model, law: &Law) -> Vec<Nuisance> {
     let own = Columns::nuisance(model, law, &[]);
     let Some(uncertainty) = &model.uncertainty else { return own };

@@ -1,10 +1,9 @@
-//! Where that comes from which no effect explains: a force that the equations of motion lack, or an
-//! instrument.
+//! Origin of an unexplained remainder: a force that the equations of motion lack, or an instrument.
 //!
-//! A force in one direction shows in every reading that follows from it, in the heading before the
-//! sway velocity where the ship turns easily. So each acceleration alone, and each instrument
-//! alone, is taken to be more random than it is known to be, and the one that makes the trials most
-//! probable comes first: the likelihood of a Gauss-Markov model by prediction errors (Maybeck 1979,
+//! A force in one direction affects all readings that follow from it, the heading before the sway
+//! velocity where the ship turns easily. So each acceleration alone, and each instrument alone, is
+//! assumed to be more random than it is known to be, and the one that makes the trials most
+//! probable is first: the likelihood of a Gauss-Markov model by prediction errors (Maybeck 1979,
 //! Stochastic models, estimation and control, vol. 1, section 5.6; Schweppe 1965, IEEE Trans.
 //! Inform. Theory 11, 61-70), maximised over one standard deviation.
 
@@ -19,31 +18,31 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Discrepancies, Linearised, Noise, deviances};
 use sistership_identification::refine::RefineError;
 
-/// What each trial that leaves something is by some randomness.
+/// Deviance of each trial with a remainder.
 type Deviances = Vec<f64>;
 
-/// The trials that leave something, as the filter sees them with what was found.
+/// Trials with a remainder, with the effects found, ready for the filter.
 struct OpenTrials {
-    /// By trial, its parts one after the other.
+    /// Parts of all trials, one trial after the other.
     parts: Vec<Linearised>,
-    /// Of each part, its trial.
+    /// Index of the trial of each part.
     trials: Vec<usize>,
     count: usize,
 }
 
-/// One thing that may be more random than it is known to be.
+/// A possible origin: an acceleration or an instrument with a larger standard deviation.
 struct Alternative {
     of: OriginKind,
     channel: String,
-    /// By how much the trials become more probable, by each trial, natural logarithm.
+    /// Gain in the logarithm of the probability of each trial.
     gains: Vec<f64>,
 }
 
-/// Origins by their evidence, the most evident first: those above `least`. Of many trials that
-/// leave something, those are asked that leave most.
+/// Returns origins by their evidence, the most evident first: those above `least`. Of many trials
+/// with a remainder, those with the largest are examined.
 ///
 /// # Errors
-/// Names a channel of which no noise is known.
+/// Returns an error if the noise of a channel is unknown.
 pub(super) fn origins(
     settled: &ConvergedChoice<'_>,
     remaining: &[Unexplained],
@@ -55,6 +54,7 @@ pub(super) fn origins(
     }
     let workspace = &settled.base.workspace;
     let (noise, discrepancies) = (&workspace.noise, expected(&settled.search, workspace));
+    // The deviance with the known randomness is the reference of all gains.
     let known = trials.deviances(noise, &discrepancies)?;
     let gained = |of: OriginKind, channel: &str, each: Result<Vec<Deviances>, RefineError>| {
         Ok(Alternative { of, channel: channel.to_owned(), gains: gains(&known, &each?) })
@@ -116,12 +116,12 @@ fn amplified(discrepancies: &Discrepancies, axis: usize, factor: f64) -> Discrep
     amplified
 }
 
-/// Instruments of which one scatters more.
+/// Instruments of which one has more noise.
 fn noisier(noise: &Noise, channel: Channel, factor: f64) -> Noise {
     let mut noisier = noise.clone();
     noisier.entry(channel).and_modify(|instrument| {
         instrument.deviation *= factor;
-        // What drifts of a velocity is an acceleration, which is asked by itself.
+        // The drift of a velocity is an acceleration, which is a separate candidate.
         if !VELOCITIES.contains(&channel) {
             instrument.drift *= factor;
         }
@@ -131,9 +131,10 @@ fn noisier(noise: &Noise, channel: Channel, factor: f64) -> Noise {
 
 const VELOCITIES: [Channel; 4] = [Channel::U, Channel::V, Channel::R, Channel::P];
 
-/// What each trial gains by the factor by which all together gain most.
+/// Gain of each trial by the factor by which all together gain most.
 fn gains(known: &Deviances, each: &[Deviances]) -> Vec<f64> {
     let gains = |by: &Deviances| -> Vec<f64> {
+        // Half the difference of deviances is the gain in log likelihood.
         known.iter().zip(by).map(|(known, by)| 0.5 * (known - by)).collect()
     };
     let all = each.iter().map(gains);

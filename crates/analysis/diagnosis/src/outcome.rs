@@ -1,4 +1,4 @@
-//! What a diagnosis gives.
+//! Result of a diagnosis.
 
 use std::collections::BTreeMap;
 
@@ -9,189 +9,184 @@ use sistership_simulation::metrics::ManoeuvreMetrics;
 
 use super::settings::Settings;
 
-/// The answer.
+/// Verdict of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// The residual is what the noise predicts.
+    /// The residual agrees with the noise.
     Complete,
-    /// Named effects are missing from the model, and with them the residual is what the noise
-    /// predicts.
+    /// Named effects are missing from the model, and with them the residual agrees with the noise.
     Effects,
     /// Something is missing that no effect of the library explains.
     Unexplained,
 }
 
-/// The result of a diagnosis. Errors are root mean squares by channel in SI, on trials that the fit
-/// has not seen.
+/// Result of a diagnosis. Errors are root mean squares by channel in SI, on trials that the fit has
+/// not seen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
-    /// The answer.
+    /// Verdict.
     pub verdict: Verdict,
-    /// The effects that are missing.
+    /// Effects that are missing.
     pub effects: Vec<Found>,
-    /// What no effect explains.
+    /// Segments that no effect explains.
     pub unexplained: Vec<Unexplained>,
-    /// Changes in time that explain what remains of a trial, the most evident first: they are of a
-    /// day, and no model carries them.
+    /// Changes in time that explain the remainder of a trial, the most evident first: they belong
+    /// to one day, and no model carries them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
-    /// Where what no effect explains comes from, the most evident first.
+    /// Origins of the unexplained remainder, the most evident first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub origins: Vec<RemainderOrigin>,
-    /// On what depends what is left there, by acceleration, that of the first origin first.
+    /// Dependence of the remainder on variables, by acceleration, that of the first origin first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub depends_on: Vec<RemainderDependence>,
-    /// How small each effect that was not found would still have been shown, with a probability of
-    /// 90 %.
+    /// Detection limit of each effect that was not found, with a probability of 90 %.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<DetectionLimit>,
-    /// Effects of which these trials and this model cannot tell a usual size, and what stands in
-    /// the way.
+    /// Effects of which these trials and this model cannot show a usual size, with the cause.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cannot_tell: BTreeMap<String, LimitedBy>,
-    /// Odds that were given each effect before the trials were looked at, all its forms together.
+    /// Prior odds of each effect, all its forms together.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub prior_odds: BTreeMap<String, f64>,
-    /// The trial that would tell the effects found from those that they are confounded with; absent
-    /// where nothing is to be told apart.
+    /// Trial that would distinguish the effects found from those that they are confounded with;
+    /// absent where nothing has to be distinguished.
     pub next_trial: Option<NextTrial>,
-    /// Errors of the model as it is.
+    /// Errors of the given model.
     pub before: BTreeMap<String, f64>,
     /// Errors of the model with the effects, refitted; those of `before` where there are none.
     pub after: BTreeMap<String, f64>,
     /// Standard deviation of the noise by channel, as the trials show it, SI.
     pub noise: BTreeMap<String, f64>,
-    /// How trials were kept from the fit that they judge.
+    /// Description of the trials that were held out of the fit that they judge.
     pub how: String,
-    /// The model that was diagnosed.
+    /// Name of the diagnosed model.
     pub diagnosed: String,
-    /// Every hypothesis that was tried, the most probable first.
+    /// All hypotheses that were judged, the most probable first.
     pub hypotheses: Vec<Hypothesis>,
-    /// Errors trial by trial.
+    /// Errors by trial.
     pub trials: Vec<TrialErrors>,
     /// Turning circles and zigzags among the trials.
     pub manoeuvres: Vec<SailedManoeuvre>,
     /// The residual over time, by trial and channel, for plots.
     pub residuals: Vec<ResidualSeries>,
-    /// How much the accelerations carry that nothing explains, before and after.
+    /// Level of the unexplained accelerations, before and after.
     pub discrepancies: Vec<DiscrepancyLevel>,
-    /// The model with the effects, where some were found.
+    /// Model with the effects, where some were found.
     pub model: Option<Model>,
-    /// Every setting.
+    /// All settings.
     pub settings: Settings,
-    /// Remarks for the person who must defend the answer.
+    /// Remarks for the person who has to justify the result.
     pub remarks: Vec<String>,
 }
 
-/// How small an effect would still have been shown.
+/// Detection limit of an effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DetectionLimit {
-    /// The effect.
+    /// Effect.
     pub effect: String,
-    /// Its form.
+    /// Form of the effect.
     pub form: String,
-    /// The parameter whose size is limited, the others at the absence of the effect.
+    /// Parameter whose size is limited, the others at the absence of the effect.
     pub parameter: String,
-    /// The smallest size that is shown with a probability of 90 %, SI; absent where none is.
+    /// Smallest size that is shown with a probability of 90 %, SI; absent where none is.
     pub size: Option<f64>,
-    /// A usual size, by the library's prior.
+    /// Usual size, by the library's prior.
     pub usual: f64,
-    /// What stands in the way of showing a usual size; absent where it would be shown.
+    /// Cause that prevents a usual size from being shown; absent where it would be shown.
     pub limited_by: Option<LimitedBy>,
 }
 
-/// What stands in the way of telling an effect.
+/// Cause that prevents an effect from being shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitedBy {
-    /// The model leaves of its own trials what resembles the effect: refine it first.
+    /// The model leaves a remainder on its own trials that resembles the effect: refine it first.
     Model,
-    /// What the trials excite does not tell it from the coefficients or from another effect.
+    /// The trials do not distinguish the effect from the coefficients or from another effect.
     Trials,
-    /// The instruments scatter too much.
+    /// The instruments have too much noise.
     Sensors,
 }
 
-/// A value with its standard error, in the unit of its name.
+/// Value with its standard error, in the unit of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Value {
-    /// The value.
+    /// Value.
     pub value: f64,
-    /// Its standard error.
+    /// Standard error.
     pub se: f64,
 }
 
 /// An effect that is missing from the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
-    /// Its name in the library.
+    /// Name in the library.
     pub name: String,
-    /// In which form.
+    /// Form of the effect.
     pub form: String,
-    /// One line for people.
+    /// Description in one line.
     pub meaning: String,
-    /// Where it acts.
+    /// Target of its action.
     pub acts_on: ActsOn,
-    /// Its parameters and what follows from them.
+    /// Parameters, and quantities that follow from them.
     pub parameters: BTreeMap<String, Value>,
-    /// Its parameters in the model that is given, where they were fitted together with the
-    /// coefficients.
+    /// Parameters in the resulting model, where they were fitted together with the coefficients.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub in_model: BTreeMap<String, Value>,
-    /// Natural logarithm of how much more probable the trials are with it than without, the other
-    /// effects found being there: after what the number of hypotheses tried costs, and discounted
-    /// by what the effect explains of clean trials.
+    /// Natural logarithm of the ratio of the trials' probability with it to that without, given the
+    /// other effects found: it includes the cost of the number of hypotheses, and is discounted by
+    /// the effect's improvement on clean trials.
     pub evidence: f64,
-    /// Effects that these trials cannot tell it from, or hardly.
+    /// Effects that these trials can hardly distinguish from it, or not at all.
     pub confounded_with: Vec<Confounded>,
 }
 
-/// An effect whose answer on these trials is nearly the same.
+/// Effect with nearly the same response on these trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Confounded {
-    /// Its name.
+    /// Name in the library.
     pub name: String,
-    /// The angle between what was found and the nearest that this effect could do, deg: 0 the same,
-    /// 90 nothing in common.
+    /// Angle between the effect found and the nearest response of this effect, deg: 0 the same, 90
+    /// nothing in common.
     pub angle_deg: f64,
-    /// How much less evidence there is for it, natural logarithm.
+    /// Evidence against it relative to the effect found, natural logarithm.
     pub behind: f64,
 }
 
-/// A stretch of a trial that no effect explains.
+/// Segment of a trial that no effect explains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unexplained {
-    /// The channel whose readings the model does not follow; [`RemainderOrigin`] says what is
-    /// missing.
+    /// Channel whose readings the model does not follow; [`RemainderOrigin`] has the cause.
     pub channel: String,
-    /// Root mean square of what remains over what the noise predicts.
+    /// Root mean square of the remainder by that of the predicted noise.
     pub rms_over_noise: f64,
-    /// The trial.
+    /// Name of the trial.
     pub trial: String,
-    /// From when, s of the trial.
+    /// Beginning, s of the trial.
     pub from_s: f64,
-    /// Until when, s of the trial.
+    /// End, s of the trial.
     pub to_s: f64,
 }
 
-/// What, taken to be more random than it is known to be, makes the trials that leave something more
+/// Acceleration or instrument whose larger randomness makes the trials with a remainder more
 /// probable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RemainderOrigin {
-    /// What that is.
+    /// Kind of the origin.
     pub of: OriginKind,
     /// `u`, `v`, `r` or `p` of an acceleration; the channel of readings.
     pub channel: String,
-    /// By how much, natural logarithm, by the standard deviation that does most.
+    /// Evidence with the best standard deviation, natural logarithm.
     pub evidence: f64,
-    /// Of so many trials it is the most evident origin.
+    /// Number of trials of which it is the most evident origin.
     pub first_in: usize,
-    /// Trials that were asked.
+    /// Number of trials that were examined.
     pub trials: usize,
 }
 
-/// Of what kind an origin is.
+/// Kind of an origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OriginKind {
@@ -201,38 +196,38 @@ pub enum OriginKind {
     Readings,
 }
 
-/// An effect that changes within a trial, or that one trial alone has, and with which nothing of
-/// that trial remains unexplained.
+/// Effect that changes within a trial, or that one trial alone has, and with which nothing of that
+/// trial remains unexplained.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Change {
-    /// Its name in the library.
+    /// Name in the library.
     pub effect: String,
-    /// In which form.
+    /// Form of the effect.
     pub form: String,
-    /// One line for people.
+    /// Description in one line.
     pub meaning: String,
-    /// The trial.
+    /// Name of the trial.
     pub trial: String,
-    /// How it goes.
+    /// Course of the change.
     pub course: ChangeCourse,
-    /// When it begins or ends, s of the trial; absent where it does neither.
+    /// Time at which it begins or ends, s of the trial; absent where it does neither.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_s: Option<f64>,
-    /// Between which times that is with a probability of 95 %, s of the trial.
+    /// Interval of that time with a probability of 95 %, s of the trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub between_s: Option<[f64; 2]>,
-    /// Its parameters and what follows from them, beside what is there otherwise; of a drift at the
-    /// end of the trial.
+    /// Parameters, and quantities that follow from them, in addition to those present otherwise;
+    /// for a drift, at the end of the trial.
     pub parameters: BTreeMap<String, Value>,
-    /// Natural logarithm of how much more probable the trial is with it than without, after what
-    /// the number of times that were tried costs.
+    /// Natural logarithm of the ratio of the trial's probability with it to that without; it
+    /// includes the cost of the number of times that were evaluated.
     pub evidence: f64,
     /// Effects whose changes are nearly as evident.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub or: Vec<String>,
 }
 
-/// How a change goes.
+/// Course of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ChangeCourse {
@@ -242,128 +237,128 @@ pub enum ChangeCourse {
     Ends,
     /// It grows steadily from the beginning of the trial.
     Drifts,
-    /// It is there throughout this trial, and not in all others.
+    /// It is present throughout this trial, and not in all others.
     Throughout,
 }
 
-/// On what depends what is left of an acceleration in which something is unexplained, or in yaw
-/// where the heading is: a random forest learned it from half of the trials' blocks of time, and
-/// was asked on the others, and another one the other way round. Shares are means of both; curves
-/// are the first one's.
+/// Dependence of the remainder of an acceleration that has an unexplained segment, or of yaw for a
+/// heading that has one: a random forest was trained on half of the trials' blocks of time and
+/// evaluated on the others, and another one the other way round. Shares are means of both; curves
+/// are those of the first one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RemainderDependence {
     /// `u`, `v`, `r` or `p`.
     pub channel: String,
-    /// The share of its variance that the recorded variables and time explain there; 0 where they
+    /// Share of its variance that the recorded variables and time explain there; 0 where they
     /// explain nothing.
     pub explained: f64,
-    /// The variables that it depends on most, the first one most.
+    /// Variables on which it depends most, the most important one first.
     pub variables: Vec<VariableDependence>,
 }
 
-/// How what is left depends on a variable.
+/// Dependence of the remainder on a variable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VariableDependence {
     /// A recorded channel, or `t`, the time of the trial.
     pub variable: String,
-    /// By how much of the remainder's variance the squared error rises where it is shuffled among
-    /// the samples.
+    /// Increase of the squared error, by the remainder's variance, where the variable is shuffled
+    /// among the samples.
     pub share: f64,
-    /// Its values, rising, SI.
+    /// Values of the variable, increasing, SI.
     pub at: Vec<f64>,
-    /// What is left in the mean where it is held there, m/s2 or rad/s2.
+    /// Mean remainder where the variable has that value, m/s2 or rad/s2.
     pub remainder: Vec<f64>,
 }
 
-/// The trial that would tell effects apart.
+/// Trial that would distinguish effects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NextTrial {
-    /// What to sail.
+    /// Manoeuvre.
     pub manoeuvre: String,
-    /// At which approach speed, m/s.
+    /// Approach speed, m/s.
     pub speed_m_s: f64,
-    /// On which heading, deg.
+    /// Heading, deg.
     pub heading_deg: f64,
-    /// What it would tell apart.
+    /// Effects that it would distinguish.
     pub separates: Vec<String>,
-    /// The evidence that it is expected to give for one over the other, natural logarithm.
+    /// Expected evidence for one over the other, natural logarithm.
     pub expected: f64,
 }
 
-/// One hypothesis.
+/// A judged hypothesis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hypothesis {
-    /// Its effects, as `name/form`.
+    /// Effects, as `name/form`.
     pub effects: Vec<String>,
-    /// Evidence of all its effects together against the model alone, not discounted by what they
-    /// explain of clean trials: a hypothesis with more of it than the one taken is not believed.
+    /// Evidence of all its effects together against the model alone, not discounted by their
+    /// improvement on clean trials: a hypothesis with more of it than the accepted one was refused
+    /// for another reason.
     pub evidence: f64,
-    /// How much more probable trials became by it that its fit had not seen, natural logarithm;
-    /// absent where it was not judged so.
+    /// Gain in the logarithm of the probability of held-out trials; absent where it was not judged
+    /// so.
     pub held_out: Option<f64>,
     /// Parameters.
     pub parameters: BTreeMap<String, Value>,
-    /// Whether it was taken.
+    /// True if it was accepted.
     pub taken: bool,
 }
 
 /// Errors on one trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialErrors {
-    /// The trial.
+    /// Name of the trial.
     pub trial: String,
-    /// Of the model as it is.
+    /// Errors of the given model.
     pub before: BTreeMap<String, f64>,
-    /// With the effects, fitted without this trial.
+    /// Errors with the effects, fitted without this trial.
     pub after: BTreeMap<String, f64>,
 }
 
-/// A manoeuvre that was sailed, measured and simulated with the recorded rudder.
+/// A recorded manoeuvre, measured and simulated with the recorded rudder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SailedManoeuvre {
-    /// The trial.
+    /// Name of the trial.
     pub trial: String,
-    /// As measured.
+    /// Measured values.
     pub measured: ManoeuvreMetrics,
-    /// Of the model as it is; absent where its simulation diverged.
+    /// Values of the given model; absent where its simulation diverged.
     pub before: Option<ManoeuvreMetrics>,
-    /// With the effects, fitted without this trial.
+    /// Values with the effects, fitted without this trial.
     pub after: Option<ManoeuvreMetrics>,
 }
 
-/// The residual of an acceleration over a trial: what must be added to what the model gives, as the
-/// filter's smoother finds it.
+/// Residual of an acceleration over a trial: the addition to the model's acceleration by the
+/// filter's smoother.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResidualSeries {
-    /// The trial.
+    /// Name of the trial.
     pub trial: String,
     /// `u`, `v`, `r` or `p`.
     pub channel: String,
     /// Time, s.
     pub t_s: Vec<f64>,
-    /// Of the model as it is, m/s2 or rad/s2.
+    /// Residual of the given model, m/s2 or rad/s2.
     pub before: Vec<f64>,
-    /// With the effects.
+    /// Residual with the effects, m/s2 or rad/s2.
     pub after: Vec<f64>,
-    /// Two standard deviations of what noise alone would show.
+    /// Two standard deviations of the smoother for noise alone.
     pub band: Vec<f64>,
-    /// The recorded variable that explains most of `before`, such as `psi` or `delta`, and its
-    /// values.
+    /// Recorded variable that explains most of `before`, such as `psi` or `delta`.
     pub against: String,
-    /// Its values, SI.
+    /// Values of that variable, SI.
     pub variable: Vec<f64>,
 }
 
-/// How much of an acceleration nothing explains.
+/// Level of the unexplained part of an acceleration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DiscrepancyLevel {
     /// `u`, `v`, `r` or `p`.
     pub channel: String,
-    /// Standard deviation that the model brings with it from the trials it was fitted on, m/s2 or
-    /// rad/s2; absent where it says nothing of it.
+    /// Standard deviation by the model's calibration, m/s2 or rad/s2; absent for a model without
+    /// one.
     pub expected: Option<f64>,
-    /// On these trials, of the model as it is.
+    /// Level on these trials of the given model.
     pub before: f64,
-    /// With the effects.
+    /// Level with the effects.
     pub after: f64,
 }

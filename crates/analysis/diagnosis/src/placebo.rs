@@ -1,8 +1,8 @@
-//! Whether an effect that follows a record follows it: the record of another time, or of another
-//! direction, must not do as well.
+//! Placebo test of an effect that depends on a record: the record of another time, or of another
+//! direction, must not explain the trials as well.
 //!
-//! A record that hardly varies is itself at any other time, and can be told from no other by that.
-//! What comes from a direction is told by the headings of the trials: from abeam of where it came,
+//! A record that hardly varies is nearly the same at any other time, so that this is no test. A
+//! directional influence is tested by the headings of the trials: from abeam of its true direction,
 //! it must explain less.
 
 use std::f64::consts::FRAC_PI_2;
@@ -17,11 +17,11 @@ use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use sistership_identification::refine::RefineError;
 
-/// Whether the effect that came last follows a record from outside, and placebos explain the trials
-/// better.
+/// Returns true if the last effect depends on a recorded external signal, and placebos explain the
+/// trials better.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn is_placebo(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
@@ -31,18 +31,18 @@ pub(super) fn is_placebo(
         return Ok(false);
     };
     let again = |search: &HypothesisSearch<'_>| {
-        // A hypothesis is judged at the level where it was seen or below.
+        // A hypothesis is judged at the level of its screening or the one below.
         let there = search.bare(&base.taken, &search.levels[..=judged.level])?;
         Ok(search.judge(&there, last, judged.level)?.log_evidence)
     };
     exceeds(search, judged.log_evidence, &again)
 }
 
-/// Whether effects explain the trials better, by a margin, than with any placebo of the records
-/// from outside.
+/// Returns true if effects explain the trials better, by a margin, than with any placebo of the
+/// external records.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn follow_records(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
@@ -55,13 +55,14 @@ pub(super) fn follow_records(
     Ok(!exceeds(search, judged.log_evidence - margin, &again)?)
 }
 
-/// Whether with any of the placebos the evidence is more than so much.
+/// Returns true if the evidence with any of the placebos is above a limit.
 fn exceeds(
     search: &HypothesisSearch<'_>,
     limit: f64,
     evidence: &dyn Fn(&HypothesisSearch<'_>) -> Result<f64, RefineError>,
 ) -> Result<bool, RefineError> {
     for placebo in placebos(search.trials) {
+        // Calibration and levels stay those of the true records; only the trials differ.
         let trials: Vec<&Trial> = placebo.iter().collect();
         if evidence(&HypothesisSearch { trials: &trials, ..search.clone() })? > limit {
             return Ok(true);
@@ -70,7 +71,7 @@ fn exceeds(
     Ok(false)
 }
 
-/// The trials with records of another time where these vary, or else of another direction.
+/// Trials with records of another time where these vary, or else of another direction.
 fn placebos(trials: &[&Trial]) -> Vec<Vec<Trial>> {
     let all = |change: &dyn Fn(&Trial) -> Trial| trials.iter().map(|trial| change(trial)).collect();
     if varies(trials) {
@@ -80,7 +81,7 @@ fn placebos(trials: &[&Trial]) -> Vec<Vec<Trial>> {
     }
 }
 
-/// Whether what comes from outside differs from itself at other times by enough.
+/// Returns true if the external records differ from themselves at other times by enough.
 fn varies(trials: &[&Trial]) -> bool {
     let (mut differs, mut is) = (0.0, 0.0);
     for share in THRESHOLDS.effect.placebo_shifts {
@@ -95,16 +96,17 @@ fn varies(trials: &[&Trial]) -> bool {
             is += own.iter().map(|own| square(*own)).sum::<f64>();
         }
     }
+    // Two independent records of variance s^2 differ by 2 s^2 on average.
     differs > 2.0 * THRESHOLDS.effect.least_variation.powi(2) * is
 }
 
-/// The pairs of channels that say a strength and where it comes from.
+/// Pairs of channels of a strength and the direction from which it comes.
 const WINDS: [(Channel, Channel); 2] = [
     (Channel::WindSpeed, Channel::WindFrom),
     (Channel::ApparentWindSpeed, Channel::ApparentWindFrom),
 ];
 
-/// A wind's components, over time.
+/// Components of a wind over time.
 fn components(trial: &Trial) -> Vec<[f64; 2]> {
     let of = |(speed, from): &(Channel, Channel)| {
         let (speed, from) = (trial.channel(*speed)?, trial.channel(*from)?);
@@ -114,7 +116,7 @@ fn components(trial: &Trial) -> Vec<[f64; 2]> {
     WINDS.iter().find_map(of).unwrap_or_default()
 }
 
-/// A trial with its records of where something comes from turned by an angle, rad.
+/// Trial with its recorded directions turned by an angle, rad.
 fn turned(trial: &Trial, angle_rad: f64) -> Trial {
     let mut trial = trial.clone();
     for (_, from) in WINDS {
@@ -125,7 +127,7 @@ fn turned(trial: &Trial, angle_rad: f64) -> Trial {
     trial
 }
 
-/// A trial with its records of what is outside shifted by a share of it; their ends are joined.
+/// Trial with its external records shifted by a share of its length; their ends are joined.
 fn shifted(trial: &Trial, share: f64) -> Trial {
     let mut trial = trial.clone();
     for channel in OUTSIDE {

@@ -1,5 +1,5 @@
-//! The coefficients once more, with the effects in place: what they had taken over from what was
-//! missing they give back.
+//! Final fit of the coefficients with the effects in place: they no longer compensate for missing
+//! effects.
 
 use sistership_model::effect::{AppliedEffect, AsTerms};
 use sistership_model::law::Law;
@@ -18,18 +18,18 @@ use sistership_identification::refine::{
 use sistership_numerics::{Moments, RidgeChoice};
 use sistership_priors::transfer::approach_of;
 
-/// A model with effects, on all trials and without each of them.
+/// A model with effects, fitted on all trials and without each of them.
 pub(super) struct Refit {
-    /// How its coefficients were fitted; none where they are as they were.
+    /// Method of the fit of its coefficients; none where they are unchanged.
     pub how: Option<String>,
     pub all: Model,
     pub without: Vec<Model>,
 }
 
-/// What is weighed: the coefficients as they are; fitted with the effects as they were found; and,
-/// where the effects on the ship are linear, fitted together with them. Regressions read the trials
-/// as instruments would have shown them that do not err. Beside a learned correction the
-/// coefficients stay as they are: it was trained on what these leave, and would not suit others.
+/// Alternatives of the final fit: the coefficients unchanged; fitted with the effects as they were
+/// found; and, where the effects on the ship are linear, fitted together with them. Regressions use
+/// trials corrected for the errors of their instruments. With a learned correction the coefficients
+/// stay unchanged: it was trained on their remainder, and would not suit others.
 pub(super) fn refits(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -54,7 +54,7 @@ pub(super) fn refits(
     Ok(std::iter::once(found).chain(fitted).collect())
 }
 
-/// The trials but one; of a single one, itself.
+/// All trials but one; a single trial is itself.
 fn others<'a>(request: &Request<'a>, but: usize) -> Vec<&'a Trial> {
     let count = request.trials.len();
     (0..count)
@@ -63,7 +63,7 @@ fn others<'a>(request: &Request<'a>, but: usize) -> Vec<&'a Trial> {
         .collect()
 }
 
-/// The model with effects as the other trials ask for them.
+/// The model with effects estimated on the other trials.
 fn without(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -91,10 +91,10 @@ fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
     })
 }
 
-/// Coefficients and effects on the ship fitted together, by the weak form and by trajectories. Of
-/// these effects nothing is taken from the diagnosis but which they are. A trial left out has a
-/// part in the point about which trajectories are linearised, in the strength of the weak form that
-/// they start from, and in how records are put right, but in no residual.
+/// Coefficients and effects on the ship fitted together, by the weak form and by trajectories. Only
+/// the selection of these effects is taken from the diagnosis. A held-out trial affects the point
+/// about which trajectories are linearised, the strength of the initial weak form, and the
+/// correction of records, but no residual.
 fn jointly(request: &Request<'_>, found: &Refit, restart_s: f64) -> Vec<Refit> {
     let (ship, instruments) = split(&found.all);
     let Ok(Some(terms)) = AsTerms::new(&ship, request.law) else { return Vec::new() };
@@ -107,6 +107,7 @@ fn jointly(request: &Request<'_>, found: &Refit, restart_s: f64) -> Vec<Refit> {
     let one = |Alternative { label, all, without }: Alternative| Refit {
         how: Some(format!("together with the effects: {label}")),
         all: back(all, instruments.clone()),
+        // Errors of instruments stay those that the diagnosis estimated without the trial.
         without: without
             .into_iter()
             .zip(&found.without)
@@ -124,6 +125,7 @@ fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -
         THRESHOLDS.refit.difference * particulars::value(&model.particulars, "lpp_m")? / speed_m_s;
     let of = |trial: &&Trial| trial_moments(&blocks, trial, Some(difference_s)).ok();
     let each: Vec<Vec<Moments>> = trials.iter().map(of).collect::<Option<_>>()?;
+    // Moments of the trials are merged in order, so that the result is reproducible.
     let mut total = each.first()?.clone();
     for moments in &each[1..] {
         total.iter_mut().zip(moments).for_each(|(sum, more)| sum.merge(more));
@@ -138,7 +140,7 @@ fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -
         let quantity = model.coefficients.get_mut(&name)?;
         (quantity.value, quantity.standard_error) = (fitted.value, Some(fitted.standard_error));
     }
-    // What was known of the coefficients before is not known of these.
+    // The earlier uncertainty does not apply to the new coefficients.
     (model.uncertainty, model.posterior) = (None, None);
     Some(model)
 }

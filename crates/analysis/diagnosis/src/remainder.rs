@@ -1,5 +1,5 @@
-//! What a hypothesis leaves: stretches of a trial in which the prediction errors are larger or
-//! steadier than noise.
+//! Unexplained remainder of a hypothesis: segments of a trial in which the prediction errors are
+//! larger or steadier than noise.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,12 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Discrepancies, Linearised, errors, responses};
 use sistership_identification::refine::RefineError;
 
-/// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is
-/// expected; the largest first. `effects` are the parts of the parameters that the laws of the
-/// effects leave open.
+/// Returns segments that the columns at `parameters` leave unexplained, under the expected
+/// discrepancy; the largest first. `effects` are the errors of the parameters due to the laws of
+/// the effects.
 ///
 /// # Errors
-/// Names a channel of which no noise is known.
+/// Returns an error if the noise of a channel is unknown.
 pub(super) fn unexplained(
     workspace: &LinearisedTrials<'_>,
     discrepancies: &Discrepancies,
@@ -35,10 +35,10 @@ pub(super) fn unexplained(
     Ok(found)
 }
 
-/// The same of the parts of one trial.
+/// Returns the unexplained segments of the parts of one trial.
 ///
 /// # Errors
-/// Names a channel of which no noise is known.
+/// Returns an error if the noise of a channel is unknown.
 pub(super) fn in_trial(
     (workspace, trial): (&LinearisedTrials<'_>, &str),
     parts: &[Linearised],
@@ -56,10 +56,10 @@ pub(super) fn in_trial(
     Ok(sums.into_iter().flat_map(of).collect())
 }
 
-/// The largest that any stretch of a trial leaves, by channel.
+/// Returns the largest remainder of any segment of a trial, by channel.
 ///
 /// # Errors
-/// Names a channel of which no noise is known.
+/// Returns an error if the noise of a channel is unknown.
 pub(super) fn largest(
     workspace: &LinearisedTrials<'_>,
     parts: &[Linearised],
@@ -71,14 +71,14 @@ pub(super) fn largest(
     Ok(sums.into_iter().map(of).collect())
 }
 
-/// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
+/// Sums of the prediction errors of a channel over blocks of a part of a trial, in standard
+/// deviations.
 struct BlockSums<'a> {
     part: &'a Linearised,
-    /// Samples in a block.
+    /// Number of readings in a block.
     size: usize,
     sums: Vec<f64>,
-    /// What the effects found may leave of what they move these sums by: their laws are not exact.
-    /// Empty where that is not asked.
+    /// Sums due to the errors of the laws of the effects found. Empty where they are not needed.
     moved: Vec<f64>,
 }
 
@@ -92,6 +92,7 @@ fn sums<'a>(
     let mut all = Vec::new();
     for part in parts {
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
+        // The filter reads one of `every` samples: the size of a block is in readings.
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
         let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies)?;
         let moved = match effects {
@@ -104,6 +105,7 @@ fn sums<'a>(
             .enumerate()
             .filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
         {
+            // Errors are in the order of readings, and by channel within each.
             let of = |all: &[f64]| {
                 block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size)
             };
@@ -115,6 +117,7 @@ fn sums<'a>(
 
 fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {
     let values: Vec<f64> = values.collect();
+    // Divided by the root of the count: the sum of a block of white errors has variance one.
     values
         .chunks(size)
         .map(|block| block.iter().sum::<f64>() / (block.len() as f64).sqrt())
@@ -136,14 +139,16 @@ impl BlockSums<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// Runs of blocks above the limit, each as one stretch.
+    /// Runs of blocks above the limit, each as one segment.
     fn stretches(&self, trial: &str, channel: Channel, limit: f64) -> Vec<Unexplained> {
         let mut found: Vec<(usize, usize)> = Vec::new();
         let is_large = |&from: &usize| {
             let blocks = from..from + THRESHOLDS.remainder.blocks;
+            // The allowance for the laws' errors is added to the limit in squares.
             rms(&self.sums[blocks.clone()]) > limit.hypot(rms(&self.moved[blocks]))
         };
         for from in self.starts().filter(is_large) {
+            // Overlapping windows above the limit form one run.
             match found.last_mut().filter(|(_, end)| from <= *end) {
                 Some((_, end)) => *end = from + THRESHOLDS.remainder.blocks,
                 None => found.push((from, from + THRESHOLDS.remainder.blocks)),
@@ -162,7 +167,7 @@ impl BlockSums<'_> {
         found.into_iter().map(|run| stretch(self.trimmed(run, limit))).collect()
     }
 
-    /// A run without the blocks at its ends that came in only beside large ones.
+    /// Trims blocks at the ends of a run that are included only because of large neighbours.
     fn trimmed(&self, (mut from, mut to): (usize, usize), limit: f64) -> (usize, usize) {
         let is_small = |block: usize| self.sums[block].abs() < limit;
         while to - from > THRESHOLDS.remainder.blocks && is_small(from) {

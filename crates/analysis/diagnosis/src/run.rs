@@ -1,4 +1,4 @@
-//! The whole diagnosis.
+//! Steps of a diagnosis.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,8 @@ use sistership_model::trial::Channel;
 /// Diagnoses a model on trials.
 ///
 /// # Errors
-/// Says which setting, trial or channel is at fault.
+/// Returns an error that names the setting, trial or channel at fault, or one if `progress`
+/// cancels.
 pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
     if request.trials.is_empty() {
@@ -38,6 +39,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnos
     let choice = choose(&search, &base, request.settings)?;
     step(progress, 0.8, "what remains")?;
     let selected = selected(request, (&search, &base), choice, progress)?;
+    // The filtered columns are large, and are not needed any more.
     drop(base);
     answer(request, &search, selected, progress)
 }
@@ -59,7 +61,7 @@ fn answer(
     written(request, first, selected, (fitted, named))
 }
 
-/// The model that goes with what was found, and its errors.
+/// The model with the effects found, and its errors.
 struct FittedModel {
     errors: SimulatedErrors,
     taken: Refit,
@@ -78,7 +80,7 @@ fn fitted(
     Ok(FittedModel { errors, taken })
 }
 
-/// What has a name.
+/// Named effects, with the resulting model and remarks.
 struct NamedEffects {
     found: Vec<Found>,
     next_trial: Option<NextTrial>,
@@ -95,6 +97,7 @@ fn named(
     let SelectedEffects { choice, settled, refused, .. } = selected;
     let of_all = choice.best().log_evidence - choice.alone.log_evidence;
     let (mut found, next_trial) = apart(request, &settled.search, &settled.best, of_all)?;
+    // A model is given only if held-out errors decrease.
     let is_better = !found.is_empty() && fitted.errors.change < 0.0;
     let model = is_better.then(|| fitted.taken.all.clone());
     found.iter_mut().for_each(|found| {
@@ -112,7 +115,7 @@ fn verdict(remaining: &[Unexplained], found: &[Found]) -> Verdict {
     }
 }
 
-/// All of it as one document.
+/// Assembles the result.
 fn written(
     request: &Request<'_>,
     first: &HypothesisSearch<'_>,
@@ -153,7 +156,7 @@ fn written(
     })
 }
 
-/// What the instruments scatter, by channel.
+/// Noise of the instruments, by channel, SI.
 fn deviations(workspace: &LinearisedTrials<'_>) -> BTreeMap<String, f64> {
     let one = |(channel, instrument): (&Channel, &Instrument)| {
         (channel.name().to_owned(), instrument.deviation)

@@ -1,5 +1,5 @@
-//! What a diagnosis says: of the effects found, of everything that was tried, and of how it came
-//! about.
+//! Statements of a diagnosis: on the effects found, on all hypotheses that were judged, and on the
+//! method.
 
 use std::collections::BTreeMap;
 
@@ -18,8 +18,8 @@ use super::values::{acts_on, own_covariance, values};
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
-/// The effects found with those they are confounded with, the strongest first, and the trial that
-/// would separate them.
+/// Effects found with those they are confounded with, the strongest first, and the trial that would
+/// separate them.
 pub(super) fn apart(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -31,6 +31,7 @@ pub(super) fn apart(
         .collect::<Result<_, _>>()?;
     let mut next = None;
     if !all.is_empty() {
+        // Filtered again at the final estimates, at the level of the hypothesis alone.
         let level = best.level.min(search.levels.len() - 1);
         let base = search.base(&best.candidates, &search.levels[level..=level])?;
         let (columns, others) = (base.workspace.columns(), search.others(&best.candidates));
@@ -44,8 +45,8 @@ pub(super) fn apart(
     Ok((all, next))
 }
 
-/// `of_all` is the evidence of all effects together where the model alone may have any discrepancy:
-/// none has more.
+/// Report of an effect. `of_all` is the evidence of all effects together where the model alone may
+/// have any discrepancy: no single one has more.
 fn found(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -68,7 +69,7 @@ fn found(
     })
 }
 
-/// The parameters of an effect as a model carries them, where they are others than those found.
+/// Parameters of an effect in a model, where they differ from those found.
 pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> {
     let carried =
         model.effects.iter().find(|own| own.name == found.name && own.form.name == found.form);
@@ -82,10 +83,10 @@ pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> 
     if moved { all.map(one).collect() } else { BTreeMap::new() }
 }
 
-/// Everything that was judged where it stands, the most probable first.
+/// Returns the hypotheses that were judged at their estimates, the most probable first.
 ///
 /// # Errors
-/// Says that the information is not positive.
+/// Returns an error if the information is not positive.
 pub(super) fn hypotheses(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -115,7 +116,8 @@ fn parameters(request: &Request<'_>, judged: &JudgedHypothesis) -> BTreeMap<Stri
     (0..judged.candidates.len()).flat_map(of).collect()
 }
 
-/// How trials were left out; `refit` is how the coefficients were fitted, where they were.
+/// Description of the held-out trials; `refit` is the method by which the coefficients were fitted,
+/// if they were.
 pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
     let fitted = match request.trials.len() {
         1 => {
@@ -133,7 +135,7 @@ pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
     }
 }
 
-/// What is said of effects that were refused, and of the model that is given.
+/// Remarks on effects that were refused, and on the resulting model.
 pub(super) fn remarks(refused: &[String], is_better: bool, found: &[Found]) -> Vec<String> {
     let one = |name: &String| {
         format!(

@@ -1,4 +1,4 @@
-//! Every effect alone beside those that are taken, by one linearisation.
+//! Screening of each effect, together with the accepted ones, by one linearisation.
 
 use rayon::prelude::*;
 
@@ -13,19 +13,19 @@ use sistership_identification::refine::RefineError;
 #[derive(Clone)]
 pub(super) struct ScreenedEffect {
     pub evidence: f64,
-    /// Discounted by the effect's false-alarm level.
+    /// Evidence discounted by the effect's false-alarm level.
     pub discounted: f64,
-    /// The level of the discrepancy at which it is most probable, among those of the base.
+    /// Level of the discrepancy at which it is most probable, among those of the base.
     pub level: usize,
     pub candidate: EffectCandidate,
 }
 
-/// The evidence of each other effect together with those taken, from one linearisation at the
-/// absence of all others, most probable first. One on which the trials' information is not positive
-/// is not among them.
+/// Returns the evidence of each other effect together with the accepted ones, from one
+/// linearisation at the absence of all others, most probable first. Effects on which the trials'
+/// information is not positive are omitted.
 ///
 /// # Errors
-/// Says that the information on the coefficients is not positive.
+/// Returns an error if the information on the coefficients is not positive.
 pub(super) fn screen(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
@@ -49,6 +49,8 @@ fn screened(
     others: &[&EffectCandidate],
     reduced: &[(usize, MarginalInformation)],
 ) -> Vec<ScreenedEffect> {
+    // Columns of the information: those of the accepted effects first, then each candidate's in
+    // turn.
     let kept: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
     let mut first = kept.len();
     let mut one = |candidate: &&EffectCandidate| {
@@ -80,7 +82,7 @@ fn screened(
     screened
 }
 
-/// The levels that are weighed for a candidate, with what the trials say there.
+/// Levels that are considered for a candidate, with the information of the trials at each.
 fn weighed<'r>(
     base: &FilteredBase<'_>,
     reduced: &'r [(usize, MarginalInformation)],
@@ -92,7 +94,8 @@ fn weighed<'r>(
     reduced.iter().filter(is_weighed).collect()
 }
 
-/// The discounted evidence of an effect beside those of a base, at the level at which it says most.
+/// Discounted evidence of an effect together with those of a base, at the level with the least
+/// evidence.
 fn discounted(
     reduced: &[&(usize, MarginalInformation)],
     (kept, taken): (&[usize], &[EffectCandidate]),
@@ -106,6 +109,6 @@ fn discounted(
         let given = reduced.given(kept, &others, own)?.discounted(discount);
         Some(given.estimate(&columns, &fixing)?.gain)
     };
-    // The least: what is said at one level only is not said.
+    // The least over levels: evidence at one level only is not reliable.
     reduced.iter().filter_map(gain).min_by(f64::total_cmp)
 }

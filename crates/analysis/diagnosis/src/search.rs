@@ -1,4 +1,5 @@
-//! Which hypothesis is most probable: every effect alone, then those together that improve on it.
+//! Search for the most probable hypothesis: each effect alone, then sets of effects that improve on
+//! it.
 
 use std::collections::BTreeMap;
 
@@ -19,15 +20,15 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Columns, Discrepancies, EffectCandidate, Gram, Nuisance};
 use sistership_identification::refine::RefineError;
 
-/// What stays the same while hypotheses change.
+/// Data that stay the same while hypotheses change.
 #[derive(Clone)]
 pub(super) struct HypothesisSearch<'a> {
     pub model: &'a Model,
     /// Its law, without effects.
     pub law: &'a Law,
-    /// The model as its own trials have calibrated it.
+    /// Model as its own trials have calibrated it.
     pub calibrated_model: CalibratedModel,
-    /// By how much, by column; and by how much before any hypothesis shifted it further.
+    /// Shift of the coefficients, by column; and that before any hypothesis shifted them further.
     pub calibrated: Vec<f64>,
     pub calibrated_at_first: Vec<f64>,
     pub terms: Terms,
@@ -35,24 +36,24 @@ pub(super) struct HypothesisSearch<'a> {
     pub nuisance: Vec<Nuisance>,
     pub fixed: CoefficientPrior,
     pub expected: Discrepancies,
-    /// Levels of the discrepancy that are weighed.
+    /// Levels of the discrepancy that are considered.
     pub levels: Vec<DiscrepancyFactor>,
     pub least_step_s: Option<f64>,
-    /// Forms of the library's effects that can be tried.
+    /// Forms of the library's effects that are candidates.
     pub listed: Vec<EffectCandidate>,
     /// Terms that the model lacks.
     pub freed: Vec<EffectCandidate>,
-    /// Forms that are tried as a change within a trial only.
+    /// Forms that are candidates for a change within a trial only.
     pub changing: Vec<EffectCandidate>,
     /// Logarithm of the prior probability of each form among all.
     pub log_priors: BTreeMap<String, f64>,
-    /// Whether anybody states odds. A library that does not is of before limits were told: its
-    /// diagnoses are as they were.
+    /// True if odds are stated. Libraries without odds have no detection limits, so that their
+    /// diagnoses stay reproducible.
     pub states_odds: bool,
 }
 
 impl<'a> HypothesisSearch<'a> {
-    /// The discrepancies at a level.
+    /// Discrepancies at a level.
     pub fn discrepancies(&self, level: DiscrepancyFactor) -> Discrepancies {
         let scaled = |d: &sistership_model::uncertainty::Discrepancy| {
             let (deviation, white) = (d.deviation * level.factor, d.white * level.factor);
@@ -61,10 +62,10 @@ impl<'a> HypothesisSearch<'a> {
         self.expected.iter().map(scaled).collect()
     }
 
-    /// Trials and columns made ready.
+    /// Prepares trials and columns.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn workspace(
         &self,
         candidates: Vec<EffectCandidate>,
@@ -73,15 +74,16 @@ impl<'a> HypothesisSearch<'a> {
         LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
     }
 
-    /// Effects that are taken with all others beside them, at some of the levels.
+    /// Filters accepted effects with all others as candidates, at some of the levels.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn base(
         &self,
         taken: &[EffectCandidate],
         levels: &[DiscrepancyFactor],
     ) -> Result<FilteredBase<'a>, RefineError> {
+        // A missing term that is already a nuisance column needs no column of its own.
         let has_column = |candidate: &&EffectCandidate| {
             !self.nuisance.iter().any(|n| n.name == candidate.form.file.name)
         };
@@ -91,10 +93,10 @@ impl<'a> HypothesisSearch<'a> {
         FilteredBase::new(taken, workspace, levels)
     }
 
-    /// Effects that are taken, with nothing beside them.
+    /// Filters accepted effects without candidates.
     ///
     /// # Errors
-    /// Names what the model or a trial lacks.
+    /// Returns an error that names what the model or a trial lacks.
     pub fn bare(
         &self,
         taken: &[EffectCandidate],
@@ -104,7 +106,7 @@ impl<'a> HypothesisSearch<'a> {
         FilteredBase::new(taken, self.workspace(taken.to_vec())?, levels)
     }
 
-    /// How far coefficients have given way to the trials that are diagnosed.
+    /// Shift of the coefficients by the trials that are diagnosed.
     pub fn given_way(&self) -> Vec<f64> {
         self.calibrated
             .iter()
@@ -113,13 +115,13 @@ impl<'a> HypothesisSearch<'a> {
             .collect()
     }
 
-    /// No form of an effect is tried any more.
+    /// Removes all forms of an effect from the candidates.
     pub fn forget(&mut self, effect: &str) {
         self.listed.retain(|candidate| candidate.effect != effect);
         self.freed.retain(|candidate| candidate.effect != effect);
     }
 
-    /// Every effect of which none is taken.
+    /// Candidates of effects that are not accepted.
     pub fn others(&self, taken: &[EffectCandidate]) -> Vec<&EffectCandidate> {
         let is_other = |candidate: &&EffectCandidate| {
             !taken.iter().any(|kept| kept.effect == candidate.effect)
@@ -127,11 +129,11 @@ impl<'a> HypothesisSearch<'a> {
         self.listed.iter().chain(&self.freed).filter(is_other).collect()
     }
 
-    /// The evidence for one of the effects judged together, given the others: discounted by its
-    /// false-alarm level on clean trials, after what the number of hypotheses costs.
+    /// Returns the evidence for one of the effects judged together, given the others: discounted by
+    /// its false-alarm level on clean trials, including the cost of the number of hypotheses.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Returns an error if the information is not positive.
     pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Result<f64, RefineError> {
         let candidate = &judged.candidates[place];
         let sizes: Vec<usize> =
@@ -144,6 +146,8 @@ impl<'a> HypothesisSearch<'a> {
         let of =
             |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
         let width = judged.grams.first().ok_or_else(not_positive)?.products.nrows();
+        // The other effects are integrated out before the discount, which belongs to this effect
+        // alone.
         let reduced = MarginalInformation::new(&Gram::sum(&judged.grams, width), &self.fixed)?
             .given(&others, &of(&others), &own)
             .ok_or_else(not_positive)?;
@@ -153,6 +157,8 @@ impl<'a> HypothesisSearch<'a> {
             .ok_or_else(not_positive)?;
         let linearised_at =
             judged.linearised_at[place].at.iter().zip(candidate.form.parameters.values());
+        // Relative to the likelihood at the absence of the effect, not at the point of
+        // linearisation.
         let absent = reduced.at(&linearised_at
             .map(|(at, parameter)| parameter.absent - at)
             .collect::<Vec<_>>()
@@ -160,17 +166,17 @@ impl<'a> HypothesisSearch<'a> {
         Ok(estimate.gain - absent + self.log_prior(candidate))
     }
 
-    /// The factor by which the information on an effect is discounted.
+    /// Divisor of the information on an effect.
     pub fn discount(&self, candidate: &EffectCandidate) -> f64 {
         discount(self.model.uncertainty.as_ref(), candidate, &self.listed, self.trials.len())
     }
 
-    /// Logarithm of the prior probability of an effect among all that can be tried.
+    /// Logarithm of the prior probability of an effect among all candidates.
     pub fn log_prior(&self, candidate: &EffectCandidate) -> f64 {
         self.log_priors.get(&candidate.key()).copied().unwrap_or_default()
     }
 
-    /// The prior odds of each effect against the model alone, all its forms together.
+    /// Prior odds of each effect against the model alone, all its forms together.
     pub fn prior_odds(&self) -> BTreeMap<String, f64> {
         let mut odds: BTreeMap<String, f64> = BTreeMap::new();
         for candidate in self.listed.iter().chain(&self.freed) {
@@ -179,25 +185,25 @@ impl<'a> HypothesisSearch<'a> {
         odds
     }
 
-    /// The effects of a base alone, at the level at which they are most probable.
+    /// Judges the effects of a base alone, at their most probable level.
     ///
     /// # Errors
-    /// Names what a trial lacks, or says that the information is not positive.
+    /// Returns an error that names what a trial lacks, or one if the information is not positive.
     pub fn alone(&self, base: &FilteredBase<'_>) -> Result<(usize, JudgedHypothesis), RefineError> {
         let outside = base.taken.iter().find(|candidate| is_from_outside(candidate));
         self.alone_at(base, &|level| level.is_weighed(outside))
     }
 
-    /// The same at some of the levels.
+    /// Judges the effects of a base alone at some of the levels.
     ///
     /// # Errors
-    /// Names what a trial lacks, or says that the information is not positive.
+    /// Returns an error that names what a trial lacks, or one if the information is not positive.
     pub fn alone_at(
         &self,
         base: &FilteredBase<'_>,
         is_weighed: &dyn Fn(DiscrepancyFactor) -> bool,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
-        // The same at each level, where what stands there is linearised once.
+        // The linearisation is the same at each level.
         let stand = match base.taken.is_empty() {
             true => None,
             false => Some(base.linearised(&self.calibrated_model, &base.taken)?),
@@ -210,22 +216,24 @@ impl<'a> HypothesisSearch<'a> {
         most_probable(levels.filter(|level| is_weighed(base.levels[*level].level)).map(at))
     }
 
-    /// A hypothesis beside the effects of a base, linearised anew where it stands until it stays
-    /// there. What one linearisation promises of a step is not believed before it has been seen
-    /// from where the step leads: an instrument's error multiplies the motion, so that promises are
-    /// many times too high, or of the wrong sign.
+    /// Judges a hypothesis together with the effects of a base, linearised again at its estimate
+    /// until it converges. The gain of a step by one linearisation is accepted only after a
+    /// linearisation at its end: an instrument's error multiplies the motion, so that such gains
+    /// are many times too high, or of the wrong sign.
     ///
     /// # Errors
-    /// Names what a trial lacks.
+    /// Returns an error that names what a trial lacks.
     pub fn judge(
         &self,
         base: &FilteredBase<'_>,
         candidate: &EffectCandidate,
         level: usize,
     ) -> Result<JudgedHypothesis, RefineError> {
+        // The first linearisation is at the absence of the new effect.
         let absent = [base.taken.as_slice(), std::slice::from_ref(candidate)].concat();
         let promised = self.at(base, &absent, level)?;
         let mut best = self.at(base, &promised.1.candidates, promised.0)?;
+        // The full step was worse than promised: half of it is evaluated too.
         if best.1.log_evidence < promised.1.log_evidence - THRESHOLDS.search.same {
             let less = self.at(base, &halfway(&absent, &promised.1.candidates), promised.0)?;
             best = if less.1.log_evidence > best.1.log_evidence { less } else { best };
@@ -233,6 +241,7 @@ impl<'a> HypothesisSearch<'a> {
         for _ in 1..THRESHOLDS.search.rounds {
             let next = self.at(base, &best.1.candidates, best.0)?;
             let gain = next.1.log_evidence - best.1.log_evidence;
+            // Ends when a round gains nothing, or hardly anything.
             best = if gain > 0.0 { next } else { break };
             if gain < THRESHOLDS.search.same {
                 break;
@@ -241,10 +250,10 @@ impl<'a> HypothesisSearch<'a> {
         Ok(best.1)
     }
 
-    /// This search with the model as a hypothesis teaches it.
+    /// Returns this search with the model calibrated by a hypothesis.
     ///
     /// # Errors
-    /// Says that the information is not positive.
+    /// Returns an error if the information is not positive.
     pub fn calibrated_by(
         &self,
         request: &Request<'_>,
@@ -254,6 +263,7 @@ impl<'a> HypothesisSearch<'a> {
         let total =
             Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
         let cross = total.products.view((1, 1 + size), (size, total.products.ncols() - 1 - size));
+        // The right side at the estimate of the effects: b - G_ce (x - x0).
         let right = total.products.view((1, 0), (size, 1)).column(0)
             - cross * DVector::from_vec(judged.moved());
         let known = CoefficientPrior {
@@ -277,7 +287,7 @@ impl<'a> HypothesisSearch<'a> {
         })
     }
 
-    /// Where candidates stand, at a level or the one below, whichever is more probable.
+    /// Judges candidates at their values, at a level or the one below, whichever is more probable.
     fn at(
         &self,
         base: &FilteredBase<'_>,
@@ -288,11 +298,12 @@ impl<'a> HypothesisSearch<'a> {
         let at = |level: usize| {
             Ok((level, self.judged((base, level), candidates, stand.grams(level)?)?))
         };
+        // A lower level may become more probable as effects explain part of the discrepancy.
         let is_weighed = |level: &usize| base.levels[*level].level.is_weighed(candidates.last());
         most_probable((level.saturating_sub(1)..=level).filter(is_weighed).map(at))
     }
 
-    /// Candidates at a level of a base by the products of each trial.
+    /// Judges candidates at a level of a base by the products of each trial.
     fn judged(
         &self,
         (base, level): (&FilteredBase<'_>, usize),
@@ -319,10 +330,10 @@ impl<'a> HypothesisSearch<'a> {
     }
 }
 
-/// The most probable of a hypothesis at some levels.
+/// Returns the most probable of a hypothesis at some levels.
 ///
 /// # Errors
-/// The first of theirs, or that no level is weighed.
+/// Returns the first error of a level, or one if no level is considered.
 fn most_probable(
     all: impl Iterator<Item = Result<(usize, JudgedHypothesis), RefineError>>,
 ) -> Result<(usize, JudgedHypothesis), RefineError> {

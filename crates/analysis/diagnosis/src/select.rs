@@ -1,5 +1,5 @@
-//! Which effects are taken in the end: those that are the same at all times, or none where changes
-//! within trials explain everything.
+//! Selection of the final effects: those that are constant in time, or none where changes within
+//! trials explain everything.
 
 use super::Request;
 use super::changes::{changes, open};
@@ -16,23 +16,23 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Discrepancies, EffectCandidate};
 use sistership_identification::refine::{Progress, RefineError};
 
-/// What is taken in the end.
+/// Final selection.
 pub(super) struct SelectedEffects<'a> {
     pub choice: EffectChoice,
     pub settled: ConvergedChoice<'a>,
     pub remaining: Vec<Unexplained>,
     pub changes: Vec<Change>,
-    /// Names of effects that are not the same at all times.
+    /// Names of effects that are not constant in time.
     pub refused: Vec<String>,
 }
 
-/// The effects taken, as far as each is the same at all times where something remains unexplained.
-/// Where one is not, the choice is made again without it: it may have stood before another. Whether
-/// changes within trials are all that there is, is asked first: choosing again takes as long as
-/// everything before. `base` is that of the first search without effects.
+/// Selects the effects that are constant in time, where something remains unexplained. Where one is
+/// not, the search is repeated without it, as it may have displaced another. Before that, changes
+/// within trials as the only cause are considered, since a repeated search takes as long as all
+/// steps before. `base` is that of the first search without effects.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn selected<'a>(
     request: &Request<'_>,
     (first, base): (&HypothesisSearch<'a>, &FilteredBase<'a>),
@@ -47,6 +47,7 @@ pub(super) fn selected<'a>(
         if is_asked && !state.remaining.is_empty() && !state.named().is_empty() {
             told(progress, "whether something changed within trials instead")?;
             let steady = state.names(|place| !varying.contains(&place));
+            // All accepted effects only resembled the changes.
             if let Some((state, changes)) = only_changes(request, first, &choice, &steady)? {
                 refused.extend(choice.best().candidates.iter().map(|one| one.effect.clone()));
                 choice.taken = None;
@@ -58,6 +59,7 @@ pub(super) fn selected<'a>(
             let changes = state.changes(request, first)?;
             return Ok(state.with(choice, changes, refused));
         }
+        // Refused effects are removed from the search before it is repeated.
         let names = state.names(|place| varying.contains(&place)).into_iter();
         refused.extend(names.inspect(|name| search.forget(name)));
         told(progress, "effects without those that only resemble what is missing")?;
@@ -65,7 +67,7 @@ pub(super) fn selected<'a>(
     }
 }
 
-/// Effects and coefficients where both stay, and what they leave.
+/// Converged effects and coefficients, with their remainder.
 struct LeftState<'a> {
     settled: ConvergedChoice<'a>,
     remaining: Vec<Unexplained>,
@@ -86,7 +88,7 @@ impl<'a> LeftState<'a> {
         wanted.map(|(_, candidate)| candidate.effect.clone()).collect()
     }
 
-    /// The effects that are not the same at all times, where something remains.
+    /// Indices of the effects that are not constant in time, where something remains unexplained.
     fn varying(&self, margin: f64) -> Result<Vec<usize>, RefineError> {
         let ConvergedChoice { search, base, best } = &self.settled;
         match self.remaining.is_empty() {
@@ -95,7 +97,7 @@ impl<'a> LeftState<'a> {
         }
     }
 
-    /// Changes within trials beside what is taken.
+    /// Changes within trials in addition to the accepted effects.
     fn changes(
         &self,
         request: &Request<'_>,
@@ -105,7 +107,8 @@ impl<'a> LeftState<'a> {
         changes(all, &self.remaining, request.settings.least_evidence)
     }
 
-    /// An effect that changes is not told as one that only resembles what is missing.
+    /// Completes the selection; an effect that changes is not listed as one that only resembles the
+    /// missing one.
     fn with(
         self,
         choice: EffectChoice,
@@ -122,8 +125,8 @@ fn told(progress: Progress<'_>, what: &str) -> Result<(), RefineError> {
     if progress(0.8, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
-/// The model without effects, where what it leaves is nothing but changes of one effect, by more
-/// evidence than that for the effects taken: these only resembled the changes. An effect that is
+/// Returns the model without effects, if its remainder consists only of changes of one effect, with
+/// more evidence than the accepted effects: these only resembled the changes. An effect that is
 /// `steady` is no change.
 fn only_changes<'a>(
     request: &Request<'_>,
@@ -132,6 +135,7 @@ fn only_changes<'a>(
     steady: &[String],
 ) -> Result<Option<(LeftState<'a>, Vec<Change>)>, RefineError> {
     let state = LeftState::of(choice.alone_settled(first, request)?)?;
+    // No more trials than that are examined for changes: the others would stay unexplained.
     if open(&state.remaining).len() > THRESHOLDS.changes.asked {
         return Ok(None);
     }
@@ -144,7 +148,7 @@ fn only_changes<'a>(
     Ok(is_all.then_some((state, changes)))
 }
 
-/// The discrepancy by which it is judged what remains.
+/// Discrepancy by which the remainder is judged.
 pub(super) fn expected(
     search: &HypothesisSearch<'_>,
     workspace: &LinearisedTrials<'_>,
@@ -155,7 +159,7 @@ pub(super) fn expected(
     }
 }
 
-/// By how much each column moved.
+/// Change of each column.
 pub(super) fn parameters(best: &JudgedHypothesis) -> Vec<f64> {
     best.shift.iter().copied().chain(best.moved()).collect()
 }
@@ -174,11 +178,12 @@ fn remaining(
     let changes: Vec<f64> = best.candidates.iter().flat_map(open).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
     let found = unexplained(workspace, expected, &parameters, &effects, clean)?;
+    // Without a calibration there are no coefficients of clean trials to date the remainder by.
     if clean.is_none() || found.is_empty() {
         return Ok(found);
     }
-    // Coefficients that gave way to what is missing have spread it over the trial: it is dated by
-    // those of clean trials.
+    // Coefficients that were shifted by the missing effect have spread it over the trial: its time
+    // is determined with those of clean trials.
     let given_way = search.given_way().into_iter().map(|change| -change);
     let as_calibrated: Vec<f64> =
         given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();

@@ -1,5 +1,4 @@
-//! The residual over time, for plots: before and after, against the variable that explains most of
-//! it.
+//! Residual over time, for plots: before and after, against the variable that explains most of it.
 
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
@@ -12,10 +11,10 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Columns, Smoothed, smoothed};
 use sistership_identification::refine::RefineError;
 
-/// The residuals of every trial: of the model as it is, and with the effects found.
+/// Returns the residuals of every trial: of the given model, and with the effects found.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn residuals(
     search: &HypothesisSearch<'_>,
     settled: &HypothesisSearch<'_>,
@@ -34,6 +33,7 @@ pub(super) fn residuals(
         search.trials,
         search.least_step_s,
     )?;
+    // The largest level constrains the smoothed discrepancy least.
     let level = search.levels[search.levels.len() - 1];
     let of = |workspace: &LinearisedTrials<'_>,
               trial: usize|
@@ -90,6 +90,7 @@ fn series(
 
 /// Sets each channel's series against the variable that explains most of it over all trials.
 fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
+    // Equal neighbours are removed first, so that fewer names are sorted.
     let mut channels: Vec<String> = all.iter().map(|series| series.channel.clone()).collect();
     channels.dedup();
     channels.sort_unstable();
@@ -122,7 +123,7 @@ fn pairs(trials: &[&Trial], series: &ResidualSeries, variable: Channel) -> Optio
     Some(values.into_iter().zip(series.before.iter().copied()).collect())
 }
 
-/// A variable at the times of a series; a heading within a turn.
+/// A variable at the times of a series; a heading within one turn.
 pub(super) fn recorded(
     trials: &[&Trial],
     series: &ResidualSeries,
@@ -137,7 +138,7 @@ pub(super) fn recorded(
     Some(series.t_s.iter().map(|t| turned(at(t))).collect())
 }
 
-/// The share of the variance of the second that lies between classes of the first.
+/// Share of the variance of the second value that lies between classes of the first.
 fn explained(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (first, last) = (pairs.first()?.0, pairs.last()?.0);
@@ -148,12 +149,13 @@ fn explained(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
         |part: &[(f64, f64)]| part.iter().map(|pair| pair.1).sum::<f64>() / part.len() as f64;
     let all = mean(&pairs);
     let total: f64 = pairs.iter().map(|pair| (pair.1 - all).powi(2)).sum();
+    // Classes of equal count, as the pairs are sorted by the variable.
     let classes = pairs.chunks(pairs.len().div_ceil(THRESHOLDS.series.classes));
     let between: f64 = classes.map(|class| class.len() as f64 * (mean(class) - all).powi(2)).sum();
     (total > 0.0).then(|| between / total)
 }
 
-/// How much of each acceleration nothing explains, before and after.
+/// Level of the unexplained part of each acceleration, before and after.
 pub(super) fn levels(
     search: &HypothesisSearch<'_>,
     workspace: &LinearisedTrials<'_>,

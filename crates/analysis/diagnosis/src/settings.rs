@@ -1,36 +1,35 @@
-//! What a diagnosis may be told.
+//! Settings of a diagnosis.
 
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Settings of a diagnosis; every one is kept with its report.
+/// Settings of a diagnosis; all are stored with its report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "DiagnosisSettings")]
 pub struct Settings {
-    /// Simulations that judge start anew every so often, s. Where absent, ten times the time in
-    /// which the ship sails its length.
+    /// Interval between restarts of the simulations that judge, s. Default: ten times the time in
+    /// which the ship covers its length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
-    /// Shortest interval between samples that are used, s. Where absent, a fiftieth of the time in
-    /// which the ship sails its length.
+    /// Shortest interval between samples that are used, s. Default: a fiftieth of the time in which
+    /// the ship covers its length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub least_step_s: Option<f64>,
-    /// How far a published coefficient may be from the truth, as a share of its value, where the
-    /// model does not say what its own trials leave open.
+    /// Relative error of a published coefficient, as a share of its value, for a model without the
+    /// uncertainty of its own trials.
     #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
     pub slack: f64,
-    /// Least evidence (natural logarithm, after what the number of hypotheses costs) for an effect
-    /// to be named.
+    /// Least evidence (natural logarithm, including the cost of the number of hypotheses) for an
+    /// effect to be named.
     #[schemars(range(min = 0))]
     pub least_evidence: f64,
-    /// Most effects that are named together.
+    /// Largest number of effects that are named together.
     #[schemars(range(min = 1, max = 4))]
     pub most_effects: usize,
-    /// Odds that trials have an effect, by its name, before they are looked at; where absent, those
-    /// of the library.
+    /// Prior odds that trials have an effect, by its name. Default: those of the library.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub prior_odds: BTreeMap<String, f64>,
 }
@@ -49,10 +48,10 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the numbers.
+    /// Checks the values.
     ///
     /// # Errors
-    /// Names the field and what it may be.
+    /// Returns the field and its allowed values if one is invalid.
     pub fn check(&self) -> Result<(), (String, String)> {
         let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
         let positive =

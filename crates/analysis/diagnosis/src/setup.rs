@@ -1,5 +1,5 @@
-//! From a request to a search: which forms are tried, what the coefficients are left, which
-//! discrepancy is expected.
+//! Preparation of a search from a request: candidate forms, prior of the coefficients, and expected
+//! discrepancy.
 
 use std::sync::Arc;
 
@@ -19,8 +19,8 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::{Columns, Discrepancies, EffectCandidate};
 use sistership_identification::refine::RefineError;
 
-/// The forms that can be tried on trials: those whose channels every trial has, of effects that the
-/// model does not carry, but for what its instruments are known to do.
+/// Candidate forms on trials: those whose channels every trial has, of effects that the model does
+/// not carry, except known errors of its instruments.
 pub(super) fn listed(
     model: &Model,
     law: &Law,
@@ -48,7 +48,7 @@ pub(super) fn listed(
     effects.iter().filter(carried).flat_map(of).collect()
 }
 
-/// The forms that are tried as a change within a trial only.
+/// Forms that are candidates for a change within a trial only.
 fn changing(request: &Request<'_>) -> Vec<EffectCandidate> {
     let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
         let can =
@@ -59,7 +59,7 @@ fn changing(request: &Request<'_>) -> Vec<EffectCandidate> {
     request.effects.iter().flat_map(of).collect()
 }
 
-/// The terms that the library's grammars spell.
+/// Candidate terms of the library's grammars.
 fn freed(request: &Request<'_>) -> Vec<EffectCandidate> {
     let terms = lacked(request.model, request.law, request.effects, request.trials);
     terms.iter().map(|(effect, form)| EffectCandidate::absent(effect, form)).collect()
@@ -70,12 +70,15 @@ fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
         |channel: &_| trials.iter().all(|trial: &&Trial| trial.channel(*channel).is_some());
     let somewhere =
         |channel: &_| trials.iter().any(|trial: &&Trial| trial.channel(*channel).is_some());
+    // Some forms apply only to laws without roll.
     let rolls = form.file.only_without_roll && law.has_roll();
     form.file.needs.iter().all(everywhere) && !form.file.unless.iter().any(somewhere) && !rolls
 }
 
+/// Prepares a search.
+///
 /// # Errors
-/// Names what the model or a trial lacks.
+/// Returns an error that names what the model or a trial lacks.
 pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, RefineError> {
     let listed = listed(request.model, request.law, request.effects, request.trials);
     let (freed, changing) = (freed(request), changing(request));
@@ -122,8 +125,8 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
     Ok(search)
 }
 
-/// The search with a level of the discrepancy below what calibration saw, where something from
-/// outside is recorded: a part of what calibration left may have come of that.
+/// Adds a level of the discrepancy below that of the calibration, where an external influence is
+/// recorded: part of the calibration's discrepancy may be due to it.
 pub(super) fn with_level_below(mut search: HypothesisSearch<'_>) -> HypothesisSearch<'_> {
     if search.model.uncertainty.is_some() && search.listed.iter().any(is_from_outside) {
         search.levels.insert(0, known(THRESHOLDS.discrepancy.factor_below));
@@ -142,11 +145,12 @@ fn unknown(factor: f64) -> DiscrepancyFactor {
     DiscrepancyFactor { factor, log_prior: 0.0 }
 }
 
-/// The discrepancy that the model brings with it, or the least that is weighed.
+/// Discrepancy of the model's calibration, or the least that is considered.
 fn expected(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
 ) -> Result<Discrepancies, RefineError> {
+    // Scales and axes alone are needed, so that the trials are not sampled.
     let columns = Columns::default();
     let workspace =
         LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;

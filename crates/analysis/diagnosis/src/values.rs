@@ -1,4 +1,4 @@
-//! Parameters with their standard errors, and the effect as a model carries it.
+//! Parameters with their standard errors, and applied effects of a model.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use super::outcome::Value;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::EffectCandidate;
 
-/// The parameters of a candidate and what follows from them, by the delta method; `covariance` is
-/// of its parameters.
+/// Parameters of a candidate and quantities that follow from them, by the delta method;
+/// `covariance` is that of its parameters.
 pub(super) fn values(
     candidate: &EffectCandidate,
     covariance: &DMatrix<f64>,
@@ -34,7 +34,9 @@ pub(super) fn values(
             })
         };
         let Some(value) = at(&candidate.at) else { continue };
+        // Central differences, with a step by the standard error.
         let slope = |i: usize| {
+            // The floor is for parameters without uncertainty.
             let step = THRESHOLDS.effect.report_step * error(i).max(1e-12);
             let (mut above, mut below) = (candidate.at.clone(), candidate.at.clone());
             (above[i], below[i]) = (above[i] + step, below[i] - step);
@@ -48,7 +50,7 @@ pub(super) fn values(
     values
 }
 
-/// The part of a joint covariance that belongs to a candidate.
+/// Part of a joint covariance that belongs to a candidate.
 pub(super) fn own_covariance(
     candidates: &[EffectCandidate],
     place: usize,
@@ -59,8 +61,8 @@ pub(super) fn own_covariance(
     covariance.view((start, start), (size, size)).into_owned()
 }
 
-/// A model with effects. Its coefficients stay: what the new trials move them by is fitted together
-/// with terms that the model does not have, and would be wrong without these.
+/// Model with effects. Its coefficients stay unchanged: their shift on the new trials was fitted
+/// together with terms that the model does not have, and would be wrong without these.
 pub(super) fn model_with(
     model: &Model,
     candidates: &[EffectCandidate],
@@ -94,7 +96,7 @@ fn applied(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> Ap
     }
 }
 
-/// Where a form acts, by what it does.
+/// Target of a form's action.
 pub(super) fn acts_on(candidate: &EffectCandidate) -> ActsOn {
     let form = &candidate.form;
     match (form.forces.is_empty(), form.measures.is_empty()) {

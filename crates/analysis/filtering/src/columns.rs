@@ -1,5 +1,4 @@
-//! What the columns stand for: coefficients that may move, and parameters of effects that may be
-//! missing.
+//! Meaning of the columns: free coefficients, and parameters of candidate effects.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,16 +8,16 @@ use sistership_model::coefficient::Axis;
 use sistership_model::effect::{Form, qualified};
 use sistership_model::law::Law;
 
-/// What a model has and may have a little different.
+/// A property of the model that may differ slightly from its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nuisance {
-    /// Its name, such as `Y_vvr`.
+    /// Name, such as `Y_vvr`.
     pub name: String,
-    /// What it stands for.
+    /// Meaning of the column.
     pub kind: NuisanceKind,
 }
 
-/// What a nuisance column stands for.
+/// Kind of a nuisance column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NuisanceKind {
     /// A coefficient of the model, on its axis.
@@ -26,13 +25,13 @@ pub enum NuisanceKind {
     /// A term that the model lacks, on its axis: its coefficient may differ from zero.
     Lacked(Axis),
     /// An entry of the virtual mass matrix, by the root of the product of its diagonal entries.
-    /// Only trials without an effect whose size is known could tell mass and forces apart: what
-    /// they leave open is the size of every force.
+    /// Only trials without an effect of known size could not separate mass and forces: they leave
+    /// the size of every force undetermined.
     Mass(Axis, Axis),
 }
 
 impl NuisanceKind {
-    /// The axis it acts on; of a mass, the first.
+    /// Axis of action; for a mass, the first one.
     pub fn axis(self) -> Axis {
         match self {
             Self::Own(axis) | Self::Lacked(axis) | Self::Mass(axis, _) => axis,
@@ -40,7 +39,7 @@ impl NuisanceKind {
     }
 }
 
-/// One form of an effect, with values of its parameters at which the columns are tangents.
+/// One form of an effect, with the values of its parameters at which the columns are tangents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectCandidate {
     /// The effect's name.
@@ -52,13 +51,13 @@ pub struct EffectCandidate {
 }
 
 impl EffectCandidate {
-    /// A form at the absence of its effect.
+    /// Creates a candidate at the absence of its effect.
     pub fn absent(effect: &str, form: &Arc<Form>) -> Self {
         let at = form.parameters.values().map(|parameter| parameter.absent).collect();
         Self { effect: effect.to_owned(), form: Arc::clone(form), at }
     }
 
-    /// How far each parameter is from the absence of the effect.
+    /// Distance of each parameter from the absence of the effect.
     pub fn change(&self) -> Vec<f64> {
         self.at
             .iter()
@@ -67,18 +66,18 @@ impl EffectCandidate {
             .collect()
     }
 
-    /// The names of its parameters in a dressed law.
+    /// Qualified names of its parameters in a law with applied effects.
     pub fn qualified(&self) -> impl Iterator<Item = String> + '_ {
         self.form.parameters.keys().map(|name| qualified(&self.effect, &self.form.file.name, name))
     }
 
-    /// `effect/form`, which is unique.
+    /// Unique key, `effect/form`.
     pub fn key(&self) -> String {
         format!("{}/{}", self.effect, self.form.file.name)
     }
 }
 
-/// What the columns stand for: coefficients first, then the parameters of each candidate.
+/// Meaning of the columns: coefficients first, then the parameters of each candidate.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Columns {
     /// Coefficients.
@@ -88,18 +87,18 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// How many there are.
+    /// Number of columns.
     pub fn len(&self) -> usize {
         self.nuisance.len()
             + self.candidates.iter().map(|candidate| candidate.at.len()).sum::<usize>()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is no column.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The places of a candidate's parameters.
+    /// Indices of a candidate's parameters among the columns.
     pub fn places(&self, candidate: usize) -> Range<usize> {
         let before: usize =
             self.candidates[..candidate].iter().map(|candidate| candidate.at.len()).sum();
@@ -107,17 +106,18 @@ impl Columns {
         start..start + self.candidates[candidate].at.len()
     }
 
-    /// The places of the columns in which a candidate shows: its own, or that of the coefficient
-    /// which it frees.
+    /// Indices of the columns that represent a candidate: its own, or that of the coefficient which
+    /// it frees.
     pub fn showing(&self, candidate: &EffectCandidate) -> Vec<usize> {
+        // A candidate that only frees a coefficient has no column of its own.
         let own = self.candidates.iter().position(|known| known.key() == candidate.key());
         let freed =
             || self.nuisance.iter().position(|nuisance| nuisance.name == candidate.form.file.name);
         own.map_or_else(|| freed().into_iter().collect(), |own| self.places(own).collect())
     }
 
-    /// The coefficients that a model has, terms of a grammar that it lacks, and the virtual masses
-    /// of its law.
+    /// Nuisance columns of a model: its coefficients, terms of a grammar that it lacks, and the
+    /// virtual masses of its law.
     pub fn nuisance(model: &Model, law: &Law, extra: &[(String, Axis)]) -> Vec<Nuisance> {
         let axis = |name: &str| law.term(name).ok().map(|(axis, _)| axis);
         let own = model
@@ -125,6 +125,7 @@ impl Columns {
             .keys()
             .filter_map(|name| Some((name.clone(), NuisanceKind::Own(axis(name)?))));
         let lacked = extra.iter().map(|(name, axis)| (name.clone(), NuisanceKind::Lacked(*axis)));
+        // The mass matrix is symmetric: one triangle suffices.
         let upper = law.mass.keys().filter(|(row, column)| row <= column);
         let masses = upper.map(|&(row, column)| {
             (format!("{MASS}{row}{column}"), NuisanceKind::Mass(row, column))
@@ -133,10 +134,10 @@ impl Columns {
     }
 }
 
-/// How the names of virtual masses start.
+/// Prefix of the names of virtual masses.
 pub const MASS: &str = "mass ";
 
-/// The name under which a law keeps the regressor of a term that its model lacks.
+/// Name under which a law keeps the regressor of a term that its model lacks.
 pub fn lacked_name(term: &str) -> String {
     format!("lacked/{term}")
 }

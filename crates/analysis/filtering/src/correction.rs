@@ -1,11 +1,10 @@
-//! A learned correction at the samples of a block: what it adds to the law's accelerations, and
-//! what it makes of their derivatives.
+//! Learned correction at the samples of a block: its addition to the law's accelerations, and its
+//! effect on their derivatives.
 //!
 //! With `a(x)` the law's accelerations and `c(x, a)` the correction, those of the ship are `a + c`.
-//! Their derivative with anything that the law depends on is `(I + dc/da) da`, to which `dc/dx`
-//! comes for states and inputs that the correction sees itself. So coefficients and effects keep
-//! acting on the law around it, and where a correction takes the law's place they act by as much
-//! less.
+//! Their derivative with any argument of the law is `(I + dc/da) da`, to which `dc/dx` is added for
+//! states and inputs on which the correction itself depends. So coefficients and effects keep
+//! acting on the law around it, and where a correction replaces the law they act by that much less.
 
 use std::sync::Arc;
 
@@ -14,7 +13,7 @@ use sistership_simulation::tape::Lanes;
 
 use super::lanes::LANES;
 
-/// A learned correction, and where it finds what it sees among the inputs of the law.
+/// A learned correction, and the indices of its inputs among those of the law.
 #[derive(Debug, Clone)]
 pub(super) struct Correction {
     pub learned: Arc<dyn LearnedBranch>,
@@ -22,7 +21,7 @@ pub(super) struct Correction {
     pub n: Option<usize>,
 }
 
-/// Velocities in the order of the axes: what a correction changes.
+/// Velocities that a correction changes, in the order of the axes.
 const VELOCITIES: usize = 3;
 
 /// The correction at a block of samples.
@@ -36,8 +35,8 @@ impl<'a> CorrectionBlock<'a> {
         Self { correction, gradients: [AdditionGradient::default(); LANES] }
     }
 
-    /// Evaluates it where the law gives `rates`, and adds what it adds. `velocities` are u, v, r,
-    /// `inputs` those of the law.
+    /// Evaluates the correction where the law gives `rates`, and adds it to them. `velocities` are
+    /// u, v, r, `inputs` those of the law.
     pub fn add(
         &mut self,
         velocities: [Lanes<LANES>; VELOCITIES],
@@ -62,10 +61,12 @@ impl<'a> CorrectionBlock<'a> {
     /// numbers, one for each axis.
     pub fn carry_over(&self, lane: usize, rows: &mut [f64], columns: usize) {
         let by = &self.gradients[lane].by_acceleration;
+        // A correction that does not depend on the law's accelerations changes no derivative here.
         if by.iter().flatten().all(|slope| *slope == 0.0) {
             return;
         }
         for column in 0..columns {
+            // The law's derivatives are copied first, as every row depends on all of them.
             let law: [f64; VELOCITIES] = std::array::from_fn(|axis| rows[axis * columns + column]);
             for (axis, slopes) in by.iter().enumerate() {
                 let more: f64 = slopes.iter().zip(law).map(|(slope, law)| slope * law).sum();
@@ -74,7 +75,7 @@ impl<'a> CorrectionBlock<'a> {
         }
     }
 
-    /// Adds the derivatives of what it adds with the velocities, the first states.
+    /// Adds the derivatives of the correction with the velocities, which are the first states.
     pub fn add_states(&self, lane: usize, jacobian: &mut [f64], states: usize) {
         for (axis, slopes) in self.gradients[lane].by_velocity.iter().enumerate() {
             let row = &mut jacobian[axis * states..][..VELOCITIES];
@@ -82,7 +83,8 @@ impl<'a> CorrectionBlock<'a> {
         }
     }
 
-    /// Its derivatives with an input of the law, by axis; none where it does not see that.
+    /// Derivatives with an input of the law, by axis; none where the correction does not depend on
+    /// it.
     pub fn by_input(&self, lane: usize, input: usize) -> Option<[f64; VELOCITIES]> {
         let Correction { delta, n, .. } = *self.correction;
         match Some(input) {

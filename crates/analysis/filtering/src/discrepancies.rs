@@ -2,5 +2,5 @@
 
 use sistership_model::uncertainty::Discrepancy;
 
-/// The discrepancy of each acceleration, in the order of the filter's axes.
+/// Discrepancy of each acceleration, in the order of the filter's axes.
 pub type Discrepancies = Vec<Discrepancy>;

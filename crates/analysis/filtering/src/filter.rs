@@ -1,5 +1,5 @@
 //! Prediction errors of the readings of a part of a trial, and of every column, divided by their
-//! predicted deviation.
+//! predicted standard deviations.
 
 use sistership_identification::refine::RefineError;
 
@@ -13,10 +13,11 @@ use sistership_simulation::wide::{Wide, widest};
 /// Rows of prediction errors, and the sum of the logarithms of their predicted variances.
 pub type Whitened = (Vec<f64>, f64);
 
-/// Whitened residual and columns of a part of a trial, added up.
+/// Returns the products of whitened residual and columns of a part of a trial, summed over
+/// readings.
 ///
 /// # Errors
-/// Names a channel of which no noise is known.
+/// Returns an error if the noise of a channel is unknown.
 pub fn filter(
     linear: &Linearised,
     noise: &Noise,
@@ -25,10 +26,10 @@ pub fn filter(
     filter_first(linear, linear.sizes.columns, noise, discrepancies)
 }
 
-/// The same of the first columns alone.
+/// Returns the products of whitened residual and the first columns of a part of a trial.
 ///
 /// # Errors
-/// As of [`filter`].
+/// Returns an error if the noise of a channel is unknown.
 pub fn filter_first(
     linear: &Linearised,
     columns: usize,
@@ -39,12 +40,12 @@ pub fn filter_first(
     Ok(Gram::of_rows(&rows, 1 + columns, log_variance))
 }
 
-/// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the
-/// predicted deviation, sample after sample and in each by recorded channel; and the sum of the
-/// logarithms of the predicted variances.
+/// Returns the prediction errors of a part with one column that combines all others, divided by the
+/// predicted standard deviation, sample after sample and by recorded channel in each; and the sum
+/// of the logarithms of the predicted variances.
 ///
 /// # Errors
-/// As of [`filter`].
+/// Returns an error if the noise of a channel is unknown.
 pub fn errors(
     linear: &Linearised,
     noise: &Noise,
@@ -54,11 +55,11 @@ pub fn errors(
     Ok((rows.chunks_exact(2).map(|row| row[0] - row[1]).collect(), log_variance))
 }
 
-/// What the one column of [`Linearised::along`] takes from the prediction errors, in the same
-/// order.
+/// Returns the contribution of the one combined column of a part to the prediction errors, in the
+/// same order.
 ///
 /// # Errors
-/// As of [`filter`].
+/// Returns an error if the noise of a channel is unknown.
 pub fn responses(
     linear: &Linearised,
     noise: &Noise,
@@ -68,12 +69,12 @@ pub fn responses(
     Ok(rows.chunks_exact(2).map(|row| row[1]).collect())
 }
 
-/// Prediction errors and what each column adds to them, divided by the predicted deviation: for
-/// each sample and recorded channel a row, the residual first; and the sum of the logarithms of the
-/// predicted variances.
+/// Returns prediction errors and the contribution of each column, divided by the predicted standard
+/// deviation: a row for each sample and recorded channel, the residual first; and the sum of the
+/// logarithms of the predicted variances.
 ///
 /// # Errors
-/// As of [`filter`].
+/// Returns an error if the noise of a channel is unknown.
 pub fn whitened(
     linear: &Linearised,
     noise: &Noise,
@@ -90,6 +91,7 @@ fn whitened_first(
 ) -> Result<Whitened, RefineError> {
     let width = 1 + columns;
     let filter = KalmanFilter::new(vec![linear], noise, discrepancies, width)?;
+    // Exact capacity: the number of rows is known, and a grown vector would keep spare memory.
     let mut rows = Vec::new();
     rows.reserve_exact(linear.reading.len() * width);
     let mut log_variance = 0.0;
@@ -97,7 +99,7 @@ fn whitened_first(
     Ok((rows, log_variance))
 }
 
-/// A part of a trial to be whitened.
+/// Arguments of a filter pass over a part of a trial.
 struct Whitening<'a> {
     linear: &'a Linearised,
     filter: KalmanFilter<'a, f64>,
@@ -113,13 +115,15 @@ impl Wide for Whitening<'_> {
             if k > 0 {
                 filter.predict(k - 1);
             }
+            // A reading is used only every so many samples where its noise is not white.
             if !k.is_multiple_of(linear.every) {
                 continue;
             }
             filter.update(k, |error, variance| {
                 let scale = variance.sqrt().recip();
                 rows.push(error[0] * scale);
-                // An error that a column makes is what its parameter takes away.
+                // The error of a column is the movement that its parameter explains, with the sign
+                // turned.
                 rows.extend(error[1..].iter().map(|e| -e * scale));
                 *log_variance += variance.ln();
             });

@@ -1,4 +1,4 @@
-//! What a filter assumes of instruments and of accelerations that no model explains.
+//! Assumptions of a filter on instruments and on accelerations that no model explains.
 
 use sistership_identification::refine::RefineError;
 use sistership_model::trial::Channel;
@@ -9,21 +9,21 @@ use super::linearised::Linearised;
 use super::noise::{Instrument, Noise};
 use super::thresholds::RESIDUAL;
 
-/// Noise by the channels, states and axes of a part.
+/// Noise of the channels, states and axes of a part.
 pub(super) struct FilterNoise {
-    /// By channel.
+    /// Noise of each channel.
     instruments: Vec<Instrument>,
-    /// By state, the instrument that reads it, if any.
+    /// Instrument that reads each state, if any.
     readers: Vec<Option<Instrument>>,
     discrepancies: Discrepancies,
 }
 
 impl FilterNoise {
-    /// For the channels of a part.
+    /// Creates the noise of the channels of a part.
     ///
     /// # Errors
-    /// Names a channel of which no noise is known, or says that discrepancies are not as many as
-    /// accelerations.
+    /// Returns an error if the noise of a channel is unknown, or if the number of discrepancies
+    /// differs from that of accelerations.
     pub fn new(
         part: &Linearised,
         noise: &Noise,
@@ -48,8 +48,8 @@ impl FilterNoise {
         Ok(Self { instruments, readers, discrepancies: discrepancies.clone() })
     }
 
-    /// Variances before the first reading, of states and then of discrepancies. A state that is
-    /// not read starts on the path.
+    /// Variances before the first reading, of states and then of discrepancies. A state without an
+    /// instrument starts on the path.
     pub fn start_variances(&self) -> impl Iterator<Item = f64> + '_ {
         let of_state = |reader: &Option<Instrument>| {
             reader.map_or(RESIDUAL.unread_variance, |instrument| {
@@ -60,7 +60,7 @@ impl FilterNoise {
         self.readers.iter().map(of_state).chain(self.discrepancies.iter().map(of_axis))
     }
 
-    /// The variance by which each state drifts in a second.
+    /// Variance of the drift of each state in a second.
     pub fn state_densities(&self) -> impl Iterator<Item = f64> + '_ {
         let drift = |reader: &Option<Instrument>| {
             reader.map_or(RESIDUAL.unread_drift, |instrument| instrument.drift).powi(2)
@@ -68,18 +68,18 @@ impl FilterNoise {
         self.readers.iter().map(drift)
     }
 
-    /// The variance of the readings of a channel.
+    /// Variance of the readings of a channel.
     pub fn reading_variance(&self, channel: usize) -> f64 {
         self.instruments[channel].deviation * self.instruments[channel].deviation
     }
 
-    /// The discrepancy of each acceleration.
+    /// Discrepancy of each acceleration.
     pub fn discrepancies(&self) -> &[Discrepancy] {
         &self.discrepancies
     }
 }
 
-/// The refusal of readings of a channel of which no noise is known.
+/// Error for readings of a channel whose noise is unknown.
 pub fn unknown_noise(channel: Channel) -> RefineError {
     RefineError::Data(format!(
         "no noise is known of the channel `{}`: it is told from seven readings that follow each \

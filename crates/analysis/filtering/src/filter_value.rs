@@ -9,35 +9,36 @@ use super::linearised::Linearised;
 pub(super) const LANES: usize = 4;
 
 /// A number for each part that a filter runs along. Every operation is that of [`f64`] in each
-/// lane, in the same order, so that results do not depend on how many parts go together.
+/// lane, in the same order, so that results do not depend on the number of parts in lockstep.
 pub(super) trait FilterValue:
     Copy + Add<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// A number by lane.
+    /// Creates a value from the number of each lane.
     fn from_lanes(of: impl FnMut(usize) -> f64) -> Self;
 
-    /// The number of a lane.
+    /// Returns the number of a lane.
     fn lane_mut(&mut self, lane: usize) -> &mut f64;
 
     /// Adds a product.
     fn add_product(&mut self, one: Self, other: Self);
 
-    /// Whether products with it need not be added: zero, where asking costs less than adding.
+    /// Returns true if products with the value need not be added: it is zero, and the test is
+    /// cheaper than the addition.
     fn is_idle(self) -> bool;
 
-    /// A sum of rows of a matrix by their weights: `stride` numbers from the beginning of one row
-    /// to that of the next.
+    /// Sums rows of a matrix by their weights; `stride` is the distance between the beginnings of
+    /// consecutive rows.
     fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]);
 
-    /// A row of numbers of each part, side by side; `room` is where they are gathered if they must
-    /// be.
+    /// Returns a row of numbers of each part, interleaved by lane; `room` is the buffer for it
+    /// where one is needed.
     fn row<'a>(
         parts: &[&'a Linearised],
         of: impl Fn(usize, &'a Linearised) -> &'a [f64],
         room: &'a mut Vec<Self>,
     ) -> &'a [Self];
 
-    /// The same number in each lane.
+    /// Returns the same number in each lane.
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self::from_lanes(|_| value)
@@ -70,6 +71,7 @@ impl FilterValue for f64 {
     fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
         sum.fill(0.0);
         for (weight, row) in weights.iter().zip(rows.chunks(stride)) {
+            // Skipped zeros leave the sum exactly as it is for finite rows.
             if *weight != 0.0 {
                 axpy(*weight, row, sum);
             }
@@ -152,6 +154,8 @@ impl FilterValue for ValueLanes {
     fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
         for (column, to) in sum.iter_mut().enumerate() {
             let mut own = Self([0.0; LANES]);
+            // In the order of the rows, as for one part, so that the results are the same to the
+            // last bit.
             for (weight, row) in weights.iter().zip(rows.chunks(stride)) {
                 own.add_product(*weight, row[column]);
             }

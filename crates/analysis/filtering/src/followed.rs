@@ -1,35 +1,36 @@
-//! How a ship may follow an input otherwise than it was recorded: late, or within a band.
+//! Inputs that the ship follows otherwise than recorded: with a lag, or within a dead band.
 
 use sistership_simulation::interpolate::{lagged, within_band};
 
 use super::thresholds::RESIDUAL;
 
-/// An input that a parameter acts on, and how.
+/// An input on which a parameter acts, and the kind of action.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Followed {
-    /// Its place among those of the law.
+    /// Index among the inputs of the law.
     pub input: usize,
     pub way: Following,
 }
 
-/// A way to follow an input by one figure, which is zero where the record is followed.
+/// Kind of deviation from a recorded input, with one figure that is zero where the record is
+/// followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Following {
-    /// Behind a first-order lag, by its time constant, s.
+    /// First-order lag, by its time constant, s.
     Late,
-    /// Where it leaves a band, by half of its width in the unit of the input.
+    /// Dead band that the input has to leave, by half of its width in the unit of the input.
     WithinBand,
 }
 
-/// The record, less what a play takes from its running mean. A play about the record itself would take
-/// the noise of its readings away, and be believed for that.
+/// Record with a play in its running mean. A play about the record itself would remove the noise of
+/// its readings, and would seem likely for that reason.
 fn behind_play(recorded: &[f64], half: f64) -> Vec<f64> {
     let quiet = running_mean(recorded, RESIDUAL.band_mean);
     let held = within_band(&quiet, half);
     recorded.iter().zip(quiet.iter().zip(held)).map(|(x, (mean, held))| x + (held - mean)).collect()
 }
 
-/// The mean over a window about each sample, shorter at the ends.
+/// Mean over a window about each sample, shorter at the ends.
 fn running_mean(values: &[f64], window: usize) -> Vec<f64> {
     let half = window / 2;
     let near = |k: usize| &values[k.saturating_sub(half)..(k + half + 1).min(values.len())];
@@ -37,15 +38,17 @@ fn running_mean(values: &[f64], window: usize) -> Vec<f64> {
 }
 
 impl Following {
-    /// What the ship follows.
+    /// Input that the ship follows, with a value of the figure.
     pub fn of(self, t_s: &[f64], recorded: &[f64], figure: f64) -> Vec<f64> {
+        // A play is applied to the running mean, a lag to the record itself.
         match self {
             Self::Late => lagged(t_s, recorded, figure),
             Self::WithinBand => behind_play(recorded, figure),
         }
     }
 
-    /// By how much the figure is larger for its derivative; at its absence, where a search begins.
+    /// Increment of the figure for its derivative; where the figure is zero, at least the start of
+    /// the search.
     pub fn more(self, figure: f64, start: f64) -> f64 {
         let least = match self {
             Self::Late => RESIDUAL.lag_step_s,

@@ -1,15 +1,15 @@
-//! Sums over samples of the products of whitened columns: all that fitting and comparing hypotheses
-//! need.
+//! Sums over samples of the products of whitened columns, which suffice for fitting and comparing
+//! hypotheses.
 
 use nalgebra::{DMatrix, DMatrixView};
 
 use super::symmetric_products::symmetric_products;
 
-/// Products of whitened residual (place 0) and columns (from 1), with what the likelihood needs
-/// besides.
+/// Products of whitened residual (index 0) and columns (from 1), with the further terms of the
+/// likelihood.
 #[derive(Debug, Clone)]
 pub struct Gram {
-    /// Symmetric; place 0 is the residual.
+    /// Symmetric; index 0 is the residual.
     pub products: DMatrix<f64>,
     /// Sum of the logarithms of the predicted variances.
     pub log_variance: f64,
@@ -17,31 +17,32 @@ pub struct Gram {
     pub count: usize,
 }
 
-/// Columns that a general product multiplies at a time.
+/// Number of columns that a general product multiplies at a time.
 const BLOCK: usize = 48;
-/// Of so many rows or columns it does not fuse (nalgebra's `gemm`, 5).
+/// Number of rows or columns up to which it does not fuse (nalgebra's `gemm`, 5).
 const UNFUSED: usize = 5;
 
 impl Gram {
-    /// Of whitened rows, each of `width` numbers, the residual first.
+    /// Sums the products of whitened rows, each of `width` numbers, the residual first.
     pub fn of_rows(rows: &[f64], width: usize, log_variance: f64) -> Self {
         let count = rows.len() / width;
         Self { products: products(rows, (width, count)), log_variance, count }
     }
 
-    /// Of whitened readings as columns, the residual first in each; perhaps of no number at all.
+    /// Sums the products of whitened readings as columns, the residual first in each; a matrix
+    /// without numbers is allowed.
     pub fn of_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
         let products = products(readings.as_slice(), readings.shape());
         Self { products, log_variance, count: readings.ncols() }
     }
 
-    /// Of no sample.
+    /// Creates the sums of no sample.
     pub fn empty(width: usize) -> Self {
         Self { products: DMatrix::zeros(width, width), log_variance: 0.0, count: 0 }
     }
 
-    /// Some of the columns (the residual first, then these places of columns), perhaps one more
-    /// than once.
+    /// Selects some of the columns (the residual first, then these indices of columns); an index
+    /// may occur more than once.
     pub fn select(&self, columns: &[usize]) -> Self {
         let place = |i: usize| if i == 0 { 0 } else { 1 + columns[i - 1] };
         let size = 1 + columns.len();
@@ -49,14 +50,14 @@ impl Gram {
         Self { products, log_variance: self.log_variance, count: self.count }
     }
 
-    /// Adds other samples.
+    /// Adds the sums of other samples.
     pub fn add(&mut self, other: &Self) {
         self.products += &other.products;
         self.log_variance += other.log_variance;
         self.count += other.count;
     }
 
-    /// All of these together.
+    /// Adds the sums of all parts.
     pub fn sum<'a>(parts: impl IntoIterator<Item = &'a Self>, width: usize) -> Self {
         parts.into_iter().fold(Self::empty(width), |mut sum, part| {
             sum.add(part);
@@ -65,13 +66,15 @@ impl Gram {
     }
 }
 
-/// Products of all columns over readings. Of so few columns or readings that a general product does
-/// not fuse them, it is that one, by which models were made that are still to be verified.
+/// Products of all columns over readings. Small products, which a general product does not fuse,
+/// are computed by that one: models that were made by it are still verified bit by bit.
 fn products(rows: &[f64], (width, count): (usize, usize)) -> DMatrix<f64> {
     let readings = DMatrixView::from_slice(rows, width, count);
     let is_fused = width > UNFUSED && count > UNFUSED;
     let fused = is_fused.then(|| symmetric_products(rows, width)).flatten();
     let Some(mut products) = fused else { return in_blocks(readings) };
+    // The last block of columns may be too small to be fused: it is computed again by the general
+    // product.
     let last = width % BLOCK;
     if last <= UNFUSED {
         let own = readings.rows(width - last, last);
@@ -80,7 +83,7 @@ fn products(rows: &[f64], (width, count): (usize, usize)) -> DMatrix<f64> {
     products
 }
 
-/// By a general product, of which one triangle is taken.
+/// Products by a general product, of which one triangle is computed.
 fn in_blocks(readings: DMatrixView<'_, f64>) -> DMatrix<f64> {
     let width = readings.nrows();
     let mut products = DMatrix::zeros(width, width);

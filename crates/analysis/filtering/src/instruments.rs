@@ -1,4 +1,4 @@
-//! How what instruments say goes with the states and with the effects on them.
+//! Readings of the instruments and their derivatives with states and columns.
 
 use sistership_simulation::tape::{Direction, Lanes, Slopes, Slots};
 
@@ -9,11 +9,11 @@ use super::path::{of_instruments, rate_of_instruments};
 use super::sample_block::SampleBlock;
 use super::thresholds::RESIDUAL;
 
-/// What instruments say at the samples of a block, and its derivatives.
+/// Readings of the instruments at the samples of a block, and their derivatives.
 pub(super) struct InstrumentBlock {
-    /// By states, then by columns.
+    /// Directions of differentiation: states first, then columns.
     directions: Vec<Direction<LANES>>,
-    /// How many of the directions are states.
+    /// Number of directions that are states.
     states: usize,
     primal: Slots<LANES>,
     slopes: Slopes<LANES>,
@@ -22,6 +22,8 @@ pub(super) struct InstrumentBlock {
 impl InstrumentBlock {
     pub fn new(system: &ResidualSystem, measured: &[usize], detail: Detail) -> Self {
         let tape = &system.instruments;
+        // The parameters of candidates are the last inputs of the tape, in the order of the columns
+        // after the nuisance columns.
         let first = tape.inputs().len() - system.followed.len();
         let of_column = |column: &usize| first + column - system.columns.nuisance.len();
         let states = if detail == Detail::Whole { system.states } else { &[] };
@@ -35,7 +37,7 @@ impl InstrumentBlock {
         }
     }
 
-    /// Evaluates them where a block is.
+    /// Evaluates readings and derivatives at the samples of a block.
     pub fn at(&mut self, block: &SampleBlock<'_>) {
         self.of(block.system, &block.instrument_inputs());
     }
@@ -49,14 +51,17 @@ impl InstrumentBlock {
         }
     }
 
-    /// What instruments say more, as they are and by each measured column, where states change
-    /// faster: their formulas are linear in rates, so that it is the same at all samples.
+    /// Changes of the readings, and of their derivatives with the measured columns, by a unit of
+    /// each state's rate. The instruments' formulas are linear in rates, so that these are the same
+    /// at all samples.
     pub fn by_rate(
         &mut self,
         block: &SampleBlock<'_>,
         part: &Linearised,
         recorded: &[usize],
     ) -> Vec<RateResponse> {
+        // One unit more of one rate at a time: the difference is the exact slope, as the formulas
+        // are linear in rates.
         let here = self.says_and_columns(block.system, recorded);
         let mut all = Vec::new();
         for (state, &place) in block.system.states.iter().enumerate() {
@@ -74,12 +79,13 @@ impl InstrumentBlock {
                 }
             }
         }
+        // Restores the block's own point after the moved evaluations.
         self.at(block);
         all
     }
 
-    /// What each channel says that does not say a state, and more by each measured column, in the
-    /// first lane.
+    /// Readings of the channels that differ from a state (0 for the others) and their derivatives
+    /// with each measured column, in the first lane.
     fn says_and_columns(&self, system: &ResidualSystem, recorded: &[usize]) -> Vec<f64> {
         let of = |&channel: &usize| {
             let output = system.says.iter().position(|&place| place == channel);
@@ -89,12 +95,13 @@ impl InstrumentBlock {
         recorded.iter().flat_map(of).collect()
     }
 
-    /// What the instrument of an output says.
+    /// Reading of an output's instrument, one value per lane.
     pub fn says(&self, system: &ResidualSystem, output: usize) -> Lanes<LANES> {
         system.instruments.read(output, &self.primal)
     }
 
-    /// What a channel says more by each state; a channel that says a state follows that alone.
+    /// Derivatives of a channel with each state; those of a channel that reads a state itself are 1
+    /// for that state.
     pub fn by_state<'s>(
         &'s self,
         system: &'s ResidualSystem,
@@ -110,7 +117,7 @@ impl InstrumentBlock {
         })
     }
 
-    /// What a channel says more by each measured column.
+    /// Derivatives of a channel with each measured column.
     pub fn by_column<'s>(
         &'s self,
         system: &'s ResidualSystem,

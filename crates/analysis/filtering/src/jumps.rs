@@ -1,6 +1,6 @@
-//! Where a recording jumps: a position or a heading steps although the velocities do not. No ship
-//! did that. A receiver changed its satellites, or a compass was disturbed, and velocities that
-//! were derived from it are wrong nearby.
+//! Jumps of a recording: steps of a position or a heading that the velocities do not show. They are
+//! no motion of the ship: a receiver changed its satellites, or a compass was disturbed, and
+//! velocities that were derived from it are wrong nearby.
 
 use std::ops::Range;
 
@@ -13,6 +13,7 @@ use super::thresholds::RESIDUAL;
 pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
     let jumps = jumps(trial);
     let is_near = |k: usize| {
+        // Jumps are in order, so only the neighbours on both sides can be near.
         let next = jumps.partition_point(|&jump| jump < trial.t_s[k]);
         let near =
             |jump: Option<&f64>| jump.is_some_and(|jump| (jump - trial.t_s[k]).abs() < settles_s);
@@ -28,7 +29,7 @@ pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
     }
 }
 
-/// Stretches of a range over which all samples are kept.
+/// Runs of a range over which all samples are kept.
 fn runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> {
     let (mut runs, mut start) = (Vec::new(), range.start);
     for k in range.clone() {
@@ -42,8 +43,9 @@ fn runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> 
     runs
 }
 
-/// Times in the middle of steps that jump, in order.
+/// Times in the middle of steps that jump, in order, s.
 fn jumps(trial: &Trial) -> Vec<f64> {
+    // Rates over the ground: x' = u cos(psi) - v sin(psi), and y' by the angle turned by -90 deg.
     let rates = [
         (Channel::X, ground(trial, 0.0)),
         (Channel::Y, ground(trial, -0.5 * std::f64::consts::PI)),
@@ -56,7 +58,7 @@ fn jumps(trial: &Trial) -> Vec<f64> {
     jumps
 }
 
-/// Speed over the ground along the x axis turned by an angle.
+/// Speed over the ground along the x axis turned by an angle, m/s.
 fn ground(trial: &Trial, turned: f64) -> Option<Vec<f64>> {
     let (u, v, psi) =
         (trial.channel(Channel::U)?, trial.channel(Channel::V)?, trial.channel(Channel::Psi)?);
@@ -69,22 +71,25 @@ fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64>
     let (Some(values), Some(rate)) = (trial.channel(channel), rate) else { return Vec::new() };
     let step = |k: usize| trial.t_s[k] - trial.t_s[k - 1];
     let steps: Vec<usize> = trial.segments().into_iter().flat_map(|range| range.skip(1)).collect();
+    // Disagreement of each step with the trapezoidal rule of its rate.
     let apart: Vec<f64> = steps
         .iter()
         .map(|&k| (values[k] - values[k - 1] - 0.5 * step(k) * (rate[k] + rate[k - 1])).abs())
         .collect();
     let fastest = steps.iter().map(|&k| (step(k) * rate[k]).abs()).fold(0.0, f64::max);
+    // The second limit keeps a position that is held between fixes from being a jump.
     let limit = (RESIDUAL.jump * scatter(&apart)).max(RESIDUAL.least_jump * fastest);
     let jumping = steps.iter().zip(&apart).filter(|(_, apart)| **apart > limit);
     jumping.map(|(&k, _)| 0.5 * (trial.t_s[k] + trial.t_s[k - 1])).collect()
 }
 
-/// The deviation of a normal variable with the median of these magnitudes.
+/// Standard deviation of a normal variable with the median of these magnitudes.
 fn scatter(magnitudes: &[f64]) -> f64 {
     let (mut ordered, middle) = (magnitudes.to_vec(), magnitudes.len() / 2);
     if ordered.is_empty() {
         return 0.0;
     }
+    // The median of the magnitude of a normal variable is 0.6745 of its standard deviation.
     *ordered.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
 }
 

@@ -1,11 +1,11 @@
-//! The Kalman filter along linearised parts of trials.
+//! Kalman filter along linearised parts of trials.
 //!
-//! Its state is the deviation from the recorded path, then the discrepancy of each acceleration. It
-//! is one for any number of parts in lockstep ([`FilterValue`]) and of columns.
+//! The state is the deviation from the recorded path, then the discrepancy of each acceleration.
+//! The same filter serves any number of parts in lockstep ([`FilterValue`]) and of columns.
 //!
-//! Readings are taken one channel after the other (their noises are independent), so that each
-//! prediction error is divided by its own predicted deviation and nothing is inverted: Maybeck
-//! 1979, Stochastic models, estimation and control, vol. 1, section 7.
+//! Readings are used one channel after the other (their noises are independent), so that each
+//! prediction error is divided by its own predicted standard deviation and no matrix is inverted:
+//! Maybeck 1979, Stochastic models, estimation and control, vol. 1, section 7.
 
 use nalgebra::{DMatrix, DVector};
 use sistership_identification::refine::RefineError;
@@ -19,7 +19,7 @@ use super::transition::Transition;
 
 /// Deviations from the paths of some parts with all their columns, and their covariance.
 pub(super) struct KalmanFilter<'p, V> {
-    /// One for each lane; their sizes, channels and readings are alike.
+    /// One part for each lane; their sizes, channels and readings are alike.
     parts: Vec<&'p Linearised>,
     noise: FilterNoise,
     transition: Transition<V>,
@@ -28,7 +28,8 @@ pub(super) struct KalmanFilter<'p, V> {
     /// Number of states with discrepancies.
     order: usize,
     width: usize,
-    /// `order` by `width`, row by row; the residual's first, then what each column moves.
+    /// `order` by `width`, row by row; the first column is the residual, the others are the
+    /// movements by each column.
     deviations: Vec<V>,
     /// `order` by `order`.
     covariance: Vec<V>,
@@ -38,15 +39,15 @@ pub(super) struct KalmanFilter<'p, V> {
     product: Vec<V>,
     error: Vec<V>,
     gain: Vec<V>,
-    /// Room for rows of all parts side by side.
+    /// Buffer for interleaved rows of all parts.
     gathered: Vec<V>,
 }
 
 impl<'p, V: FilterValue> KalmanFilter<'p, V> {
-    /// Before the first reading, with the first `width - 1` columns.
+    /// Creates a filter before the first reading, with the first `width - 1` columns.
     ///
     /// # Errors
-    /// Names a channel of which no noise is known.
+    /// Returns an error if the noise of a channel is unknown.
     pub fn new(
         parts: Vec<&'p Linearised>,
         noise: &Noise,
@@ -77,13 +78,13 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         })
     }
 
-    /// The sample of each lane; a part that is over stays `last` samples from its end.
+    /// Index of the sample of a lane; a part that has ended stays `last` samples from its end.
     #[inline(always)]
     fn sample(part: &Linearised, k: usize, last: usize) -> usize {
         k.min(part.samples.len().saturating_sub(last))
     }
 
-    /// From sample `k` to the next.
+    /// Predicts from sample `k` to the next.
     #[inline(always)]
     pub fn predict(&mut self, k: usize) {
         self.transition.take(&self.parts, k, &self.noise);
@@ -92,8 +93,8 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         self.add_noise();
     }
 
-    /// Deviations at the next sample: what becomes of them, what the model moves more than the
-    /// path, and what columns move.
+    /// Moves deviations to the next sample: by the transition, by the defect of the path, and by
+    /// the columns.
     #[inline(always)]
     fn move_deviations(&mut self, k: usize) {
         let Self { parts, transition, states, width, deviations, moved, gathered, .. } = self;
@@ -105,6 +106,8 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             |_, part| &part.accelerations[Self::sample(part, k, 2) * block..][..block],
             gathered,
         );
+        // x' = F x + defect + G a, with the accelerations a of each column; the defect belongs to
+        // the residual alone.
         for (row, target) in moved.chunks_exact_mut(width).take(n).enumerate() {
             V::combine(transition.row(row), deviations, width, target);
             for (lane, part) in parts.iter().enumerate() {
@@ -116,10 +119,12 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             for (weight, caused) in transition.caused(row).iter().zip(caused.chunks(columns.max(1)))
             {
                 if !weight.is_idle() {
+                    // Idle weights are zero; skipping them leaves the sum as it is.
                     axpy(*weight, caused, &mut target[1..]);
                 }
             }
         }
+        // A discrepancy decays by its share alone.
         for (axis, kept) in transition.kept().iter().enumerate() {
             let (from, to) = ((n + axis) * width, &mut moved[(n + axis) * width..][..width]);
             to.iter_mut().zip(&deviations[from..]).for_each(|(to, from)| *to = *kept * *from);
@@ -132,6 +137,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
     fn move_covariance(&mut self) {
         let Self { transition, states, order, covariance, product, .. } = self;
         let (n, order) = (*states, *order);
+        // The product F P; the rows of discrepancies are diagonal in F.
         for (row, target) in product.chunks_exact_mut(order).take(n).enumerate() {
             V::combine(transition.row(row), covariance, order, target);
         }
@@ -140,6 +146,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             let to = &mut product[at..][..order];
             to.iter_mut().zip(from).for_each(|(to, from)| *to = *kept * *from);
         }
+        // Only the lower triangle of (F P) F' is computed.
         for row in 0..order {
             let left = &product[row * order..][..order];
             let target = &mut covariance[row * order..][..=row];
@@ -149,6 +156,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
                 *to = *left * *kept;
             }
         }
+        // Copied rather than computed, so that rounding cannot break the symmetry.
         for row in 0..order {
             for column in 0..row {
                 covariance[column * order + row] = covariance[row * order + column];
@@ -159,6 +167,8 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
     #[inline(always)]
     fn add_noise(&mut self) {
         let (n, diagonal, dt) = (self.states, self.order + 1, self.transition.dt());
+        // Process noise: drift of states, white acceleration noise, and the renewed share of each
+        // discrepancy's variance.
         for (state, density) in self.noise.state_densities().enumerate() {
             self.covariance[state * diagonal].add_product(V::splat(density), dt);
         }
@@ -171,8 +181,8 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         }
     }
 
-    /// Takes the readings of sample `k`; `take` is given each prediction error (the residual's,
-    /// then minus each column's) and its variance.
+    /// Uses the readings of sample `k`; `take` receives each prediction error (the residual's, then
+    /// minus each column's) and its variance.
     #[inline(always)]
     pub fn update(&mut self, k: usize, mut take: impl FnMut(&[V], V)) {
         for channel in 0..self.parts[0].channels.len() {
@@ -181,13 +191,14 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
                 None => self.expect_state(self.parts[0].channels[channel].1),
                 Some(_) => self.expect_states(k, channel),
             };
+            // The variance of the innovation: that of the expected reading and that of the noise.
             let variance = own + V::splat(self.noise.reading_variance(channel));
             take(&self.error, variance);
             self.correct(variance);
         }
     }
 
-    /// Fills the error with the reading of a channel, less what columns and rates make it.
+    /// Sets the error to the reading of a channel, less the parts due to columns and rates.
     #[inline(always)]
     fn read(&mut self, k: usize, channel: usize) {
         self.error.fill(V::splat(0.0));
@@ -198,6 +209,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             *self.error[0].lane_mut(lane) = part.reading[reading];
             let seen = part.measured.len();
             for (place, &column) in part.measured.iter().enumerate() {
+                // A filter may carry only the first columns; those beyond its width are skipped.
                 if let Some(error) = self.error.get_mut(1 + column) {
                     *error.lane_mut(lane) -= part.by_column[reading * seen + place];
                 }
@@ -212,9 +224,9 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         }
     }
 
-    /// By how much the model has a state change faster where the filter expects the ship than on
-    /// the path. The discrepancy stays out: where it is not what the filter takes it for, its
-    /// estimate runs after the readings, and their prediction errors go with it.
+    /// Difference of a state's rate, by the model, between the expected state and the path. The
+    /// discrepancy is excluded: where its true statistics differ from the assumed ones, its
+    /// estimate follows the readings, and their prediction errors would follow with it.
     #[inline(always)]
     fn faster(&self, at: usize, lane: usize, state: usize) -> f64 {
         let (n, part) = (self.states, self.parts[lane]);
@@ -227,8 +239,8 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         row.iter().enumerate().map(|(state, slope)| slope * expected(state)).sum()
     }
 
-    /// Takes from the error what deviations make a channel say that is a state, and fills `gain`
-    /// with its covariances; returns its variance.
+    /// Subtracts from the error the expected reading of a channel that reads a state, and fills
+    /// `gain` with the covariances of that state; returns its variance.
     #[inline(always)]
     fn expect_state(&mut self, place: usize) -> V {
         let own = &self.deviations[place * self.width..][..self.width];
@@ -237,7 +249,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         self.gain[place]
     }
 
-    /// The same of a channel that says several states at once.
+    /// As [`Self::expect_state`] for a channel that depends on several states.
     #[inline(always)]
     fn expect_states(&mut self, k: usize, channel: usize) -> V {
         let Self { parts, states, order, width, deviations, covariance, error, gain, .. } = self;
@@ -251,6 +263,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             },
             &mut self.gathered,
         );
+        // With the row h of the channel: e -= h x, gain = P h', and h P h' as the variance.
         gain.fill(V::splat(0.0));
         for (state, weight) in weights.iter().enumerate().filter(|(_, weight)| !weight.is_idle()) {
             axpy(-*weight, &deviations[state * width..][..width], error);
@@ -261,10 +274,11 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
         own
     }
 
-    /// Deviations and covariance after a reading.
+    /// Corrects deviations and covariance by a reading.
     #[inline(always)]
     fn correct(&mut self, variance: V) {
         let Self { order, width, deviations, covariance, error, gain, .. } = self;
+        // x += k e and P -= k (P h')', with the gain k = P h' / s of one scalar reading.
         let rows = deviations.chunks_exact_mut(*width).zip(covariance.chunks_exact_mut(*order));
         for ((deviations, covariance), own) in rows.zip(&*gain) {
             let by = *own / variance;
@@ -285,7 +299,7 @@ impl KalmanFilter<'_, f64> {
         DMatrix::from_row_slice(self.order, self.order, &self.covariance)
     }
 
-    /// How deviations have gone from the last sample to this one.
+    /// Transition matrix of deviations from the last sample to this one.
     pub fn transition(&self) -> DMatrix<f64> {
         self.transition.matrix()
     }

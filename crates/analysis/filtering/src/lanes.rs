@@ -1,11 +1,11 @@
-//! Samples of a path that are looked at together.
+//! Samples of a path that are evaluated together.
 
 use sistership_simulation::tape::Lanes;
 
-/// How many.
+/// Number of samples in a block.
 pub(super) const LANES: usize = 8;
 
-/// A value for each.
+/// Returns one value for each sample of a block.
 #[inline(always)]
 pub(super) fn lanes(of: impl FnMut(usize) -> f64) -> Lanes<LANES> {
     std::array::from_fn(of)

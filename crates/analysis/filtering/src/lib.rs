@@ -1,16 +1,17 @@
-//! The residual of a model on trials: what its instruments say, less what the model and all earlier
-//! readings predict.
+//! Prediction errors of a model on trials: readings of the instruments less the prediction from the
+//! model and all earlier readings.
 //!
 //! A Kalman filter runs along each trial. Its state is the ship's (velocities, heading, position,
-//! roll), each of whose accelerations also carries a random discrepancy of exponential
-//! autocorrelation; the instruments read it with white noise. The one-step prediction errors,
-//! divided by their predicted scatter, are white where the model holds. Nothing is differentiated,
-//! equations of motion and kinematic identities count by what they really say, whatever a trial
-//! does not record is left out, and a sensor that disagrees with the others is seen as one.
+//! roll), and each acceleration also carries a random discrepancy of exponential autocorrelation;
+//! the instruments read the state with white noise. The one-step prediction errors (innovations),
+//! divided by their predicted standard deviations, are white where the model holds. Nothing is
+//! differentiated numerically, equations of motion and kinematic identities count by their
+//! information, channels that a trial does not record are omitted, and a sensor that disagrees with
+//! the others is identified.
 //!
 //! The model is linearised along the recorded motion, so that every coefficient and every parameter
-//! of an effect is one more column that passes the same filter ([`Columns`]): sums over samples of
-//! their products ([`Gram`]) are all that fitting, evidence and comparison need.
+//! of an effect is one more column that passes the same filter. Fitting, evidence and comparison
+//! need only the sums over samples of the products of these columns.
 
 mod columns;
 mod correction;

@@ -1,6 +1,6 @@
-//! How improbable parts of trials are, several of them in lockstep.
+//! Likelihood of parts of trials, several of them in lockstep.
 //!
-//! The filter of [`super::filter`] with one column, a part in each lane: the numbers are those of
+//! The filter of [`super::filter`] with one column, a part in each lane: the numbers equal those of
 //! one part after the other to the last bit.
 
 use rayon::prelude::*;
@@ -14,18 +14,18 @@ use super::kalman_filter::KalmanFilter;
 use super::linearised::Linearised;
 use super::noise::Noise;
 
-/// Minus twice the logarithm of the likelihood of each part, less a constant; parts have all
-/// columns in one ([`Linearised::along`]).
+/// Returns minus twice the logarithm of the likelihood of each part, less a constant; each part has
+/// one column that combines all others.
 ///
 /// # Errors
-/// Names a channel of which no noise is known.
+/// Returns an error if the noise of a channel is unknown.
 pub fn deviances(
     parts: &[&Linearised],
     noise: &Noise,
     discrepancies: &Discrepancies,
 ) -> Result<Vec<f64>, RefineError> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
-    // Parts of one shape go together, those of like length first.
+    // Parts of one shape are grouped, those of like length first.
     let moves = |part: &Linearised| part.samples.len() > 1;
     let shape = |place: &usize| {
         let part = parts[*place];
@@ -33,6 +33,7 @@ pub fn deviances(
         (moves(part), part.by_state.is_some(), part.sizes.states, part.every, channels)
     };
     order.sort_by_cached_key(|place| (shape(place), usize::MAX - parts[*place].samples.len()));
+    // A part of one sample has no transition and is filtered alone.
     let alike = order.chunk_by(|a, b| {
         let (a, b) = (parts[*a], parts[*b]);
         moves(a)
@@ -52,6 +53,7 @@ pub fn deviances(
     let mut all = vec![0.0; parts.len()];
     let found: Vec<Vec<(usize, f64)>> =
         together.par_iter().map(of).collect::<Result<_, RefineError>>()?;
+    // Written by index, so that the order of the results does not depend on the grouping.
     found.into_iter().flatten().for_each(|(place, deviance)| all[place] = deviance);
     Ok(all)
 }
@@ -71,7 +73,7 @@ fn in_lanes(
     discrepancies: &Discrepancies,
 ) -> Result<Vec<f64>, RefineError> {
     let filter = KalmanFilter::new(parts.clone(), noise, discrepancies, 2)?;
-    // What sums of floating-point numbers begin with.
+    // Sums of floating-point numbers begin with -0.0, as `Iterator::sum` does.
     let (mut squares, mut log_variances) = ([-0.0; LANES], [0.0; LANES]);
     widest(Deviance {
         parts: &parts,
@@ -82,7 +84,7 @@ fn in_lanes(
     Ok((0..parts.len()).map(|lane| squares[lane] + log_variances[lane]).collect())
 }
 
-/// Parts of which squared prediction errors and logarithms of variances are summed.
+/// Arguments of a pass that sums squared prediction errors and logarithms of variances.
 struct Deviance<'a> {
     parts: &'a [&'a Linearised],
     filter: KalmanFilter<'a, ValueLanes>,
@@ -104,6 +106,7 @@ impl Wide for Deviance<'_> {
             }
             filter.update(k, |error, variance| {
                 for (lane, part) in parts.iter().enumerate() {
+                    // A part that has ended stays at its last sample and no longer counts.
                     if k < part.samples.len() {
                         let scale = variance.0[lane].sqrt().recip();
                         let whitened = error[0].0[lane] * scale - -error[1].0[lane] * scale;

@@ -1,4 +1,4 @@
-//! From a model and a recorded trial to the linearisation along its path.
+//! Linearisation of a model along the path of a recorded trial.
 
 use super::linearised::{Detail, Linearised};
 use super::lineariser::PathLineariser;
@@ -9,7 +9,7 @@ use sistership_identification::refine::RefineError;
 /// Linearises a model along each gap-free part of a trial.
 ///
 /// # Errors
-/// Names the channel that the trial lacks.
+/// Returns an error that names the channel that the trial lacks.
 pub fn linearise(
     system: &ResidualSystem,
     record: &TrialReadings<'_>,

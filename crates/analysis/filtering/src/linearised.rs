@@ -2,85 +2,89 @@
 
 use sistership_model::trial::Channel;
 
-/// One gap-free part of a trial: how deviations from the recorded path go from sample to sample,
-/// and how they are read. All matrices row by row, sample after sample.
+/// Linearisation along one gap-free part of a trial: transition of deviations from the recorded
+/// path from sample to sample, and their readings. All matrices are row by row, sample after
+/// sample.
 #[derive(Debug, Clone)]
 pub struct Linearised {
-    /// Samples of the trial.
+    /// Indices of the samples of the trial.
     pub samples: Vec<usize>,
     /// Time of each, s.
     pub t_s: Vec<f64>,
-    /// Number of states, accelerations, columns.
+    /// Numbers of states, accelerations and columns.
     pub sizes: Sizes,
-    /// Rate of change of deviations with deviations: states by states.
+    /// Jacobian of the states' rates: states by states, for each interval.
     pub jacobian: Vec<f64>,
-    /// Accelerations by columns.
+    /// Derivatives of the accelerations with the columns: axes by columns, for each interval.
     pub accelerations: Vec<f64>,
-    /// What the model moves more than the recorded path from a sample to the next, by state.
+    /// Movement by the model less that of the recorded path over each interval, by state.
     pub defect: Vec<f64>,
-    /// Readings less what instruments would say on the path, by recorded channel.
+    /// Readings less those that instruments would give on the path, by recorded channel.
     pub reading: Vec<f64>,
-    /// What instruments say more by deviations: channels by states; absent where they say the state
-    /// itself.
+    /// Derivatives of readings with the states: channels by states; absent where all instruments
+    /// read the state itself.
     pub by_state: Option<Vec<f64>>,
-    /// What instruments say more by those columns that act on them: channels by `measured` columns.
+    /// Derivatives of readings with the columns that act on instruments: channels by `measured`
+    /// columns.
     pub by_column: Vec<f64>,
-    /// Those columns.
+    /// Columns that act on instruments.
     pub measured: Vec<usize>,
-    /// What of `reading` and of `by_column` goes with the rate of a state.
+    /// Part of `reading` and of `by_column` that depends on the rate of a state.
     pub by_rate: Vec<RateResponse>,
-    /// The recorded channels with their places among the states.
+    /// The recorded channels with their indices among the states.
     pub channels: Vec<(Channel, usize)>,
-    /// Of samples, how many go with one reading.
+    /// Number of samples per reading.
     pub every: usize,
 }
 
-/// An instrument says more, or more by a column, as a state changes faster: one that is late does.
+/// Dependence of a reading, or of its derivative with a column, on the rate of a state, as for a
+/// delayed instrument.
 ///
-/// The rate on the path holds the noise of the very reading that is predicted, so that it would
+/// The rate on the path contains the noise of the very reading that is predicted, so that it would
 /// correlate with the prediction error of a model that is right; the rate at the state that the
 /// filter expects does not (errors in variables: Soderstrom 2007, Automatica 43, 939-958).
 #[derive(Debug, Clone, PartialEq)]
 pub struct RateResponse {
-    /// Place of the channel among those that are recorded.
+    /// Index of the channel among those that are recorded.
     pub channel: usize,
-    /// Column; none for what the instrument says with parameters as they are.
+    /// Column; none for the reading itself with the parameters at their values.
     pub column: Option<usize>,
     /// State.
     pub state: usize,
-    /// What is said more by a unit of the rate (and of the column), at each sample.
+    /// Change of the reading by a unit of the rate (and of the column), at each sample.
     pub by: Vec<f64>,
 }
 
-/// How much of a linearisation is wanted.
+/// Extent of a linearisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
     /// Everything.
     Whole,
-    /// The path and the columns; how deviations go on and are read comes from another one
-    /// ([`Linearised::by_filter_of`]).
+    /// The path and the columns; transitions and readings of deviations come from another
+    /// linearisation.
     Columns,
 }
 
-/// Numbers of things.
+/// Sizes of a linearisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
-    /// States.
+    /// Number of states.
     pub states: usize,
-    /// Accelerations.
+    /// Number of accelerations.
     pub axes: usize,
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
 }
 
 impl Linearised {
-    /// This one's path and columns through the filter of another: how deviations go on and are read
-    /// is the other's.
+    /// Combines the path and the columns of this linearisation with the filter (transitions and
+    /// readings of deviations) of another.
     pub fn by_filter_of(self, other: &Self) -> Self {
         Self { jacobian: other.jacobian.clone(), by_state: other.by_state.clone(), ..self }
     }
 
-    /// All columns at given parameters, as one column, with rates as they are on the path.
+    /// Sums all columns, weighted by given parameters, into one column, with rates as they are on
+    /// the path.
     pub fn along(&self, parameters: &[f64]) -> Self {
         let weighted =
             |row: &[f64]| row.iter().zip(parameters).map(|(value, by)| value * by).sum::<f64>();
@@ -100,7 +104,7 @@ impl Linearised {
         }
     }
 
-    /// The path and its filter, which are small beside the columns.
+    /// Copy of the path and its filter, which are small in comparison with the columns.
     fn without_columns(&self) -> Self {
         Self {
             sizes: Sizes { columns: 0, ..self.sizes },
@@ -119,11 +123,12 @@ impl Linearised {
         }
     }
 
-    /// Some columns as they are and, behind them, each of `cut` once for every weight that a time
-    /// has, times that weight.
+    /// Keeps some columns as they are and appends each column of `cut` once for every weight of a
+    /// time, multiplied by that weight.
     pub fn cut(&self, kept: &[usize], cut: &[usize], weights: &dyn Fn(f64) -> Vec<f64>) -> Self {
         let count = self.t_s.first().map_or(0, |t| weights(*t).len());
         let copies = cut.iter().flat_map(|&column| (0..count).map(move |k| (column, Some(k))));
+        // Kept columns come first, then the pieces of each cut column in the order of the weights.
         let pieces: Vec<Piece> = kept.iter().map(|&column| (column, None)).chain(copies).collect();
         let place = |column: usize| self.measured.iter().position(|&known| known == column);
         let seen: Vec<(usize, Piece)> = pieces
@@ -131,6 +136,8 @@ impl Linearised {
             .enumerate()
             .filter_map(|(own, &(column, copy))| Some((own, (place(column)?, copy))))
             .collect();
+        // Derivatives of the readings, taken at the samples; those of the accelerations are taken
+        // in the middle of each interval (`in_pieces`).
         let mut by_column = Vec::new();
         if !seen.is_empty() {
             let rows = self.channels.len() * self.measured.len();
@@ -165,6 +172,7 @@ impl Linearised {
             let own = self.by_rate.iter().filter(move |response| response.column == Some(from));
             own.map(weighted).collect::<Vec<_>>()
         };
+        // Responses without a column belong to the reading itself and stay as they are.
         let said = self.by_rate.iter().filter(|response| response.column.is_none()).cloned();
         said.chain(pieces.iter().enumerate().flat_map(of)).collect()
     }
@@ -174,6 +182,7 @@ impl Linearised {
         let steps = self.accelerations.chunks_exact((axes * columns).max(1));
         let mut all = Vec::with_capacity(steps.len() * axes * pieces.len());
         for (ends, rows) in self.t_s.windows(2).zip(steps) {
+            // Accelerations are means over an interval, so their weight is that of its middle.
             let by = weights(0.5 * (ends[0] + ends[1]));
             for row in rows.chunks_exact(columns) {
                 all.extend(pieces.iter().map(|piece| of_piece(*piece, row, &by)));
@@ -183,7 +192,7 @@ impl Linearised {
     }
 }
 
-/// A column, and which of the weights it is multiplied by.
+/// A column, and the index of the weight by which it is multiplied.
 type Piece = (usize, Option<usize>);
 
 fn of_piece((column, copy): Piece, row: &[f64], by: &[f64]) -> f64 {

@@ -1,4 +1,4 @@
-//! Along a path, block by block of samples.
+//! Linearisation along a path, one block of samples after the other.
 
 use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
@@ -14,7 +14,7 @@ use super::secants::Secants;
 use super::tangents::{Place, Tangent, tangents};
 use super::{Linearised, NuisanceKind, ResidualSystem};
 
-/// Where the tapes stand at a block of samples.
+/// State of the tapes at a block of samples.
 pub(super) struct PathLineariser<'a> {
     system: &'a ResidualSystem,
     path: &'a RecordedPath<'a>,
@@ -58,14 +58,18 @@ impl<'a> PathLineariser<'a> {
         let recorded: Vec<usize> =
             (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
         let mut out = self.empty(part, &recorded);
+        // Without readings that differ from a state, the instruments need no tape.
         let mut instruments = (!self.system.says.is_empty())
             .then(|| InstrumentBlock::new(self.system, &out.measured, self.detail));
+        // An interval needs both of its ends: the last sample of a block is kept for the first
+        // interval of the next one.
         let mut before: Option<SampleLinearisation> = None;
         let mut here = vec![self.nothing(); LANES];
         for (block, samples) in part.chunks(LANES).enumerate() {
             self.linearise(samples, &mut here);
             if let Some(instruments) = &mut instruments {
                 instruments.at(&self.block);
+                // Responses to rates are the same at all samples, so the first block gives them.
                 if block == 0 && self.system.expected_rates {
                     out.by_rate = instruments.by_rate(&self.block, &out, &recorded);
                 }
@@ -78,6 +82,8 @@ impl<'a> PathLineariser<'a> {
                 }
                 self.readings((k, lane), instruments.as_ref(), &recorded, &mut out);
             }
+            // Swapped rather than copied: the buffers of `before` are overwritten by the next
+            // block.
             std::mem::swap(before.get_or_insert_with(|| here[0].clone()), &mut here[LANES - 1]);
         }
         out
@@ -90,7 +96,7 @@ impl<'a> PathLineariser<'a> {
             samples: part.to_vec(),
             t_s: part.iter().map(|&k| trial.t_s[k]).collect(),
             sizes: self.sizes,
-            // As large as they become: what a vector grows by would stay with it.
+            // Exact capacities: a vector that grows would keep the memory of its last growth.
             jacobian: Vec::with_capacity(steps * states * states),
             accelerations: Vec::with_capacity(steps * axes * columns),
             defect: Vec::with_capacity(steps * states),
@@ -109,6 +115,8 @@ impl<'a> PathLineariser<'a> {
         let columns = &self.system.columns;
         let acting = (0..columns.candidates.len())
             .filter(|&c| !columns.candidates[c].form.measures.is_empty());
+        // A candidate that depends on the water acts on readings only where a log measures through
+        // the water, or where velocities are relative to it.
         let has_log = THROUGH_WATER.iter().any(|&(log, _)| self.path.record.has(log));
         let water = has_log || self.system.frame == VelocityFrame::Water;
         let seeing = (0..columns.candidates.len())
@@ -125,7 +133,7 @@ impl<'a> PathLineariser<'a> {
         }
     }
 
-    /// At samples that follow each other.
+    /// Linearises the model at consecutive samples, one per lane.
     fn linearise(&mut self, samples: &[usize], out: &mut [SampleLinearisation]) {
         self.block.at(samples);
         if !self.system.columns.nuisance.is_empty() {
@@ -140,6 +148,7 @@ impl<'a> PathLineariser<'a> {
         for (lane, out) in out.iter_mut().enumerate() {
             self.add_regressors(lane, out);
         }
+        // Secants replace tangents where the derivative at a parameter's value is no use.
         let columns = self.sizes.columns;
         self.secants.along(&self.block, |column, slopes| {
             for (lane, out) in out.iter_mut().enumerate() {
@@ -151,8 +160,8 @@ impl<'a> PathLineariser<'a> {
         self.correct(out);
     }
 
-    /// Derivatives of the ship's accelerations in place of those of the law, where something was
-    /// learned beside it.
+    /// Replaces derivatives of the law's accelerations by those of the ship where a learned
+    /// correction is attached.
     fn correct(&self, out: &mut [SampleLinearisation]) {
         let Some(correction) = &self.block.correction else { return };
         let Sizes { states, columns, .. } = self.sizes;
@@ -162,6 +171,8 @@ impl<'a> PathLineariser<'a> {
             correction.carry_over(lane, &mut out.accelerations, columns);
         }
         let first = self.system.columns.nuisance.len();
+        // A parameter that acts on an input also changes the correction, if that depends on the
+        // input.
         for parameter in 0..self.system.followed.len() {
             let Some((input, moved)) = self.block.moved_input(parameter) else { continue };
             for (lane, out) in out.iter_mut().enumerate() {
@@ -174,6 +185,8 @@ impl<'a> PathLineariser<'a> {
     }
 
     fn differentiate(&mut self, out: &mut [SampleLinearisation]) {
+        // One forward pass of the tape per direction; accelerations follow from forces by the
+        // inverse mass matrix, kinematic rates directly.
         let motion = &self.system.motion;
         let Sizes { states, axes, columns } = self.sizes;
         for Tangent { place, direction } in &mut self.tangents {
@@ -203,6 +216,8 @@ impl<'a> PathLineariser<'a> {
     fn add_regressors(&self, lane: usize, out: &mut SampleLinearisation) {
         let Sizes { axes, columns, .. } = self.sizes;
         let inverse = |row: usize, axis: usize| self.block.inverse[row * axes + axis][lane];
+        // Row by row of the inverse mass matrix: dv/dc = M^-1 dF/dc, for columns of one axis at a
+        // time.
         for (range, axis) in self.regressors.alike() {
             let forces = &self.regressors.of_sample(lane)[range.clone()];
             for row in 0..axes {
@@ -212,6 +227,7 @@ impl<'a> PathLineariser<'a> {
             }
         }
         for (column, nuisance) in self.system.columns.nuisance.iter().enumerate() {
+            // A larger entry of the mass matrix acts as a force against the acceleration.
             let NuisanceKind::Mass(row, other) = nuisance.kind else { continue };
             for (axis, force) in self.heavier((row, other), lane) {
                 for row in 0..axes {
@@ -221,20 +237,22 @@ impl<'a> PathLineariser<'a> {
         }
     }
 
-    /// The forces that a larger entry of the mass matrix takes, by place of the axis.
+    /// Forces by which a larger entry of the mass matrix acts, each with the index of its axis.
     fn heavier(&self, (row, column): (Axis, Axis), lane: usize) -> Vec<(usize, f64)> {
         let place = |axis: Axis| self.system.axes.iter().position(|&known| known == axis);
         let (Some(i), Some(j)) = (place(row), place(column)) else { return Vec::new() };
         let rate = |axis: usize| self.block.by_law[axis][lane];
+        // The unit of a mass column is the root of the product of the diagonal entries.
         let unit = (self.block.mass(i)[lane] * self.block.mass(j)[lane]).sqrt();
         if i == j {
             vec![(i, -unit * rate(i))]
         } else {
+            // Off-diagonal entries act on both axes, as the matrix is symmetric.
             vec![(i, -unit * rate(j)), (j, -unit * rate(i))]
         }
     }
 
-    /// From a sample to the next, by the mean of both ends.
+    /// Appends the interval from a sample to the next, by the mean of both ends.
     fn interval(
         &self,
         before: &SampleLinearisation,
@@ -245,13 +263,14 @@ impl<'a> PathLineariser<'a> {
         let dt = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
         out.jacobian.extend(means(&before.jacobian, &after.jacobian));
         out.accelerations.extend(means(&before.accelerations, &after.accelerations));
+        // The trapezoidal rule for the model's movement, less the recorded one.
         for (state, rate) in means(&before.rate, &after.rate).enumerate() {
             let moved = self.path.states[state][next] - self.path.states[state][k];
             out.defect.push(dt * rate - moved);
         }
     }
 
-    /// What is read at a sample, which stands in a lane of the block.
+    /// Appends the readings at a sample, which is in a lane of the block.
     fn readings(
         &self,
         (k, lane): (usize, usize),

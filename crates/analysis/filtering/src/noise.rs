@@ -1,4 +1,4 @@
-//! How much the instruments scatter.
+//! Noise of the instruments.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,18 @@ use sistership_model::trial::Channel;
 use super::TrialReadings;
 use super::thresholds::RESIDUAL;
 
-/// What an instrument scatters.
+/// Noise of an instrument.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instrument {
     /// Standard deviation of the noise of its readings, SI.
     pub deviation: f64,
-    /// Root of the density of what its rate and the velocities disagree by, by the root of a
-    /// second: headings and positions do not quite follow from velocities.
+    /// Root of the density of the disagreement between its rate and the velocities, by the root of
+    /// a second: headings and positions do not quite follow from velocities.
     pub drift: f64,
 }
 
 impl Instrument {
-    /// One of which nothing is known but its scatter: the drift keeps a filter from trusting
-    /// arithmetic.
+    /// Creates an instrument of which only the noise is known, with the default drift.
     pub fn of_scatter(deviation: f64) -> Self {
         Self { deviation, drift: RESIDUAL.drift * deviation }
     }
@@ -28,13 +27,14 @@ impl Instrument {
 /// Instruments by channel.
 pub type Noise = BTreeMap<Channel, Instrument>;
 
-/// The binomial coefficients of sixth differences; the variance of white noise grows by the sum of
+/// Binomial coefficients of sixth differences; the variance of white noise grows by the sum of
 /// their squares.
 const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
 const GAIN: f64 = 924.0;
 
-/// What sixth differences leave of a ship's motion is far below the noise of any instrument. Of
-/// each trial one sample in so many.
+/// Standard deviation of a channel's noise by sixth differences, SI; none without seven consecutive
+/// readings. The remainder of a ship's motion in sixth differences is far below the noise of any
+/// instrument. `every` gives the stride among the samples of each trial.
 pub fn scatter(
     records: &[TrialReadings<'_>],
     channel: Channel,
@@ -44,8 +44,8 @@ pub fn scatter(
     deviation(records.iter().flat_map(of).collect())
 }
 
-/// The standard deviation of noise by magnitudes of its sixth differences; their median is not
-/// moved by the few samples at which something jumps.
+/// Standard deviation of noise by magnitudes of its sixth differences. Their median is robust
+/// against the few samples at which a reading jumps.
 fn deviation(mut magnitudes: Vec<f64>) -> Option<f64> {
     if magnitudes.is_empty() {
         return None;
@@ -56,13 +56,13 @@ fn deviation(mut magnitudes: Vec<f64>) -> Option<f64> {
     Some(*median / 0.6745 / GAIN.sqrt())
 }
 
-/// From one reading to the next, s: noise must be new in each. None where it is in every sample, as
-/// if this were white. Where readings were smoothed, or waves move the ship, velocities wander from
-/// sample to sample, and what is smooth would be taken for an acceleration.
+/// Interval between readings with independent noise, s; none where the noise of all samples is
+/// white. Where readings were smoothed, or waves move the ship, velocities wander from sample to
+/// sample, and an acceleration would be inferred from smooth noise.
 ///
-/// White noise scatters alike at any spacing. It is compared with that of neighbours as they were
-/// recorded: the samples that a linearisation takes are further apart for slower ships, and by
-/// their spacing alone the same recorder would seem to smooth one set of trials and not another.
+/// White noise has the same deviation at any spacing. It is compared with that of adjacent recorded
+/// samples: the samples that a linearisation uses are further apart for slower ships, and with
+/// their spacing the same recorder would seem to smooth one set of trials and not another.
 pub fn reading_interval(records: &[TrialReadings<'_>]) -> Option<f64> {
     let ratio = |channel: Channel| {
         let recorded = |record: &TrialReadings<'_>| differences_recorded(record, channel);
@@ -77,8 +77,8 @@ pub fn reading_interval(records: &[TrialReadings<'_>]) -> Option<f64> {
     [Channel::U, Channel::V].into_iter().all(is_smoothed).then_some(rounded_s)
 }
 
-/// As [`reading_interval`] by the samples that are used, a count: as models of before it was kept
-/// with them read trials.
+/// Stride of readings with independent noise, as [`reading_interval`] but among the samples that
+/// are used, a count. Models without a stored interval read trials by it.
 pub fn sparseness(records: &[TrialReadings<'_>]) -> usize {
     let grows = |channel: Channel| {
         let of = |every: usize| scatter(records, channel, &|_| every);
@@ -93,7 +93,7 @@ fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Ve
     sixth_differences(record, channel, &taken)
 }
 
-/// Of every sample that was recorded, also between those that are used.
+/// Sixth differences of every recorded sample, also between those that are used.
 fn differences_recorded(record: &TrialReadings<'_>, channel: Channel) -> Vec<f64> {
     let between = |part: &Vec<usize>| (part[0]..=part[part.len() - 1]).collect();
     sixth_differences(record, channel, &between)
@@ -111,8 +111,8 @@ fn sixth_differences(
     record.parts.iter().flat_map(of).collect()
 }
 
-/// The least noise that is believed of an instrument: noise-free simulations are trials too. By the
-/// length of the ship and its speed.
+/// Least noise of an instrument, SI, by the ship's length and speed: noise-free simulations are
+/// trials too.
 pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
     let rate = speed_m_s / lpp_m;
     match channel {

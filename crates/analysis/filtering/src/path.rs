@@ -1,4 +1,4 @@
-//! The recorded motion that a model is linearised along.
+//! Recorded motion along which a model is linearised.
 
 use sistership_model::trial::Channel;
 use sistership_simulation::instruments::THROUGH_WATER;
@@ -11,16 +11,16 @@ use super::record::smoothed;
 use super::{ResidualSystem, TrialReadings};
 use sistership_identification::refine::RefineError;
 
-/// The recorded motion and inputs over the samples of a trial.
+/// Recorded motion and inputs over the samples of a trial.
 pub(super) struct RecordedPath<'a> {
     pub record: &'a TrialReadings<'a>,
-    /// By state of the filter.
+    /// Smooth path of each state of the filter.
     pub states: Vec<Vec<f64>>,
-    /// What the instruments said, by channel of the system; absent where nothing was recorded.
+    /// Readings of the instruments, by channel of the system; absent where nothing was recorded.
     pub said: Vec<Option<&'a [f64]>>,
     pub inputs: Vec<Vec<f64>>,
-    /// For each parameter that acts on how an input is followed: the input with a slightly (or
-    /// first) larger figure of that, and by how much.
+    /// For each parameter that acts on the response to an input: the input with a slightly (or
+    /// first) larger figure, and the increment.
     pub followed: Vec<Option<(Vec<f64>, f64)>>,
 }
 
@@ -40,6 +40,8 @@ impl<'a> RecordedPath<'a> {
             system.channels.iter().map(|&(channel, _)| record.trial.channel(channel)).collect();
         let mut states = vec![vec![0.0; record.trial.len()]; system.order()];
         for (&(channel, place), said) in system.channels.iter().zip(&said) {
+            // Logs through the water read no state of the path, so only state channels are
+            // smoothed.
             if let Some(said) = said.filter(|_| is_state(channel)) {
                 states[place] = smoothed(said);
             }
@@ -48,22 +50,27 @@ impl<'a> RecordedPath<'a> {
         for (name, default) in &system.inputs {
             inputs.push(record.input(name, *default)?);
         }
+        // Before the path is corrected: the instruments take inputs with lags and dead bands
+        // applied.
         let followed = followed(system, record, &mut inputs);
         let mut path = Self { record, states, said, inputs, followed };
         path.correct(system);
         Ok(path)
     }
 
-    /// Takes from the path what instruments say beside it: the model is linearised along where the
-    /// ship was.
+    /// Removes from the path the deviation of the readings from the states, so that the model is
+    /// linearised along the ship's motion.
     fn correct(&mut self, system: &ResidualSystem) {
         if system.says.is_empty() {
             return;
         }
         let t_s = &self.record.trial.t_s;
+        // All rates come from the path before any correction, so that blocks do not depend on each
+        // other.
         let smooth = self.states.clone();
         let mut work = Slots::default();
         for first in (0..t_s.len()).step_by(LANES) {
+            // Lanes beyond the last sample repeat it.
             let samples = std::array::from_fn(|k| (first + k).min(t_s.len() - 1));
             let slopes = |state: usize| lanes(|k| slope(t_s, &smooth[state], samples[k]));
             let inputs = self.instrument_inputs(system, &samples, &slopes);
@@ -79,6 +86,7 @@ impl<'a> RecordedPath<'a> {
                 let here = inputs[of_instruments(system.states[state])];
                 for (k, value) in self.states[state].iter_mut().skip(first).take(LANES).enumerate()
                 {
+                    // Reading less state, both on the smooth path.
                     *value -= says[k] - here[k];
                 }
             }
@@ -104,7 +112,7 @@ impl<'a> RecordedPath<'a> {
     }
 }
 
-/// The states in the order in which instruments take them, followed by their rates.
+/// States in the order in which instruments take them, followed by their rates.
 const INSTRUMENTS: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
 
 pub(super) fn of_instruments(place: usize) -> usize {
@@ -115,26 +123,27 @@ pub(super) fn rate_of_instruments(place: usize) -> usize {
     INSTRUMENTS.len() + of_instruments(place)
 }
 
-/// Whether the path goes by a channel: a log through the water stands beside the state that does.
+/// Returns true if the path follows a channel; a log through the water measures the same state as
+/// another channel.
 fn is_state(channel: Channel) -> bool {
     THROUGH_WATER.iter().all(|&(log, _)| log != channel)
 }
 
-/// Central differences; at the ends one-sided.
+/// Central differences; one-sided at the ends.
 fn slope(t_s: &[f64], values: &[f64], k: usize) -> f64 {
     let (before, after) = (k.saturating_sub(1), (k + 1).min(values.len() - 1));
     (values[after] - values[before]) / (t_s[after] - t_s[before]).max(1e-9)
 }
 
 impl<'a> RecordedPath<'a> {
-    /// Roll of a law without it is what was recorded, if anything was.
+    /// Recorded roll for a law without roll, if it was recorded.
     pub fn roll(&self, name: &str) -> Option<&'a [f64]> {
         let trial = self.record.trial;
         Channel::by_name(name).and_then(|channel| trial.channel(channel))
     }
 }
 
-/// Puts lags and dead bands into effect and prepares their derivatives.
+/// Applies lags and dead bands to the inputs and prepares their derivatives.
 fn followed(
     system: &ResidualSystem,
     record: &TrialReadings<'_>,
@@ -153,6 +162,7 @@ fn followed(
             continue;
         };
         let more = way.more(value, parameter.start);
+        // The increment is taken from the record before the input is replaced by its lagged value.
         let larger = way.of(t_s, &inputs[input], value + more);
         if value > 0.0 {
             inputs[input] = way.of(t_s, &inputs[input], value);

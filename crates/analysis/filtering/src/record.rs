@@ -1,4 +1,4 @@
-//! What a filter reads from a trial.
+//! Readings of a trial as a filter uses them.
 
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
@@ -13,14 +13,15 @@ pub struct TrialReadings<'a> {
     pub trial: &'a Trial,
     /// The samples that are used, in gap-free parts.
     pub parts: Vec<Vec<usize>>,
-    /// Of these samples, how many go with one reading.
+    /// Number of these samples per reading.
     pub every: usize,
 }
 
 impl<'a> TrialReadings<'a> {
-    /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`;
-    /// none within `settles_s` of a jump.
+    /// Uses one of several samples, such that no interval is shorter than `least_step_s`, and none
+    /// within `settles_s` of a jump.
     pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {
+        // The small shares keep exact multiples of the interval from being rounded down.
         let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
         let parts = undisturbed(trial, settles_s)
             .into_iter()
@@ -28,47 +29,48 @@ impl<'a> TrialReadings<'a> {
         Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 
-    /// From one sample that is used to the next, s; none where no two are.
+    /// Interval between the samples that are used, s; none where there are fewer than two.
     pub fn step_s(&self) -> Option<f64> {
         let part = self.parts.first()?;
         Some(self.trial.t_s[*part.get(1)?] - self.trial.t_s[part[0]])
     }
 
-    /// One reading in so long a time, s.
+    /// Sets the interval between readings, s.
     pub fn read_every(&mut self, interval_s: f64) {
         let samples = self.step_s().map_or(1.0, |step_s| (interval_s / step_s).round());
         self.every = samples.max(1.0) as usize;
     }
 
-    /// How many samples are used.
+    /// Number of samples that are used.
     pub fn len(&self) -> usize {
         self.parts.iter().map(Vec::len).sum()
     }
 
-    /// Whether none is.
+    /// Returns true if no sample is used.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether a channel was recorded.
+    /// Returns true if a channel was recorded.
     pub fn has(&self, channel: Channel) -> bool {
         self.trial.channel(channel).is_some()
     }
 
-    /// A channel that must be there.
+    /// Returns the samples of a required channel.
     ///
     /// # Errors
-    /// Names the trial and the channel.
+    /// Returns an error that names the trial and the channel if it was not recorded.
     pub fn need(&self, channel: Channel) -> Result<&'a [f64], RefineError> {
         self.trial
             .channel(channel)
             .ok_or_else(|| RefineError::Channel { trial: self.trial.name.clone(), channel })
     }
 
-    /// An input of a law over the samples of the trial: recorded, or constant.
+    /// Returns an input of a law over the samples of the trial: recorded, or constant.
     ///
     /// # Errors
-    /// Names the trial and the channel.
+    /// Returns an error that names the trial and the channel if there is neither a record nor a
+    /// default.
     pub fn input(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, RefineError> {
         let trial = self.trial;
         if name == TIME {
@@ -93,8 +95,9 @@ impl<'a> TrialReadings<'a> {
     }
 }
 
-/// A parabola through each five samples, read in their middle: white noise loses half its variance,
-/// a motion of more than some ten samples nothing. The model is linearised along it.
+/// Smooths values by a parabola through each five samples, read in their middle: white noise loses
+/// half its variance, a motion of more than some ten samples nothing. The model is linearised along
+/// it.
 pub fn smoothed(values: &[f64]) -> Vec<f64> {
     let fitted = |w: &[f64]| (17.0 * w[2] + 12.0 * (w[1] + w[3]) - 3.0 * (w[0] + w[4])) / 35.0;
     let mut out = values.to_vec();

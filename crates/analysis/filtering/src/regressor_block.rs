@@ -1,4 +1,4 @@
-//! The forces by which coefficients act, at samples that follow each other.
+//! Forces by which coefficients act, at consecutive samples.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use super::{NuisanceKind, ResidualSystem};
 /// cost little more than at one sample.
 pub(super) struct RegressorBlock {
     columns: usize,
-    /// Columns that follow each other and act on one axis of the filter, with its place; masses and
-    /// what acts on another axis are left out.
+    /// Runs of adjacent columns that act on one axis of the filter, with its index; masses and
+    /// columns of another axis are excluded.
     alike: Vec<(Range<usize>, usize)>,
     forces: Slots<LANES>,
     /// N or N m per unit: sample by sample, column by column.
@@ -26,9 +26,11 @@ impl RegressorBlock {
         Self { columns, alike: alike(system), forces, by_sample }
     }
 
-    /// At the points of a block, given as the tape of motion takes them.
+    /// Evaluates the regressors at the points of a block, given as inputs of the tape of motion.
     pub fn run(&mut self, regressors: &Tape, inputs: &[Lanes<LANES>]) {
         regressors.run(inputs, &mut self.forces);
+        // Transposed from columns of lanes to samples, so that the forces of a sample are
+        // contiguous.
         self.by_sample.resize(LANES * self.columns, 0.0);
         for column in 0..self.columns {
             let forces = regressors.read(column, &self.forces);
@@ -36,12 +38,12 @@ impl RegressorBlock {
         }
     }
 
-    /// Columns that act on one axis.
+    /// Runs of columns that act on one axis.
     pub fn alike(&self) -> &[(Range<usize>, usize)] {
         &self.alike
     }
 
-    /// The forces at a sample, by column.
+    /// Forces at a sample, by column.
     pub fn of_sample(&self, lane: usize) -> &[f64] {
         &self.by_sample[lane * self.columns..][..self.columns]
     }

@@ -1,4 +1,4 @@
-//! A model at samples that follow each other, a lane each.
+//! A model at consecutive samples, one per lane.
 
 use nalgebra::DMatrix;
 use sistership_model::law::STATES;
@@ -10,15 +10,15 @@ use super::lanes::{LANES, lanes};
 use super::path::RecordedPath;
 use super::tangents::place_of;
 
-/// The model where the path is at up to [`LANES`] samples.
+/// The model on the path at up to [`LANES`] samples.
 pub(super) struct SampleBlock<'a> {
     pub system: &'a ResidualSystem,
     path: &'a RecordedPath<'a>,
-    /// Of each state that laws know, what the path says of it.
+    /// Path of each state that laws know, if any.
     states: Vec<Option<&'a [f64]>>,
-    /// In each lane a sample; those after the last of a part are the first again.
+    /// Sample of each lane; lanes after the last sample of a part repeat the first one.
     samples: [usize; LANES],
-    /// Of the tape of motion.
+    /// Inputs of the tape of motion.
     pub inputs: Vec<Lanes<LANES>>,
     pub primal: Slots<LANES>,
     pub slopes: Slopes<LANES>,
@@ -28,7 +28,7 @@ pub(super) struct SampleBlock<'a> {
     pub rate: Vec<Lanes<LANES>>,
     /// Accelerations by the law alone.
     pub by_law: Vec<Lanes<LANES>>,
-    /// What was learned beside the law.
+    /// Learned correction, if any.
     pub correction: Option<CorrectionBlock<'a>>,
 }
 
@@ -66,6 +66,7 @@ impl<'a> SampleBlock<'a> {
         motion.tape.slopes(&self.primal, &mut self.slopes);
         self.invert_masses();
         self.rate = self.accelerations(&self.primal);
+        // Kept before the correction: secants and mass columns belong to the law alone.
         self.by_law.clone_from(&self.rate);
         if let Some(correction) = &mut self.correction {
             let velocities = [self.inputs[0], self.inputs[1], self.inputs[2]];
@@ -87,16 +88,18 @@ impl<'a> SampleBlock<'a> {
             let inverse = mass.try_inverse();
             for (place, to) in self.inverse.iter_mut().enumerate() {
                 let (row, column) = (place / axes, place % axes);
+                // A singular mass matrix gives not-a-number instead of an error.
                 to[lane] = inverse.as_ref().map_or(f64::NAN, |inverse| inverse[(row, column)]);
             }
         }
     }
 
-    /// Accelerations, or their derivatives, of what the tape of motion holds: by axis.
+    /// Accelerations, or their derivatives, from values (or tangents) of the tape of motion: by
+    /// axis.
     pub fn accelerations(&self, held: &[Lanes<LANES>]) -> Vec<Lanes<LANES>> {
         let (motion, axes) = (&self.system.motion, self.system.axes.len());
         let row = |row: usize| {
-            // What sums of floating-point numbers begin with.
+            // Sums of floating-point numbers begin with -0.0, as `Iterator::sum` does.
             let mut sum = [-0.0; LANES];
             for (c, &output) in motion.forces.iter().enumerate() {
                 let (inverse, force) =
@@ -110,8 +113,8 @@ impl<'a> SampleBlock<'a> {
         (0..axes).map(row).collect()
     }
 
-    /// By how much a parameter that acts on how an input is followed moves that input, by its own
-    /// change, and which.
+    /// Input that a parameter of a response moves, and the derivative of the input with the
+    /// parameter.
     pub fn moved_input(&self, parameter: usize) -> Option<(usize, Lanes<LANES>)> {
         let input = self.system.followed[parameter]?.input;
         let (larger, by) = self.path.followed[parameter].as_ref()?;
@@ -119,20 +122,20 @@ impl<'a> SampleBlock<'a> {
         Some((input, lanes(|k| (larger[self.samples[k]] - here[k]) / by)))
     }
 
-    /// What a parameter changes of an input, with a larger figure.
+    /// Input with a larger figure of a parameter's response.
     pub fn followed(&self, parameter: usize) -> Lanes<LANES> {
         let larger = self.path.followed[parameter].as_ref();
         larger.map_or([0.0; LANES], |(larger, _)| lanes(|k| larger[self.samples[k]]))
     }
 
-    /// An entry of the diagonal of the mass matrix.
+    /// Entry of the diagonal of the mass matrix.
     pub fn mass(&self, axis: usize) -> Lanes<LANES> {
         let motion = &self.system.motion;
         let output = motion.mass[axis * (self.system.axes.len() + 1)];
         output.map_or([0.0; LANES], |output| motion.tape.read(output, &self.primal))
     }
 
-    /// What instruments say there.
+    /// Inputs of the instruments' tape at the samples.
     pub fn instrument_inputs(&self) -> Vec<Lanes<LANES>> {
         self.path.instrument_inputs(self.system, &self.samples, &|state| self.rate[state])
     }

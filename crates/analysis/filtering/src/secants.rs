@@ -1,5 +1,5 @@
-//! Parameters whose derivative at their absence says nothing, and lags and dead bands: what they
-//! change at a distance, by it.
+//! Finite differences for parameters whose derivative at the absence of their effect is zero, and
+//! for lags and dead bands.
 
 use sistership_model::effect::EffectParameter;
 use sistership_model::law::STATES;
@@ -11,21 +11,21 @@ use super::lanes::{LANES, lanes};
 use super::path::RecordedPath;
 use super::sample_block::SampleBlock;
 
-/// An input of the tape that is moved, and by how much a column's parameter is moved with it.
+/// A moved input of the tape, and the increment of the column's parameter.
 struct Secant {
-    /// Place among the parameters of all candidates.
+    /// Index among the parameters of all candidates.
     parameter: usize,
     moved: Moved,
     by: f64,
     direction: Direction<LANES>,
 }
 
-/// What an input is moved to.
+/// Target of a moved input.
 #[derive(Clone, Copy)]
 enum Moved {
-    /// An input of the law, to what it is with a longer lag or a wider band.
+    /// Input of the law with a longer lag or a wider band.
     Followed { input: usize },
-    /// A parameter of the tape, to a value.
+    /// Parameter of the tape at a value.
     To { input: usize, value: f64 },
 }
 
@@ -38,7 +38,7 @@ impl Moved {
     }
 }
 
-/// The secants of a path.
+/// Secants of a path.
 pub(super) struct Secants {
     all: Vec<Secant>,
     inputs: Vec<Lanes<LANES>>,
@@ -58,12 +58,12 @@ impl Secants {
         Self { all, inputs: Vec::new(), there: Slots::default() }
     }
 
-    /// Whether a parameter's column is a secant.
+    /// Returns true if the column of a parameter is a secant.
     pub fn has(&self, parameter: usize) -> bool {
         self.all.iter().any(|secant| secant.parameter == parameter)
     }
 
-    /// What the accelerations of a block change by each parameter, axis by axis.
+    /// Passes to `take` the change of a block's accelerations by each parameter, axis by axis.
     pub fn along(&mut self, block: &SampleBlock<'_>, mut take: impl FnMut(usize, &[Lanes<LANES>])) {
         self.inputs.clone_from(&block.inputs);
         self.there.clone_from(&block.primal);
@@ -73,6 +73,8 @@ impl Secants {
                 Moved::To { value, .. } => [value; LANES],
                 Moved::Followed { .. } => block.followed(secant.parameter),
             };
+            // Only the slots that depend on the moved input are evaluated again, and restored
+            // below.
             let tape = &block.system.motion.tape;
             tape.run_among(secant.direction.reached(), &self.inputs, &mut self.there);
             let mut slopes = block.accelerations(&self.there);
@@ -98,6 +100,8 @@ fn wanted(
     if let (Some((_, by)), Some(Followed { input, .. })) = (&path.followed[j], system.followed[j]) {
         return Some((Moved::Followed { input }, *by));
     }
+    // At its absence such a parameter has no derivative, so its secant goes to the start of the
+    // search.
     let says_nothing = at == parameter.absent && parameter.start != parameter.absent;
     let input = STATES.len() + system.inputs.len() + j;
     let moved = Moved::To { input, value: parameter.start };

@@ -1,5 +1,5 @@
-//! What must be added to the accelerations, as all readings together say: the discrepancy by a
-//! fixed-interval smoother (Rauch, Tung and Striebel 1965, AIAA J 3, 1445-1450).
+//! Discrepancies of the accelerations given all readings, by a fixed-interval smoother (Rauch, Tung
+//! and Striebel 1965, AIAA J 3, 1445-1450).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use sistership_identification::refine::RefineError;
@@ -9,12 +9,12 @@ use super::kalman_filter::KalmanFilter;
 use super::linearised::Linearised;
 use super::noise::Noise;
 
-/// The discrepancy of each axis over the samples of a part, with its standard deviation.
+/// Discrepancy of each axis over the samples of a part, with its standard deviation.
 #[derive(Debug, Clone)]
 pub struct Smoothed {
-    /// By axis, then sample, m/s2 or rad/s2.
+    /// Values by axis, then sample, m/s2 or rad/s2.
     pub values: Vec<Vec<f64>>,
-    /// Their standard deviations.
+    /// Standard deviations, in the same order.
     pub deviations: Vec<Vec<f64>>,
 }
 
@@ -25,18 +25,18 @@ struct GaussianState {
     covariance: DMatrix<f64>,
 }
 
-/// What the filter knows after the readings of a sample, and what it expects before them.
+/// Filtered state after the readings of a sample, and the predicted one before them.
 struct FilterStep {
     known: GaussianState,
     expected: GaussianState,
     transition: DMatrix<f64>,
 }
 
-/// Smooths the residual of a part, whatever columns it has.
+/// Smooths the residual of a part; its columns are ignored.
 ///
 /// # Errors
-/// Names a channel of which no noise is known, or the time at which a predicted covariance is not
-/// positive definite.
+/// Returns an error if the noise of a channel is unknown, or one that names the time at which a
+/// predicted covariance is not positive definite.
 pub fn smoothed(
     linear: &Linearised,
     noise: &Noise,
@@ -54,7 +54,7 @@ pub fn smoothed(
     })
 }
 
-/// States and discrepancies at each sample by all readings.
+/// States and discrepancies at each sample given all readings.
 fn smoothed_states(
     linear: &Linearised,
     noise: &Noise,
@@ -62,6 +62,7 @@ fn smoothed_states(
 ) -> Result<Vec<GaussianState>, RefineError> {
     let steps = forward(linear, noise, discrepancies)?;
     let mut all: Vec<GaussianState> = Vec::with_capacity(steps.len());
+    // Backwards in time: the last filtered state is already the smoothed one.
     for k in (0..steps.len()).rev() {
         let state = match all.last() {
             Some(later) => backward(&steps[k].known, &steps[k + 1], later).ok_or_else(|| {
@@ -98,14 +99,15 @@ fn forward(
         if k.is_multiple_of(linear.every) {
             filter.update(k, |_, _| {});
         }
+        // After the update, but still the transition by which this sample was predicted.
         let transition = filter.transition();
         steps.push(FilterStep { known: belief(&filter), expected, transition });
     }
     Ok(steps)
 }
 
-/// What is known of a sample after all later readings; none where the covariance that is expected
-/// at the next sample is not positive definite.
+/// Smoothed state at a sample, from that at the next; none where the covariance that is predicted
+/// for the next sample is not positive definite.
 fn backward(
     known: &GaussianState,
     next: &FilterStep,

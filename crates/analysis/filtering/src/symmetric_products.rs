@@ -1,22 +1,23 @@
-//! Sums over readings of the products of all columns, of a symmetric matrix one triangle.
+//! Sums over readings of the products of all columns: one triangle of a symmetric matrix.
 //!
-//! What a general matrix product does with three packings and both triangles is done with one and
-//! half of them. Each sum is made as `matrixmultiply` makes it, product by product with fused
-//! multiplication and in blocks of as many readings: the results are the same to the last bit, and
-//! so are models that were made by it.
+//! A general matrix product needs three packings and both triangles; this one needs one packing and
+//! one triangle. Each sum is made as `matrixmultiply` makes it, product by product with fused
+//! multiplication and in blocks of as many readings: the results, and so the models made by it, are
+//! the same to the last bit.
 
 use nalgebra::DMatrix;
 use sistership_simulation::wide::{Wide, fused};
 
-/// Readings in a block: those of `matrixmultiply`, whose sums these are.
+/// Number of readings in a block: that of `matrixmultiply`, whose sums these are.
 const READINGS: usize = 256;
-/// Columns in a strip: the lanes of the widest instructions.
+/// Number of columns in a strip: the lanes of the widest instructions.
 const STRIP: usize = 8;
 
 /// A strip of columns at one reading.
 type Lanes = [f64; STRIP];
 
-/// Products of readings, `width` numbers each; none where the processor does not fuse.
+/// Products of readings, `width` numbers each; none where the processor has no fused
+/// multiplication.
 pub(super) fn symmetric_products(readings: &[f64], width: usize) -> Option<DMatrix<f64>> {
     let mut products = DMatrix::zeros(width, width);
     fused(SymmetricProducts { readings, width, products: &mut products }).then(|| {
@@ -28,7 +29,7 @@ pub(super) fn symmetric_products(readings: &[f64], width: usize) -> Option<DMatr
 struct SymmetricProducts<'a> {
     readings: &'a [f64],
     width: usize,
-    /// Its lower triangle is filled.
+    /// Matrix whose lower triangle is filled.
     products: &'a mut DMatrix<f64>,
 }
 
@@ -40,6 +41,7 @@ impl Wide for SymmetricProducts<'_> {
         for block in readings.chunks(READINGS * width) {
             let count = block.len() / width;
             pack(block, width, &mut strips);
+            // Strips on and below the diagonal alone: the upper triangle is a copy.
             for (row, left) in strips.chunks_exact(count).enumerate() {
                 for (column, right) in strips.chunks_exact(count).take(row + 1).enumerate() {
                     let tile = tile(left, right);
@@ -50,7 +52,7 @@ impl Wide for SymmetricProducts<'_> {
     }
 }
 
-/// A block of readings, strip by strip; columns beyond the last are nothing.
+/// Packs a block of readings strip by strip; columns beyond the last are zero.
 #[inline(always)]
 fn pack(block: &[f64], width: usize, strips: &mut Vec<Lanes>) {
     let count = block.len() / width;
@@ -63,7 +65,7 @@ fn pack(block: &[f64], width: usize, strips: &mut Vec<Lanes>) {
     }
 }
 
-/// Products of the columns of two strips: rows of the left one's.
+/// Products of the columns of two strips, with a row for each column of the left one.
 #[inline(always)]
 fn tile(left: &[Lanes], right: &[Lanes]) -> [Lanes; STRIP] {
     let mut sums = [[0.0; STRIP]; STRIP];

@@ -1,4 +1,4 @@
-//! In which directions a model is differentiated.
+//! Directions in which a model is differentiated.
 
 use sistership_model::law::STATES;
 use sistership_simulation::state::at;
@@ -8,7 +8,7 @@ use super::ResidualSystem;
 use super::lanes::LANES;
 use super::linearised::Detail;
 
-/// Where a derivative goes.
+/// Target of a derivative.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
     /// A state of the filter.
@@ -17,14 +17,14 @@ pub(super) enum Place {
     Column(usize),
 }
 
-/// A direction of differentiation, and where its derivative goes.
+/// A direction of differentiation, and the target of its derivative.
 pub(super) struct Tangent {
     pub place: Place,
     pub direction: Direction<LANES>,
 }
 
-/// States, where everything is wanted, and those parameters of candidates whose derivative says
-/// something (`by_derivative`).
+/// Directions of the states, for a whole linearisation, and of those parameters of candidates that
+/// have a derivative (`by_derivative`).
 pub(super) fn tangents(
     system: &ResidualSystem,
     detail: Detail,
@@ -35,6 +35,7 @@ pub(super) fn tangents(
         let state = system.states.iter().position(|&state| state == place)?;
         Some((Place::State(state), input))
     });
+    // The tape of motion takes states, inputs and then the parameters of the candidates.
     let first = STATES.len() + system.inputs.len();
     let column = |j: usize| (Place::Column(system.columns.nuisance.len() + j), first + j);
     let parameters = (0..system.followed.len()).filter(|&j| by_derivative(j)).map(column);
@@ -42,7 +43,7 @@ pub(super) fn tangents(
     states.filter(|_| detail == Detail::Whole).chain(parameters).map(tangent).collect()
 }
 
-/// The place in the state vector of a state that laws know.
+/// Index in the state vector of a state that laws know by name.
 pub(super) fn place_of(name: &str) -> usize {
     match name {
         "u" => at::U,

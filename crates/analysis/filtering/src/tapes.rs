@@ -1,4 +1,4 @@
-//! A model, the effects that may be missing and the coefficients that may move, on tapes.
+//! Tapes of a model, of candidate effects and of free coefficients.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -21,31 +21,32 @@ use super::followed::{Followed, Following};
 use super::{Columns, NuisanceKind, lacked_name};
 use sistership_identification::refine::RefineError;
 
-/// A model on tapes.
+/// Tapes of a model.
 #[derive(Debug, Clone)]
 pub struct ResidualSystem {
-    /// What the columns stand for.
+    /// Meaning of the columns.
     pub columns: Columns,
-    /// Places in the state vector of the filter's states.
+    /// Indices of the filter's states in the state vector.
     pub states: &'static [usize],
-    /// Axes whose accelerations are states' rates, in the order of the filter's first states.
+    /// Axes whose accelerations are rates of states, in the order of the filter's first states.
     pub axes: Vec<Axis>,
-    /// Channels and their places among the filter's states.
+    /// Channels and their indices among the filter's states.
     pub channels: Vec<(Channel, usize)>,
     /// Inputs of the law with their defaults.
     pub inputs: Vec<(String, Option<f64>)>,
     /// Velocities over the ground or through the water.
     pub frame: VelocityFrame,
-    /// Whether instruments that follow rates follow those that the filter expects.
+    /// True if instruments that depend on rates use the rates that the filter expects.
     pub expected_rates: bool,
     pub(super) motion: Motion,
     pub(super) regressors: Tape,
     pub(super) instruments: Tape,
-    /// What instruments say: place among the channels, by output.
+    /// Index among the channels of each output of the instruments' tape.
     pub(super) says: Vec<usize>,
-    /// For each parameter of a candidate that acts on how an input is followed: which, and how.
+    /// For each parameter of a candidate that acts on the response to an input: the input and the
+    /// kind of response.
     pub(super) followed: Vec<Option<Followed>>,
-    /// What the model has learned beside its law.
+    /// Learned correction of the model.
     pub(super) correction: Option<Correction>,
 }
 
@@ -55,7 +56,7 @@ pub struct ResidualSystem {
 pub(super) struct Motion {
     pub tape: Tape,
     pub forces: Vec<usize>,
-    /// Row by row.
+    /// Entries of the mass matrix, row by row.
     pub mass: Vec<Option<usize>>,
     pub additions: Vec<Option<usize>>,
     /// Rates of the states after the velocities, in their order.
@@ -63,12 +64,13 @@ pub(super) struct Motion {
 }
 
 impl ResidualSystem {
-    /// For trials whose velocities are of a frame. The law is in the dress of the effects that the
-    /// model carries, and keeps the regressors of nuisance terms that the model lacks
-    /// ([`lacked_name`]), in N (N m) per unit.
+    /// Builds the tapes for trials whose velocities are relative to a frame. The effects that the
+    /// model carries are applied to the law, and the regressors of nuisance terms that the model
+    /// lacks are kept, in N (N m) per unit.
     ///
     /// # Errors
-    /// Names what the model does not give; the weights of a learned correction among it.
+    /// Returns an error that names what the model does not provide, such as the weights of a
+    /// learned correction.
     pub fn new(
         model: &Model,
         law: &Law,
@@ -77,6 +79,7 @@ impl ResidualSystem {
     ) -> Result<Self, RefineError> {
         let forms: Vec<_> =
             columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
+        // The forms of all candidates are applied at once, so that one tape has every column.
         let equations = EquationsOfMotion::of_law(model, Cow::Owned(law.dressed(model, &forms)));
         let build = SystemBuilder { equations: &equations, columns: &columns };
         let (axes, states) = (equations.axes(), equations.states());
@@ -102,7 +105,7 @@ impl ResidualSystem {
         })
     }
 
-    /// The same with the rates that the filter expects, or those on the path.
+    /// Sets whether rates are those that the filter expects or those on the path.
     pub fn with_expected_rates(self, expected_rates: bool) -> Self {
         Self { expected_rates, ..self }
     }
@@ -124,12 +127,12 @@ struct SystemBuilder<'a> {
 }
 
 impl SystemBuilder<'_> {
-    /// Names of the candidates' parameters in the law's dress.
+    /// Names of the candidates' parameters in the law with applied effects.
     fn parameters(&self) -> Vec<String> {
         self.columns.candidates.iter().flat_map(|candidate| candidate.qualified()).collect()
     }
 
-    /// A tape that takes states, inputs and the candidates' parameters.
+    /// Lowering of a tape that takes states, inputs and the candidates' parameters.
     fn lowering(&self) -> Lowering<'_> {
         Lowering::new(self.equations, &[self.equations.names(), self.parameters()].concat())
     }
@@ -145,7 +148,7 @@ impl SystemBuilder<'_> {
         let additions = lowering.additions(axes)?;
         let mut kinematics = Vec::new();
         for &state in &states[axes.len()..] {
-            // A law without roll moves in the plane, its instruments heel with the ship: their
+            // A law without roll moves in the plane, but its instruments heel with the ship: their
             // axes are turned by the recorded roll.
             kinematics.push(lowering.output(&equations.kinematic(state, Attitude::Heeled)?)?);
         }
@@ -159,7 +162,7 @@ impl SystemBuilder<'_> {
             lowering.output(&match nuisance.kind {
                 NuisanceKind::Own(_) => self.equations.regressor(name)?,
                 NuisanceKind::Lacked(_) => Expr::Name(lacked_name(name)),
-                // Its column follows from the motion's own tape.
+                // The column of a mass follows from the tape of motion.
                 NuisanceKind::Mass(..) => Expr::Number(0.0),
             })?;
         }
@@ -175,6 +178,7 @@ impl SystemBuilder<'_> {
         let mut lowering =
             Lowering::new(self.equations, &[input_names(law), self.parameters()].concat());
         let mut says = Vec::new();
+        // Only outputs of channels that the filter knows are kept.
         for (channel, expr) in readings(law, frame) {
             if let Some(place) = channels.iter().position(|(known, _)| *known == channel) {
                 lowering.output(&expr)?;
@@ -190,8 +194,8 @@ impl SystemBuilder<'_> {
         Ok(learned.map(|learned| Correction { learned, delta: place("delta"), n: place("n") }))
     }
 
-    /// A parameter acts on how the ship follows an input where its form has a time constant or a
-    /// band of it that is that parameter.
+    /// For each parameter, the input and the response that it changes: its form has a time constant
+    /// or a dead band that depends on the parameter.
     fn followed(&self) -> Vec<Option<Followed>> {
         let candidates = self.columns.candidates.iter();
         let names = candidates.flat_map(|c| c.form.parameters.keys().map(|name| (&c.form, name)));

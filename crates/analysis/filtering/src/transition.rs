@@ -1,4 +1,4 @@
-//! How deviations and discrepancies go from a sample to the next.
+//! Transition of deviations and discrepancies from a sample to the next.
 
 use nalgebra::DMatrix;
 
@@ -6,20 +6,20 @@ use super::filter_noise::FilterNoise;
 use super::filter_value::FilterValue;
 use super::linearised::Linearised;
 
-/// The transition matrix of an interval, to second order in its time: rows of states over states
-/// and discrepancies; a discrepancy keeps a share of itself alone.
+/// Transition matrix of an interval, to second order in its time: rows of states over states and
+/// discrepancies; a discrepancy depends on itself alone.
 pub(super) struct Transition<V> {
     states: usize,
     axes: usize,
     /// States by states and discrepancies.
     rows: Vec<V>,
-    /// Its transpose, along whose rows products with it are summed in wide instructions.
+    /// The transpose, along whose rows products are summed in wide instructions.
     columns: Vec<V>,
     /// `dt (I + A dt/2)` on the accelerations: states by axes.
     caused: Vec<V>,
-    /// Of each axis, how much of its discrepancy stays.
+    /// Share of each axis' discrepancy that remains.
     kept: Vec<V>,
-    /// And how much of its variance is renewed.
+    /// Share of its variance that is renewed.
     renewed: Vec<V>,
     square: Vec<V>,
     gathered: Vec<V>,
@@ -39,11 +39,13 @@ impl<V: FilterValue> Transition<V> {
             renewed: zeros(axes),
             square: zeros(states),
             gathered: Vec::new(),
+            // Not a number, so that the first interval always differs.
             dt: V::splat(f64::NAN),
         }
     }
 
-    /// Becomes that from sample `k` to the next; a part that is over stays in its last interval.
+    /// Sets the transition to that from sample `k` to the next; a part that has ended stays in its
+    /// last interval.
     #[inline(always)]
     pub fn take(&mut self, parts: &[&Linearised], k: usize, noise: &FilterNoise) {
         self.take_times(parts, k, noise);
@@ -52,6 +54,8 @@ impl<V: FilterValue> Transition<V> {
         let order = n + axes;
         let jacobian =
             V::row(parts, |_, part| &part.jacobian[interval(part, k) * n * n..][..n * n], gathered);
+        // F = I + A dt + A^2 dt^2/2 for the states, and dt (I + A dt/2) for the accelerations,
+        // which are the rates of the first states.
         let half = V::splat(0.5);
         for row in 0..n {
             let slopes = &jacobian[row * n..][..n];
@@ -75,13 +79,14 @@ impl<V: FilterValue> Transition<V> {
         }
     }
 
-    /// Times to the next samples, with what follows from them where they are others than before.
+    /// Sets the times of the intervals, and the values that follow from them where they changed.
     #[inline(always)]
     fn take_times(&mut self, parts: &[&Linearised], k: usize, noise: &FilterNoise) {
         for (lane, part) in parts.iter().enumerate() {
             let from = interval(part, k);
             let dt = part.t_s[from + 1] - part.t_s[from];
             let known = self.dt.lane_mut(lane);
+            // Bitwise comparison: intervals are usually equal, and exponentials are costly.
             if dt.to_bits() == known.to_bits() {
                 continue;
             }
@@ -93,38 +98,38 @@ impl<V: FilterValue> Transition<V> {
         }
     }
 
-    /// What a state becomes of: states and discrepancies.
+    /// Row of a state over states and discrepancies.
     #[inline(always)]
     pub fn row(&self, state: usize) -> &[V] {
         let order = self.states + self.axes;
         &self.rows[state * order..][..order]
     }
 
-    /// What each state becomes of each state and discrepancy, by these.
+    /// Transposed matrix: for each state and discrepancy, its share in each state.
     #[inline(always)]
     pub fn columns(&self) -> &[V] {
         &self.columns
     }
 
-    /// By how much each acceleration moves a state.
+    /// Movement of a state by each acceleration.
     #[inline(always)]
     pub fn caused(&self, state: usize) -> &[V] {
         &self.caused[state * self.axes..][..self.axes]
     }
 
-    /// How much of each discrepancy stays.
+    /// Share of each discrepancy that remains.
     #[inline(always)]
     pub fn kept(&self) -> &[V] {
         &self.kept
     }
 
-    /// How much of the variance of each discrepancy is renewed.
+    /// Share of the variance of each discrepancy that is renewed.
     #[inline(always)]
     pub fn renewed(&self) -> &[V] {
         &self.renewed
     }
 
-    /// The time of the interval, s.
+    /// Time of the interval, s.
     #[inline(always)]
     pub fn dt(&self) -> V {
         self.dt
@@ -132,7 +137,7 @@ impl<V: FilterValue> Transition<V> {
 }
 
 impl Transition<f64> {
-    /// The whole matrix.
+    /// Full transition matrix over states and discrepancies.
     pub fn matrix(&self) -> DMatrix<f64> {
         let (n, order) = (self.states, self.states + self.axes);
         DMatrix::from_fn(order, order, |row, column| match row.checked_sub(n) {
@@ -143,7 +148,7 @@ impl Transition<f64> {
     }
 }
 
-/// The interval of a part that begins with sample `k`, or its last.
+/// Index of the interval of a part that begins with sample `k`, or of its last.
 #[inline(always)]
 fn interval(part: &Linearised, k: usize) -> usize {
     k.min(part.samples.len().saturating_sub(2))

@@ -1,5 +1,5 @@
-//! Fleets: sufficient statistics of trials, refinement in bulk, and families that share a
-//! foundation.
+//! Fleets: sufficient statistics of trials, refinement in bulk, and priors from families of ships
+//! with a common foundation.
 
 pub mod bulk;
 pub mod family;

@@ -1,4 +1,4 @@
-//! Trials for tests: what a model sails, with noise that differs from trial to trial.
+//! Simulated trials for tests, with noise that differs from trial to trial.
 #![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
@@ -17,14 +17,15 @@ pub fn mariner() -> (Model, Arc<Law>) {
     (model, law)
 }
 
-/// A model whose coefficients are these times its own, by name.
+/// The model with each coefficient multiplied by `factor`, which takes the coefficient's name.
 pub fn with(model: &Model, factor: impl Fn(&str) -> f64) -> Model {
     let mut model = model.clone();
     model.coefficients.iter_mut().for_each(|(name, quantity)| quantity.value *= factor(name));
     model
 }
 
-/// Zigzags 10/10, 20/20 and 30/30 to both sides at 1 Hz, as a model sails them.
+/// Simulated zigzags 10/10, 20/20 and 30/30 to both sides at 1 Hz. `noise` is the amplitude of the
+/// noise of each channel as a share of its value.
 pub fn trials(model: &Model, law: &Law, noise: f64) -> Vec<Trial> {
     let ship = Ship::new(model, law).unwrap();
     let settings = ManoeuvreSettings {
@@ -37,10 +38,15 @@ pub fn trials(model: &Model, law: &Law, noise: f64) -> Vec<Trial> {
     [10.0, 20.0, -30.0, -20.0].into_iter().enumerate().map(recorded).collect()
 }
 
+/// A track sampled at every second step, with deterministic noise on every channel but the
+/// rudder's.
 fn recorded(track: &Trajectory, index: usize, noise: f64) -> Trial {
+    // The track has steps of 0.5 s; every second one gives samples at 1 Hz.
     let kept: Vec<usize> = (0..track.t_s.len()).step_by(2).collect();
     let column = |at: usize| {
         let shaken = |&k: &usize| {
+            // Sums of incommensurable sines replace a random generator: reproducible, and different
+            // for every trial, channel and sample.
             let shake = (12.9898 * (k + 977 * at + 31 * index) as f64).sin()
                 + (78.233 * (k + 13 * at) as f64).cos();
             track.states[k][at] * (1.0 + noise * shake)
@@ -49,6 +55,7 @@ fn recorded(track: &Trajectory, index: usize, noise: f64) -> Trial {
     };
     let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
         RECORDED.iter().map(|&(c, at)| (c, column(at))).collect();
+    // The rudder stays exact: regressions take it as a known input.
     channels.insert(Channel::Delta, kept.iter().map(|&k| track.states[k][at::DELTA]).collect());
     Trial {
         name: format!("trial-{index}"),

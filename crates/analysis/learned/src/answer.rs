@@ -1,4 +1,4 @@
-//! What an output of a correction answers at an instant.
+//! Prediction of one output of a learned correction at an instant.
 
 use sistership_model::branch::BranchOutput;
 use sistership_simulation::branch::Instant;
@@ -6,10 +6,10 @@ use sistership_simulation::branch::Instant;
 use crate::regressor::Regressor;
 use crate::sample::scaled;
 
-/// Most inputs of an output: each signal once, with room.
+/// Largest number of inputs of an output: above the number of signals, as each occurs once.
 pub const MOST_INPUTS: usize = 16;
 
-/// What an output answers, m/s2 (rad/s2), within what its training held.
+/// Predicted acceleration, m/s2 (rad/s2), limited to the range of the targets in training.
 pub fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f64 {
     let mut inputs = [0.0; MOST_INPUTS];
     let count = output.inputs.len();

@@ -1,4 +1,4 @@
-//! Which kind of branch, if any: each is tried, and trials left out of its training decide.
+//! Selection of the kind of learned correction by held-out trials.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::Model;
@@ -9,61 +9,61 @@ use crate::judge::{Judgement, judge_folds};
 use crate::settings::{BranchKind, BranchSettings};
 use crate::train::TrainError;
 
-/// What was tried, and what is taken.
+/// Evaluated kinds, and the selected one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BranchChoice {
-    /// Every kind, in its order.
+    /// Every evaluated kind, in the order of evaluation.
     pub tried: Vec<TriedKind>,
-    /// The kind of least error, where that is better than the foundation's by more than one
-    /// standard error of the difference; none where no branch should be taken.
+    /// Kind of least error, if it is better than the foundation by more than one standard error of
+    /// the difference; `None` if no correction should be used.
     pub taken: Option<BranchKind>,
-    /// What else was asked of that kind, until one thing was not met.
+    /// Further checks of that kind, up to the first that failed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checks: Vec<BranchCheck>,
-    /// Why, in words.
+    /// Reason for the selection, as a sentence.
     pub reason: String,
 }
 
-/// A comparison that a branch must pass before it is taken.
+/// Comparison that a correction must pass before it is used.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BranchCheck {
-    /// What is compared.
+    /// Quantity that is compared.
     pub what: String,
-    /// The foundation's figure.
+    /// Figure of the foundation.
     pub foundation: f64,
-    /// That of the foundation with the branch, which may not be larger.
+    /// Figure of the foundation with the correction, which must not be larger.
     pub branch: f64,
-    /// Whether it is passed.
+    /// True if the check is passed.
     pub passed: bool,
 }
 
-/// A kind that was tried.
+/// Error of one kind on held-out trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TriedKind {
-    /// The kind.
+    /// Kind of learner.
     pub kind: BranchKind,
-    /// Standardised mean squared error of the foundation on trials left out.
+    /// Standardised mean squared error of the foundation on held-out trials.
     pub foundation: f64,
-    /// The same with the branch.
+    /// The same with the correction.
     pub branch: f64,
-    /// Standard error of the difference.
+    /// Standard error of the difference of the two.
     pub standard_error: f64,
 }
 
 impl BranchChoice {
-    /// Nothing was tried, for a reason.
+    /// Selection without any evaluation, for a reason.
     pub fn untried(reason: String) -> Self {
         Self { tried: Vec::new(), taken: None, checks: Vec::new(), reason }
     }
 }
 
-/// Which kinds are tried.
+/// Extent of the search over kinds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kinds {
-    /// Every kind.
+    /// All kinds are evaluated.
     Every,
-    /// One after another, boosted trees first, which cost least, until one loses by more than one
-    /// standard error of the difference.
+    /// Kinds are evaluated one after another, boosted trees first, which cost least, until one is
+    /// worse by more than one standard error of the difference.
     WhilePromising {
         /// Longest step of the simulations, s.
         step_s: f64,
@@ -78,6 +78,7 @@ impl Kinds {
         }
     }
 
+    /// Kinds in the order of evaluation.
     fn in_order(self) -> [BranchKind; 4] {
         let [forest, boosted, kernels, perceptron] = BranchKind::ALL;
         match self {
@@ -87,10 +88,11 @@ impl Kinds {
     }
 }
 
-/// Tries kinds; `told` is asked before each whether to go on.
+/// Evaluates kinds of learned corrections on held-out trials. The callback is called before each
+/// kind and returns false to stop.
 ///
 /// # Errors
-/// As [`judge`](crate::judge()); none where it was stopped.
+/// Returns the errors of training and simulation; `Ok(None)` if it was stopped.
 pub fn choose(
     model: &Model,
     on: &HeldOutTrials<'_>,
@@ -105,8 +107,10 @@ pub fn choose(
         let training = settings.of(kind).training(model, on.law, on.trials)?;
         let Some(judged) = judge_folds(on, &training, kinds.step_s())? else {
             let reason = "there is one trial only, and none is left to judge on".to_owned();
+            // The number of trials is the same for all kinds, so the first kind decides this.
             return Ok(Some(BranchChoice::untried(reason)));
         };
+        // A short search ends at the first kind that is significantly worse than the foundation.
         let over = kinds != Kinds::Every && judged.loses();
         tried.push((kind, judged));
         if over {
@@ -116,9 +120,11 @@ pub fn choose(
     Ok(Some(decided(tried)))
 }
 
+/// Selection of the kind with the least error.
 fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
     let best = judged.iter().min_by(|(_, a), (_, b)| a.branch.total_cmp(&b.branch));
     let reason = best.map_or_else(String::new, |(kind, best)| because(*kind, best, judged.len()));
+    // The best kind is only used if it is significantly better than the foundation.
     let taken = best.filter(|(_, judged)| judged.wins()).map(|(kind, _)| *kind);
     let tried = |(kind, judged): &(BranchKind, Judgement)| TriedKind {
         kind: *kind,
@@ -129,7 +135,8 @@ fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
     BranchChoice { tried: judged.iter().map(tried).collect(), taken, checks: Vec::new(), reason }
 }
 
-/// `kernels` leaves 0.21 of 0.24 on trials left out, with a standard error of 0.05: no win
+/// Sentence of the reason: kind, number of held-out trials, both errors and the standard error of
+/// their difference.
 fn because(kind: BranchKind, judged: &Judgement, tried: usize) -> String {
     let Judgement { foundation, branch, standard_error, trials, .. } = judged;
     let of = if tried > 1 { "is the best of the kinds" } else { "was tried" };

@@ -1,6 +1,6 @@
-//! What a learned answer depends on: how much its error rises where an input is shuffled among the
-//! samples (permutation importance: Breiman 2001, Sec. 10), and its mean over the samples where an
-//! input is held (partial dependence: Friedman 2001, Ann Stat 29, 1189-1232; `f(x) = 1/n sum_i
+//! Dependence of a regressor on its inputs: the rise of its error where an input is shuffled among
+//! the samples (permutation importance: Breiman 2001, Sec. 10), and its mean over the samples where
+//! an input is fixed (partial dependence: Friedman 2001, Ann Stat 29, 1189-1232; `f(x) = 1/n sum_i
 //! f(x, x_iC)`).
 
 use sistership_model::branch::Learner;
@@ -9,29 +9,30 @@ use crate::draws::Draws;
 use crate::regressor::Regressor;
 use crate::sample::{Sample, centre_and_scale};
 
-/// What was learned of a target, judged on samples that were not learned from.
+/// Dependence of a target on its inputs, evaluated on samples that were not used in training.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearnedDependence {
-    /// The share of the target's variance that is explained there; below 0 where the mean would say
-    /// more.
+    /// Share of the target's variance that is explained there; negative if the mean explains more.
     pub explained: f64,
-    /// What each input has to do with it, in their order.
+    /// Dependence on each input, in their order.
     pub inputs: Vec<InputDependence>,
 }
 
-/// What an answer owes to an input.
+/// Dependence of a prediction on one input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InputDependence {
-    /// Rise of the mean squared error where it is shuffled, by the target's variance.
+    /// Rise of the mean squared error where the input is shuffled, divided by the target's
+    /// variance.
     pub rise: f64,
-    /// Values of the input, rising, in its unit.
+    /// Values of the input, increasing, in its unit.
     pub at: Vec<f64>,
-    /// The mean answer where it is held there, in the target's unit.
+    /// Mean prediction with the input fixed at each of these values, in the target's unit.
     pub answer: Vec<f64>,
 }
 
-/// Learns a target from some samples and asks others what it depends on, each input at `points` of
-/// its quantiles. None where there is nothing to learn.
+/// Trains a regressor on `seen` and evaluates its dependence on the inputs on `unseen`, each input
+/// at `points` of its quantiles. Returns `None` if there are no samples or the equations are
+/// singular.
 pub fn dependence(
     learner: &Learner,
     seen: &Sample,
@@ -45,11 +46,13 @@ pub fn dependence(
     let scales: Vec<(f64, f64)> = seen.columns.iter().map(|c| centre_and_scale(c)).collect();
     let of_target = centre_and_scale(&seen.targets);
     let regressor = Regressor::train(learner, &scaled(seen, &scales, of_target), seed, 0)?;
+    // Unseen samples are scaled by the seen ones, as the regressor expects.
     let mut judged = scaled(unseen, &scales, of_target);
     let (_, deviation) = centre_and_scale(&judged.targets);
     let explained = 1.0 - error(&regressor, &judged) / deviation.powi(2);
     let mut draws = Draws::new(seed, 1);
     let inputs = (0..scales.len()).map(|place| {
+        // Relative to the variance of the unseen targets, as the share explained is.
         let rise = rise(&regressor, &mut judged, place, &mut draws) / deviation.powi(2);
         let at = quantiles(&unseen.columns[place], points);
         let (centre, scale) = scales[place];
@@ -60,7 +63,8 @@ pub fn dependence(
     Some(LearnedDependence { explained, inputs: inputs.collect() })
 }
 
-/// Rise of the mean squared error of an answer where an input is shuffled among the samples.
+/// Rise of the mean squared error of a regressor where an input is shuffled among the samples. The
+/// sample is restored afterwards.
 pub(crate) fn rise(
     regressor: &Regressor,
     sample: &mut Sample,
@@ -76,12 +80,13 @@ pub(crate) fn rise(
     rise
 }
 
+/// Mean squared error of a regressor.
 fn error(regressor: &Regressor, sample: &Sample) -> f64 {
     let of = |k: usize| (regressor.answer(&sample.row(k)) - sample.targets[k]).powi(2);
     (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
 }
 
-/// The mean answer over the samples with an input held at a value.
+/// Partial dependence: the mean prediction over the samples with an input fixed at a value.
 fn held(regressor: &Regressor, sample: &Sample, place: usize, value: f64) -> f64 {
     let of = |k: usize| {
         let mut row = sample.row(k);
@@ -91,6 +96,7 @@ fn held(regressor: &Regressor, sample: &Sample, place: usize, value: f64) -> f64
     (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
 }
 
+/// Sample in standard deviations from given centres.
 fn scaled(sample: &Sample, scales: &[(f64, f64)], of_target: (f64, f64)) -> Sample {
     let by = |values: &[f64], (centre, scale): (f64, f64)| {
         values.iter().map(|x| (x - centre) / scale).collect::<Vec<f64>>()
@@ -99,7 +105,7 @@ fn scaled(sample: &Sample, scales: &[(f64, f64)], of_target: (f64, f64)) -> Samp
     Sample { columns: columns.collect(), targets: by(&sample.targets, of_target) }
 }
 
-/// The middles of as many classes of equal count, each value once.
+/// Medians of `points` classes of equal count, without repetition.
 fn quantiles(values: &[f64], points: usize) -> Vec<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);

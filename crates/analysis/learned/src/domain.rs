@@ -1,10 +1,11 @@
-//! How much a branch counts: wholly where its training was, and smoothly less beyond, to nothing.
+//! Domain of a learned correction: full share within the range of its training, and a smooth fade
+//! to zero outside it.
 //!
-//! That bounds it. Let D be the region in which its share is above nothing. Outside D the
-//! foundation alone acts, so that a run with a branch can leave the physical range only where
-//! one of the foundation alone would, started from some motion in D; and D lies in the physical
-//! range ([`FadedDomain::is_within`]). What is added within D is bounded by what the training held.
-//! Decision 20 has the argument in full.
+//! The fade bounds the correction. Let D be the region in which its share is above zero. Outside D
+//! the foundation acts alone, so a simulation with a correction can leave the physical range only
+//! where one of the foundation alone, started from some motion in D, would leave it; and D lies in
+//! the physical range ([`FadedDomain::is_within`]). The addition within D is bounded by the range
+//! of the training targets. Decision 20 has the argument in full.
 
 use sistership_formula::{Comparison, Expr, Function};
 use sistership_model::validity::{Face, Region};
@@ -13,19 +14,20 @@ use sistership_simulation::branch::Instant;
 
 use crate::expressions::{added, divided, subtracted};
 
-/// The channels of a region, as an instant has them.
+/// Channels of a region, in the order of their values in an instant.
 const CHANNELS: [&str; 5] = ["u", "v", "r", "delta", "n"];
 
-/// A region with how far beyond it a branch fades.
+/// Region with the distance outside it over which a correction fades to zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FadedDomain {
     faces: Vec<Bounded>,
     fade: f64,
-    /// Greatest |u|, |v|, |r| at which the share is above nothing.
+    /// Largest |u|, |v|, |r| with a share above zero.
     reach: [f64; 3],
 }
 
-/// A direction: two places among the channels, what they are multiplied by and less by what.
+/// Bounds in one direction: two channels by index, each with its factor and the centre that is
+/// subtracted before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bounded {
     terms: [(usize, f64, f64); 2],
@@ -33,33 +35,39 @@ struct Bounded {
 }
 
 impl FadedDomain {
-    /// Of a region that bounds u, v and r; none where it bounds what no branch sees.
+    /// Creates a domain from a region that bounds u, v and r. Returns `None` if one of these is not
+    /// bounded, or if another channel is.
     pub fn of(region: &Region, fade: f64) -> Option<Self> {
         let faces = region.faces().iter().map(bounded).collect::<Option<Vec<_>>>()?;
         let reach = |place: usize| {
+            // Only faces along a single channel bound that channel by itself.
             let alone = |face: &&Bounded| face.terms[0].0 == place && face.terms[1].1 == 0.0;
             let (_, factor, centre) = faces.iter().find(alone)?.terms[0];
+            // Scaled by the factor, the range is one half range to either side of its centre, and
+            // the fade adds its own.
             Some(centre.abs() + (1.0 + fade) / factor)
         };
         let reach = [reach(0)?, reach(1)?, reach(2)?];
         Some(Self { faces, fade, reach })
     }
 
-    /// What a branch counts for at an instant, 0 to 1.
+    /// Share of the correction at an instant, 0 to 1.
     pub fn share(&self, instant: &Instant) -> f64 {
         let [u, v, r] = instant.velocities;
         let channels = [u, v, r, instant.delta_rad, instant.n_rps];
         let excess = self.faces.iter().map(|face| face.excess(&channels)).fold(0.0, f64::max);
         let out = excess / self.fade;
-        // A cubic step: no jump of the value, and none of the slope.
+        // A cubic step, continuous in value and slope.
         if out < 1.0 { 1.0 - out * out * (3.0 - 2.0 * out) } else { 0.0 }
     }
 
-    /// Derivatives of the share with u, v, r, delta and n.
+    /// Derivatives of the share with respect to u, v, r, delta and n.
     pub fn gradient(&self, instant: &Instant) -> [f64; 5] {
         let mut slopes = [0.0; 5];
         let [u, v, r] = instant.velocities;
         let channels = [u, v, r, instant.delta_rad, instant.n_rps];
+        // The share depends on the largest excess, so only that direction has a derivative.
+        // The excess is the maximum over all directions.
         let furthest = self
             .faces
             .iter()
@@ -75,24 +83,29 @@ impl FadedDomain {
         slopes
     }
 
-    /// The share as a formula over the channels; `value` takes what is used more than once.
+    /// Formula of the share over the channels; `value` names an expression that is used more than
+    /// once.
     pub fn formula(&self, value: &mut dyn FnMut(Expr) -> Expr) -> Expr {
         let largest = |a: Expr, b: Expr| Expr::Call(Function::Max, vec![a, b]);
         let excess = self.faces.iter().map(Bounded::formula).fold(Expr::Number(0.0), largest);
         let out = value(divided(excess, self.fade));
         let step = subtracted(Expr::Number(3.0), Expr::Number(2.0).times(out.clone()));
         let faded = subtracted(Expr::Number(1.0), out.clone().times(out.clone()).times(step));
+        // The same cubic as in a simulation: 1 - out^2 (3 - 2 out) below 1, otherwise 0.
         let parts = [out, Expr::Number(1.0), faded, Expr::Number(0.0)];
         Expr::If(Comparison::Less, Box::new(parts))
     }
 
-    /// Whether the share is nothing before the motion leaves the physical range.
+    /// True if the share is zero before the motion leaves the physical range.
     pub fn is_within(&self, envelope: &Envelope) -> bool {
         let [u, v, r] = self.reach;
+        // The largest speed has both velocities at their limits.
         u.hypot(v) < envelope.speed_m_s() && r < envelope.yaw_rate_rad_s()
     }
 }
 
+/// Bounds of one direction of a region. Returns `None` for a channel that a correction does not
+/// have.
 fn bounded(face: &Face<'_>) -> Option<Bounded> {
     let mut terms = [(0, 0.0, 0.0); 2];
     for (place, term) in terms.iter_mut().zip(&face.terms) {
@@ -102,24 +115,26 @@ fn bounded(face: &Face<'_>) -> Option<Bounded> {
 }
 
 impl Bounded {
-    /// How far beyond, by half ranges.
+    /// Distance outside the bounds, in half ranges; negative inside.
     #[inline]
     fn excess(&self, channels: &[f64; 5]) -> f64 {
         let at: f64 = self.terms.iter().map(|(k, factor, c)| factor * (channels[*k] - c)).sum();
         (self.bounds[0] - at).max(at - self.bounds[1])
     }
 
-    /// The sign of the change of the excess with the direction.
+    /// Sign of the derivative of the excess in this direction.
     fn side(&self, channels: &[f64; 5]) -> f64 {
         let at: f64 = self.terms.iter().map(|(k, factor, c)| factor * (channels[*k] - c)).sum();
         if at - self.bounds[1] > self.bounds[0] - at { 1.0 } else { -1.0 }
     }
 
+    /// Formula of the excess over the channels.
     fn formula(&self) -> Expr {
         let term = |&(k, factor, centre): &(usize, f64, f64)| {
             subtracted(Expr::Name(CHANNELS[k].to_owned()), Expr::Number(centre))
                 .times(Expr::Number(factor))
         };
+        // A direction along one channel has a second term with a factor of zero, which is omitted.
         let terms = self.terms.iter().filter(|(_, factor, _)| *factor != 0.0).map(term);
         let at = terms.reduce(added).unwrap_or(Expr::Number(0.0));
         let [low, high] = self.bounds.map(Expr::Number);

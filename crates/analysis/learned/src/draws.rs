@@ -1,33 +1,35 @@
-//! Random numbers that stay the same: ChaCha is specified to the bit, and what is made of its words
-//! is written here, as libraries change theirs from version to version.
+//! Reproducible random numbers: ChaCha is specified to the bit, and the conversion of its words is
+//! written here, as libraries change theirs from version to version.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 
-/// A stream of random numbers.
+/// Stream of random numbers.
 pub struct Draws(ChaCha12Rng);
 
 impl Draws {
-    /// One of the independent streams of a seed.
+    /// Creates one of the independent streams of a seed.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut rng = ChaCha12Rng::seed_from_u64(seed);
         rng.set_stream(stream);
         Self(rng)
     }
 
-    /// A whole number below `n`.
+    /// Returns a whole number below `n`.
     pub fn below(&mut self, n: usize) -> usize {
+        // Upper half of the product of a 64-bit word and `n`.
         ((u128::from(self.0.next_u64()) * n as u128) >> 64) as usize
     }
 
-    /// A number between -1 and 1.
+    /// Returns a number between -1 and 1.
     pub fn signed(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Some of `0..n`, each at most once, in no order.
+    /// Returns `count` numbers of `0..n`, each at most once, in random order.
     pub fn some_of(&mut self, count: usize, n: usize) -> Vec<u32> {
         let mut all: Vec<u32> = (0..n as u32).collect();
+        // The first `count` steps of a Fisher-Yates shuffle.
         let count = count.min(n);
         (0..count).for_each(|k| {
             let other = k + self.below(n - k);

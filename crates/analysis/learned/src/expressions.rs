@@ -1,4 +1,4 @@
-//! Expressions of two parts.
+//! Formula expressions of two operands.
 
 use sistership_formula::Expr;
 

@@ -1,5 +1,5 @@
-//! A learned correction as formulas, by which exports write it down: operation for operation what
-//! is evaluated in a simulation.
+//! Learned corrections as formulas, for exports: the same operations as are evaluated in a
+//! simulation.
 
 use sistership_formula::{Comparison, Expr, Function};
 use sistership_model::branch::{BranchInput, BranchMode, BranchOutput, Signal};
@@ -12,20 +12,21 @@ use crate::perceptron::Perceptron;
 use crate::regressor::Regressor;
 use crate::tree::Tree;
 
-/// Formulas while they are written: what is used more than once gets a name.
+/// Formulas under construction: an expression that is used more than once gets a name.
 #[derive(Debug, Default)]
 pub(crate) struct FormulaWriter {
     values: Vec<(String, Expr)>,
 }
 
 impl FormulaWriter {
-    /// Gives an expression a name.
+    /// Gives an expression a name and returns the name.
     fn value(&mut self, expr: Expr) -> Expr {
         let name = format!("correction.{}", self.values.len());
         self.values.push((name.clone(), expr));
         Expr::Name(name)
     }
 
+    /// Formula of a regressor over its scaled inputs.
     fn regressor(&mut self, regressor: &Regressor, inputs: &[Expr]) -> Expr {
         match regressor {
             Regressor::RandomForest(trees) => {
@@ -41,7 +42,7 @@ impl FormulaWriter {
         }
     }
 
-    /// Layer by layer; a neuron answers `x / sqrt(1 + x^2)`.
+    /// Formula of a network, layer by layer; the activation is `x / sqrt(1 + x^2)`.
     fn network(&mut self, network: &Perceptron, inputs: &[Expr]) -> Expr {
         let mut here = inputs.to_vec();
         let layers: Vec<_> = network.layers().collect();
@@ -54,9 +55,11 @@ impl FormulaWriter {
                 true => sums.into_iter().map(|sum| self.neuron(sum)).collect(),
             };
         }
+        // The last layer has one neuron.
         here.into_iter().next().unwrap_or(Expr::Number(0.0))
     }
 
+    /// Formula of a neuron's activation at its weighted sum.
     fn neuron(&mut self, sum: Expr) -> Expr {
         let x = self.value(sum);
         let square = added(Expr::Number(1.0), x.clone().times(x.clone()));
@@ -66,7 +69,7 @@ impl FormulaWriter {
     }
 }
 
-/// Everything that a correction adds, by its outputs with their places among the rates.
+/// Formulas of all that a correction adds; each output comes with its index among the rates.
 pub(crate) fn formulas(
     mode: BranchMode,
     outputs: &[(usize, BranchOutput, Regressor)],
@@ -74,6 +77,7 @@ pub(crate) fn formulas(
 ) -> AdditionFormulas {
     let mut writer = FormulaWriter::default();
     let share = domain.formula(&mut |expr| writer.value(expr));
+    // The share is used by every output, and gets a name.
     let share = writer.value(share);
     let mut added: [Option<Expr>; 3] = [None, None, None];
     for (place, output, regressor) in outputs {
@@ -81,6 +85,7 @@ pub(crate) fn formulas(
         let difference = match mode {
             BranchMode::Parallel => answer,
             BranchMode::Convert | BranchMode::Serial => {
+                // The correction replaces the law's rate instead of adding to it.
                 subtracted(answer, Expr::Name(LAW_RATES[*place].to_owned()))
             }
         };
@@ -89,17 +94,18 @@ pub(crate) fn formulas(
     AdditionFormulas { values: writer.values, added }
 }
 
-/// An output within the range of its training.
+/// Formula of an output, limited to the range of its training.
 fn answer(writer: &mut FormulaWriter, output: &BranchOutput, regressor: &Regressor) -> Expr {
     let inputs: Vec<Expr> = output.inputs.iter().map(|input| writer.value(scaled(input))).collect();
     let answer = writer.regressor(regressor, &inputs);
     let [low, high] = output.range.map(Expr::Number);
     let scaled = Expr::Number(output.scale).times(answer);
+    // Limited to the range of the training targets.
     let above = Expr::Call(Function::Max, vec![scaled, low]);
     Expr::Call(Function::Min, vec![above, high])
 }
 
-/// An input as the weights take it.
+/// Formula of an input, scaled as in training.
 fn scaled(input: &BranchInput) -> Expr {
     let name = |name: &str| Expr::Name(name.to_owned());
     let signal = match input.signal {
@@ -118,6 +124,7 @@ fn scaled(input: &BranchInput) -> Expr {
     divided(subtracted(signal, Expr::Number(input.centre)), input.scale)
 }
 
+/// Sum of rational quadratic kernels `1 / (1 + |c - x|^2 / (2 length^2))` about the centres.
 fn kernel_sum(kernels: &Kernels, inputs: &[Expr]) -> Expr {
     let twice = 2.0 * kernels.length * kernels.length;
     let kernel = |centre: &[f64]| {
@@ -134,13 +141,13 @@ fn kernel_sum(kernels: &Kernels, inputs: &[Expr]) -> Expr {
     added(Expr::Number(kernels.mean), sum(terms))
 }
 
-/// `bias + row inputs`
+/// Weighted sum `bias + row inputs`.
 fn affine(row: &[f64], bias: f64, inputs: &[Expr]) -> Expr {
     let terms = row.iter().zip(inputs).map(|(w, x)| Expr::Number(*w).times(x.clone()));
     added(Expr::Number(bias), sum(terms))
 }
 
-/// `if(input <= bound, below, above)`
+/// Conditional expression `if(input <= bound, below, above)`.
 pub(crate) fn split(input: Expr, bound: f64, [below, above]: [Expr; 2]) -> Expr {
     let parts = [input, Expr::Number(bound), below, above];
     Expr::If(Comparison::LessOrEqual, Box::new(parts))
@@ -151,7 +158,7 @@ fn sum(terms: impl Iterator<Item = Expr>) -> Expr {
 }
 
 impl Tree {
-    /// The answer as nested choices.
+    /// Prediction of the tree as nested conditional expressions.
     pub fn formula(&self, inputs: &[Expr]) -> Expr {
         self.node_formula(0, inputs)
     }
@@ -159,6 +166,7 @@ impl Tree {
     fn node_formula(&self, at: usize, inputs: &[Expr]) -> Expr {
         let (input, right, value) = self.node(at);
         let Some(input) = input else { return Expr::Number(value) };
+        // The left child directly follows its parent.
         let below = self.node_formula(at + 1, inputs);
         let above = self.node_formula(right, inputs);
         split(inputs[input].clone(), value, [below, above])

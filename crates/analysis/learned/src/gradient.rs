@@ -1,5 +1,5 @@
-//! Derivatives of what a learned correction adds: those of the answer by the chain rule through its
-//! scaled inputs, and those of the share that it counts for.
+//! Derivatives of the addition of a learned correction: those of its prediction by the chain rule
+//! through its scaled inputs, and those of its share.
 
 use sistership_model::branch::{BranchInput, BranchOutput, Signal};
 use sistership_simulation::branch::{AdditionGradient, Instant};
@@ -8,33 +8,36 @@ use crate::answer::answer;
 use crate::regressor::Regressor;
 use crate::sample::scaled;
 
-/// What an output answers less what it replaces, and its derivatives with everything that it may be
-/// told from: u, v, r, delta, n, and the law's rates of u, v, r.
+/// Prediction of an output, less the rate that it replaces, and its derivatives with respect to
+/// everything that it may depend on: u, v, r, delta, n, and the law's rates of u, v, r.
 pub(crate) struct OutputGradient {
     value: f64,
     slopes: [f64; 8],
 }
 
-/// The first of the law's rates among the slopes.
+/// Index of the first of the law's rates among the derivatives.
 const RATES: usize = 5;
 
 impl OutputGradient {
-    /// Of an answer; one at a bound of its range does not move.
+    /// Creates the gradient of a prediction. A prediction at a bound of its range has derivatives
+    /// of zero.
     pub fn new(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> Self {
         let value = answer(output, regressor, instant);
         let mut slopes = [0.0; 8];
         let [low, high] = output.range;
+        // At a limit of the range the prediction is constant, so its derivatives are zero.
         if value > low && value < high {
             let inputs: Vec<f64> =
                 output.inputs.iter().map(|input| scaled(input, instant)).collect();
             for (input, slope) in output.inputs.iter().zip(regressor.gradient(&inputs)) {
+                // d(output)/d(signal): the regressor works on scaled inputs and targets.
                 chain(input, output.scale * slope / input.scale, instant, &mut slopes);
             }
         }
         Self { value, slopes }
     }
 
-    /// Less the law's own rate where the output replaces that.
+    /// Subtracts the law's own rate if the output replaces it.
     pub fn joined(mut self, replaces: bool, instant: &Instant, place: usize) -> Self {
         if replaces {
             self.value -= instant.accelerations[place];
@@ -43,7 +46,8 @@ impl OutputGradient {
         self
     }
 
-    /// Adds `share (value)` of the rate at a place to the derivatives of all.
+    /// Adds the derivatives of `share * value`, an addition to the rate at index `place`, by the
+    /// product rule.
     pub fn add_to(
         &self,
         gradient: &mut AdditionGradient,
@@ -51,6 +55,7 @@ impl OutputGradient {
         (share, by_share): (f64, &[f64; 5]),
     ) {
         let of = |k: usize| {
+            // The share depends on the first five variables only: u, v, r, delta and n.
             share * self.slopes[k] + by_share.get(k).map_or(0.0, |slope| slope * self.value)
         };
         (0..3).for_each(|k| gradient.by_velocity[place][k] += of(k));
@@ -60,7 +65,7 @@ impl OutputGradient {
     }
 }
 
-/// Adds the derivatives of an input, times `by`.
+/// Adds the derivatives of an input's signal, multiplied by `by`.
 fn chain(input: &BranchInput, by: f64, instant: &Instant, slopes: &mut [f64; 8]) {
     match input.signal {
         Signal::U => slopes[0] += by,
@@ -68,10 +73,11 @@ fn chain(input: &BranchInput, by: f64, instant: &Instant, slopes: &mut [f64; 8])
         Signal::R => slopes[2] += by,
         Signal::Delta => slopes[3] += by,
         Signal::N => slopes[4] += by,
-        // The derivatives of atan2(-v, u).
+        // Derivatives of atan2(-v, u).
         Signal::Beta => {
             let [u, v, _] = instant.velocities;
             let square = u * u + v * v;
+            // The drift angle is not defined at rest.
             if square > 0.0 {
                 slopes[0] += by * v / square;
                 slopes[1] -= by * u / square;

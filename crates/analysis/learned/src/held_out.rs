@@ -1,5 +1,5 @@
-//! Trials that are held out of a learned correction's training, with foundations that have not seen
-//! them either.
+//! Held-out trials for the evaluation of learned corrections, with foundations that may have been
+//! fitted without them.
 
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model};
@@ -8,46 +8,48 @@ use crate::joined::{JoinError, attach};
 use crate::train::{TrainError, Training, train};
 use crate::version::with_branch;
 
-/// Most parts in which the trials of one foundation are held out, each once.
+/// Largest number of parts in which the trials of one foundation are held out, each once.
 const FOLDS: usize = 4;
 
-/// A part of the trials that is held out, and the foundation beside which a correction is trained
-/// on the others.
+/// Held-out part of the trials, and the foundation to which a correction trained on the others is
+/// added.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeldOutFold {
-    /// The foundation.
+    /// Model without correction.
     pub foundation: Model,
-    /// The places of the trials that are held out.
+    /// Indices of the held-out trials.
     pub held_out: Vec<usize>,
 }
 
 impl HeldOutFold {
-    /// Parts of as many trials, with one foundation for all, which may have seen them: that favours
-    /// the foundation. None where there is one trial only.
+    /// Divides the trials into folds with one foundation for all, which may have been fitted to
+    /// them: that is in favour of the foundation. Returns no fold if there is only one trial.
     pub fn of_one(model: &Model, trials: usize) -> Vec<Self> {
         let folds = FOLDS.min(trials);
+        // Every n-th trial: adjacent trials fall into different folds.
         let held_out = |fold: usize| (0..trials).filter(|place| place % folds == fold).collect();
         let one = |fold| Self { foundation: model.foundation(), held_out: held_out(fold) };
+        // A single fold would leave no trial to train on.
         if folds < 2 { Vec::new() } else { (0..folds).map(one).collect() }
     }
 }
 
-/// What a correction is judged on.
+/// Trials for the evaluation of a correction, with their folds.
 #[derive(Debug, Clone, Copy)]
 pub struct HeldOutTrials<'a> {
-    /// The law of the foundations.
+    /// Law of the foundations.
     pub law: &'a Law,
     /// All trials.
     pub trials: &'a [&'a Trial],
-    /// Their parts.
+    /// Folds of the trials.
     pub folds: &'a [HeldOutFold],
 }
 
 impl HeldOutTrials<'_> {
-    /// A fold's foundation with the correction that is trained on its other trials.
+    /// Returns a fold's foundation with the correction that is trained on its other trials.
     ///
     /// # Errors
-    /// As [`train`].
+    /// Returns the errors of the training.
     pub fn corrected(&self, fold: &HeldOutFold, training: &Training) -> Result<Model, TrainError> {
         let places = self.trials.iter().enumerate();
         let others = places.filter(|(place, _)| !fold.held_out.contains(place));
@@ -56,10 +58,10 @@ impl HeldOutTrials<'_> {
     }
 }
 
-/// A foundation with a correction trained on some trials, ready to be simulated.
+/// Returns a foundation with a correction trained on some trials, ready for simulation.
 ///
 /// # Errors
-/// As [`train`].
+/// Returns the errors of the training.
 pub fn corrected(
     foundation: &Model,
     law: &Law,

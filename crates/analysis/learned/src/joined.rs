@@ -1,4 +1,4 @@
-//! A model with the weights of its branch, so that it sails by both halves.
+//! Models with the weights of their learned correction attached, ready for simulation.
 
 use std::sync::Arc;
 
@@ -10,46 +10,48 @@ use sistership_simulation::{Envelope, PlantError, Ship};
 use crate::learned::Learned;
 use crate::weights::{Weights, WeightsError};
 
-/// Why a model cannot be sailed with its branch.
+/// Error of attaching a learned correction to a model.
 #[derive(Debug, thiserror::Error)]
 pub enum JoinError {
-    /// It has none.
+    /// The model has no learned correction.
     #[error("`{0}` has no learned branch")]
     None(String),
-    /// The document is at fault.
+    /// The document of the correction is invalid.
     #[error("branch.{0}")]
     Branch(#[from] BranchError),
-    /// The weights are.
+    /// The weights are invalid.
     #[error(transparent)]
     Weights(#[from] WeightsError),
-    /// The foundation cannot be sailed.
+    /// The foundation cannot be simulated.
     #[error(transparent)]
     Foundation(#[from] PlantError),
-    /// It asks for what it cannot see.
+    /// The correction uses channels that a simulation does not provide.
     #[error("branch: its domain or an output has channels beside u, v, r, delta and n")]
     Channels,
-    /// It reaches where no simulation may go.
+    /// The correction acts outside the physical range.
     #[error("branch.fade: {fade} lets it act beyond the physical range; give less")]
     Reach {
-        /// The fade.
+        /// Fade of the correction.
         fade: f64,
     },
 }
 
-/// Attaches the weights of a model's branch, the bytes that it names by hash, so that
-/// [`Ship::new`] sails it by both halves.
+/// Attaches the weights of a model's learned correction, the bytes that it names by hash, so that
+/// [`Ship::new`] simulates the model with its correction.
 ///
 /// # Errors
-/// Names what of branch or weights is at fault; the model stays as it is.
+/// Returns an error that names the faulty part of correction or weights; the model is then
+/// unchanged.
 pub fn attach(model: &mut Model, weights: &[u8]) -> Result<(), JoinError> {
     let envelope = Envelope::of(model);
     let Some(branch) = &mut model.branch else {
         return Err(JoinError::None(model.name.clone()));
     };
+    // Everything that can fail comes before the model is changed.
     branch.check()?;
     let weights = Weights::read(weights, branch)?;
     let learned = Learned::of(branch, weights).ok_or(JoinError::Channels)?;
-    // A model without length or speed does not sail at all, and says so then.
+    // A model without length or speed has no envelope; it is refused when a ship is made of it.
     if envelope.is_some_and(|envelope| !learned.domain().is_within(&envelope)) {
         return Err(JoinError::Reach { fade: branch.fade });
     }
@@ -57,11 +59,12 @@ pub fn attach(model: &mut Model, weights: &[u8]) -> Result<(), JoinError> {
     Ok(())
 }
 
-/// Makes a model with a branch ready; `weights` are the bytes that the branch names by hash. Runs
-/// say how they left what the trials covered ([`Ship::leaves`]), outside which the branch fades.
+/// Creates a ship from a model with a learned correction; `weights` are the bytes that the
+/// correction names by hash. A simulation reports when it left the range covered by trials
+/// ([`Ship::leaves`]), outside which the correction fades.
 ///
 /// # Errors
-/// Names what of branch, weights or foundation is at fault.
+/// Returns an error that names the faulty part of correction, weights or foundation.
 pub fn ship(model: &Model, law: &Law, weights: &[u8]) -> Result<Ship, JoinError> {
     let mut model = model.clone();
     attach(&mut model, weights)?;

@@ -1,5 +1,5 @@
-//! What a branch is worth: simulations of trials left out of its training, by the foundation and by
-//! both together.
+//! Evaluation of learned corrections: simulations of held-out trials by the foundation, with and
+//! without the correction.
 
 use std::collections::BTreeMap;
 
@@ -15,70 +15,71 @@ use sistership_simulation::recorded::{ReplaySettings, replay};
 use crate::held_out::{HeldOutFold, HeldOutTrials};
 use crate::train::{TrainError, Training};
 
-/// Ship lengths sailed between restarts of a simulation; each trial is simulated as a whole, too,
-/// and the error is the geometric mean of both.
+/// Ship lengths between restarts of a simulation; each trial is also simulated as a whole, and the
+/// error is the geometric mean of both.
 const RESTART_LENGTHS: f64 = 10.0;
 
-/// What a branch is worth on trials left out of its training.
+/// Evaluation of a correction on held-out trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// Each trial, by a branch that was trained without it.
+    /// Each trial, by a correction that was trained without it.
     pub trials: Vec<JudgedTrial>,
     /// Standardised mean squared error of the foundation, mean over the trials.
     pub foundation: f64,
-    /// The same with the branch.
+    /// The same with the correction.
     pub branch: f64,
     /// Standard error of the difference of the two over the trials.
     pub standard_error: f64,
-    /// What the branch counted for in the mean over these simulations, 0 to 1.
+    /// Mean share of the correction over these simulations, 0 to 1.
     pub share: f64,
 }
 
-/// A trial that a branch has not seen.
+/// Evaluation of one held-out trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JudgedTrial {
-    /// Its name.
+    /// Name of the trial.
     pub name: String,
-    /// By the foundation.
+    /// Error of the foundation.
     pub foundation: TrialError,
-    /// With the branch.
+    /// Error with the correction.
     pub branch: TrialError,
-    /// What the branch counted for in the mean over the simulation, 0 to 1.
+    /// Mean share of the correction over the simulation, 0 to 1.
     pub share: f64,
 }
 
-/// How far a simulation is from a trial.
+/// Errors of a simulation of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialError {
-    /// Root mean squares by channel, SI.
+    /// Root mean squared errors by channel, SI units.
     pub rmse: BTreeMap<String, f64>,
     /// Standardised mean squared error (Wakita 2022, Eq. 26), the geometric mean of simulations
-    /// that restart every ten ship lengths and of the whole trial; what is not simulated since one
-    /// stopped counts as an unrelated motion would.
+    /// that restart every ten ship lengths and of the whole trial; samples that are not simulated
+    /// because a simulation stopped count like an unrelated motion.
     pub standardised_mse: f64,
-    /// Why the simulation stopped early, if it did; the root mean squares are until then.
+    /// Reason why the simulation stopped early, if it did; the root mean squared errors are up to
+    /// then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
 }
 
 impl Judgement {
-    /// Whether the branch is better by more than one standard error.
+    /// True if the correction is better by more than one standard error.
     pub fn wins(&self) -> bool {
         self.foundation - self.branch > self.standard_error
     }
 
-    /// Whether it is worse by more than one standard error.
+    /// True if the correction is worse by more than one standard error.
     pub fn loses(&self) -> bool {
         self.branch - self.foundation > self.standard_error
     }
 }
 
-/// Judges a training on trials left out, a part of them at a time, beside a foundation that may
-/// have been fitted on all of them, which this favours; none where there is one trial only, and
+/// Evaluates a training on held-out trials, a part of them at a time. The foundation may have been
+/// fitted to all of them, which is in its favour. Returns `None` if there is only one trial, as
 /// nothing is left to train on.
 ///
 /// # Errors
-/// As [`train`](crate::train()).
+/// Returns the errors of the training and of the simulations.
 pub fn judge(
     model: &Model,
     law: &Law,
@@ -90,11 +91,11 @@ pub fn judge(
     judge_folds(&held_out, training, ReplaySettings::default().step_s)
 }
 
-/// Judges a training on trials held out by simulations whose steps are at most so long, s; none
-/// where nothing is held out.
+/// Evaluates a training on held-out trials, by simulations with a largest step of `step_s`, s.
+/// Returns `None` if no trial is held out.
 ///
 /// # Errors
-/// As [`judge`].
+/// Returns the errors of the training and of the simulations.
 pub fn judge_folds(
     on: &HeldOutTrials<'_>,
     training: &Training,
@@ -102,21 +103,24 @@ pub fn judge_folds(
 ) -> Result<Option<Judgement>, TrainError> {
     let scales = Scales { deviations: standard_deviations(on.trials), step_s };
     let part = |fold: &HeldOutFold| judged(on, fold, training, &scales);
+    // Folds are trained in parallel, each with its own correction.
     let parts: Vec<Vec<(usize, JudgedTrial)>> =
         on.folds.par_iter().map(part).collect::<Result<_, TrainError>>()?;
     let mut judged: Vec<(usize, JudgedTrial)> = parts.into_iter().flatten().collect();
+    // Folds hold out every n-th trial: restore the order of the trials.
     judged.sort_by_key(|(place, _)| *place);
     let trials: Vec<JudgedTrial> = judged.into_iter().map(|(_, trial)| trial).collect();
     Ok((!trials.is_empty()).then(|| summed(trials)))
 }
 
-/// By what errors are divided, and in what steps simulations go.
+/// Divisors of the errors, and the largest step of the simulations.
 struct Scales {
     deviations: BTreeMap<Channel, f64>,
     step_s: f64,
 }
 
-/// The trials of a fold, by its foundation and by the branch trained on the others.
+/// Evaluates the held-out trials of a fold, by its foundation and by the correction trained on the
+/// other trials.
 fn judged(
     on: &HeldOutTrials<'_>,
     fold: &HeldOutFold,
@@ -126,6 +130,7 @@ fn judged(
     let both = on.corrected(fold, training)?;
     let of = |&place: &usize| -> Result<(usize, JudgedTrial), TrainError> {
         let trial = on.trials[place];
+        // The same simulations with and without the correction, so that only it differs.
         let (foundation, _) = simulated(&fold.foundation, on.law, trial, scales)?;
         let (branch, share) = simulated(&both, on.law, trial, scales)?;
         let share = share.unwrap_or(0.0);
@@ -134,8 +139,8 @@ fn judged(
     fold.held_out.iter().map(of).collect()
 }
 
-/// A trial simulated, started anew every ten ship lengths and as a whole: how far off it is, and
-/// what the branch counted for.
+/// Simulates a trial, restarted every ten ship lengths and as a whole. Returns its errors, and the
+/// mean share of the correction.
 fn simulated(
     model: &Model,
     law: &Law,
@@ -144,6 +149,7 @@ fn simulated(
 ) -> Result<(TrialError, Option<f64>), TrainError> {
     let mut ship = Ship::new(model, law)?;
     let speeds = trial.channel(Channel::U).into_iter().flatten();
+    // Widens the envelope to the fastest recorded speed, which may exceed the approach speed.
     ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
     let run = |restart_s: Option<f64>| {
         let settings =
@@ -151,6 +157,7 @@ fn simulated(
         replay(&ship, trial, &settings).map_err(crate::rows::RowsError::from)
     };
     let restarted = run(Some(RESTART_LENGTHS * ship.lpp_m() / ship.approach_speed_m_s()))?;
+    // The share is taken along the restarted simulation, which stays close to the trial.
     let (share, whole) = (ship.branch_share(&restarted.track), run(None)?);
     let (rmse, stopped) = (SquaredError::of(trial, &restarted).rmse(), restarted.stopped.clone());
     let horizon = |run| HorizonErrors::with_stops(&[trial], &[run], &scales.deviations);
@@ -159,6 +166,7 @@ fn simulated(
     Ok((TrialError { rmse, standardised_mse, stopped }, share))
 }
 
+/// Means over the trials, and the standard error of the mean gain.
 fn summed(trials: Vec<JudgedTrial>) -> Judgement {
     let count = trials.len() as f64;
     let mean = |of: &dyn Fn(&JudgedTrial) -> f64| trials.iter().map(of).sum::<f64>() / count;
@@ -169,6 +177,7 @@ fn summed(trials: Vec<JudgedTrial>) -> Judgement {
     Judgement {
         foundation: mean(&|trial| trial.foundation.standardised_mse),
         branch: mean(&|trial| trial.branch.standardised_mse),
+        // Of a mean over trials: sqrt(sum of squared deviations / (n (n - 1))).
         standard_error: (squares / (count * (count - 1.0))).sqrt(),
         share: mean(&|trial| trial.share),
         trials,

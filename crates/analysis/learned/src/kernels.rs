@@ -9,25 +9,27 @@ use serde::{Deserialize, Serialize};
 use crate::draws::Draws;
 use crate::sample::Sample;
 
-/// A sum of kernels.
+/// Weighted sum of kernels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Kernels {
-    /// What is answered far from every centre.
+    /// Prediction far from every centre: the mean of the targets.
     pub mean: f64,
-    /// Length scale, in deviations.
+    /// Length scale, in standard deviations of the inputs.
     pub length: f64,
-    /// The samples that kernels stand about, one after the other.
+    /// Inputs of the samples that are kernel centres, one after the other.
     pub centres: Vec<f64>,
-    /// What each counts for.
+    /// Weight of each kernel.
     pub factors: Vec<f64>,
 }
 
-/// What keeps the system solvable where two centres all but coincide, by its mean diagonal: well
-/// above what rounding makes of a sum of some thousand products, 1e-13 of it.
+/// Nugget that keeps the system solvable where two centres almost coincide, relative to its mean
+/// diagonal: well above the rounding error of a sum of some thousand products, which is 1e-13 of
+/// it.
 const NUGGET: f64 = 1e-10;
 
-/// Solves `(K_mn K_nm + ridge K_mm) factors = K_mn targets`; none where that is singular.
+/// Solves `(K_mn K_nm + ridge K_mm) factors = K_mn targets`. Returns `None` if the matrix is
+/// singular.
 pub fn train(
     sample: &Sample,
     centres: usize,
@@ -36,15 +38,19 @@ pub fn train(
     draws: &mut Draws,
 ) -> Option<Kernels> {
     let mut about = draws.some_of(centres, sample.len());
+    // In ascending order, the centres do not depend on the order of the draws.
     about.sort_unstable();
     let rows = about.iter().flat_map(|row| sample.row(*row as usize)).collect();
+    // The process has a constant mean; the kernels explain the rest.
     let mean = sample.targets.iter().sum::<f64>() / sample.len() as f64;
     let mut kernels = Kernels { mean, length, centres: rows, factors: vec![0.0; about.len()] };
     let (mut matrix, mut right) = normal_equations(&kernels, sample);
     for (place, row) in about.iter().enumerate() {
         let own = kernels.values(&sample.row(*row as usize));
+        // The ridge times the kernel matrix of the centres among themselves.
         own.iter().enumerate().for_each(|(k, value)| matrix[(place, k)] += ridge * value);
     }
+    // Relative to the mean diagonal, so that it does not depend on the scale of the kernels.
     let nugget = NUGGET * matrix.trace() / about.len() as f64;
     (0..about.len()).for_each(|k| matrix[(k, k)] += nugget);
     Cholesky::new(matrix)?.solve_mut(&mut right);
@@ -52,7 +58,7 @@ pub fn train(
     kernels.factors.iter().all(|factor| factor.is_finite()).then_some(kernels)
 }
 
-/// `K_mn K_nm` and `K_mn targets`.
+/// Accumulates `K_mn K_nm` and `K_mn targets`.
 fn normal_equations(kernels: &Kernels, sample: &Sample) -> (DMatrix<f64>, DVector<f64>) {
     let count = kernels.factors.len();
     let mut matrix = DMatrix::zeros(count, count);
@@ -63,6 +69,7 @@ fn normal_equations(kernels: &Kernels, sample: &Sample) -> (DMatrix<f64>, DVecto
         for (column, value) in values.iter().enumerate() {
             right[column] += value * target;
             let own = &mut matrix.column_mut(column);
+            // The matrix is symmetric: only the lower triangle is summed.
             own.iter_mut().zip(&values).skip(column).for_each(|(m, other)| *m += value * other);
         }
     }
@@ -71,25 +78,27 @@ fn normal_equations(kernels: &Kernels, sample: &Sample) -> (DMatrix<f64>, DVecto
 }
 
 impl Kernels {
+    /// Values of all kernels at the inputs.
     fn values(&self, inputs: &[f64]) -> Vec<f64> {
         self.centres.chunks_exact(inputs.len()).map(|centre| self.kernel(centre, inputs)).collect()
     }
 
+    /// Value of the kernel about a centre.
     #[inline]
     fn kernel(&self, centre: &[f64], inputs: &[f64]) -> f64 {
         let square: f64 = centre.iter().zip(inputs).map(|(c, x)| (c - x) * (c - x)).sum();
         1.0 / (1.0 + square / (2.0 * self.length * self.length))
     }
 
-    /// The sum.
+    /// Prediction: the weighted sum of the kernels.
     pub fn answer(&self, inputs: &[f64]) -> f64 {
         let centres = self.centres.chunks_exact(inputs.len());
         let terms = centres.zip(&self.factors).map(|(c, factor)| factor * self.kernel(c, inputs));
         self.mean + terms.sum::<f64>()
     }
 
-    /// Adds the derivatives of the answer to `slopes`: of a kernel `k` about `c`,
-    /// `dk/dx = k^2 (c - x) / length^2`.
+    /// Adds the derivatives of the prediction to `slopes`: a kernel `k` about `c` has `dk/dx = k^2
+    /// (c - x) / length^2`.
     pub fn add_gradient(&self, inputs: &[f64], slopes: &mut [f64]) {
         let scale = 1.0 / (self.length * self.length);
         for (centre, factor) in self.centres.chunks_exact(inputs.len()).zip(&self.factors) {
@@ -99,7 +108,7 @@ impl Kernels {
         }
     }
 
-    /// Whether the lists go together and are of numbers.
+    /// True if the lists are consistent and hold finite numbers only.
     pub fn is_sound(&self, inputs: usize) -> bool {
         let mut numbers = self.centres.iter().chain(&self.factors).chain([&self.mean]);
         self.centres.len() == inputs * self.factors.len()

@@ -1,4 +1,4 @@
-//! A branch with its weights, ready to be asked at every step of a simulation.
+//! A learned correction with its weights, ready for evaluation at every step of a simulation.
 
 use sistership_model::branch::{Branch, BranchMode, BranchOutput};
 use sistership_model::coefficient::Axis;
@@ -11,7 +11,7 @@ use crate::gradient::OutputGradient;
 use crate::regressor::Regressor;
 use crate::weights::Weights;
 
-/// A branch with its weights.
+/// A learned correction with its weights.
 #[derive(Debug, Clone)]
 pub struct Learned {
     mode: BranchMode,
@@ -20,8 +20,9 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// Of a branch and weights that suit it; none where its domain bounds what no branch sees, or
-    /// it has more inputs than there are signals.
+    /// Creates a correction from its document and weights. Returns `None` if the domain bounds
+    /// channels that a correction does not have, or if an output has more inputs than there are
+    /// signals.
     pub fn of(branch: &Branch, weights: Weights) -> Option<Self> {
         let domain = FadedDomain::of(&branch.domain, branch.fade)?;
         let place = |axis: Axis| [Axis::X, Axis::Y, Axis::N].iter().position(|a| *a == axis);
@@ -33,7 +34,7 @@ impl Learned {
         Some(Self { mode: branch.mode, outputs, domain })
     }
 
-    /// The domain with how it fades.
+    /// Domain in which the correction acts, with its fading.
     pub fn domain(&self) -> &FadedDomain {
         &self.domain
     }
@@ -51,6 +52,8 @@ impl LearnedBranch for Learned {
         }
         for (place, output, regressor) in &self.outputs {
             let answer = answer(output, regressor, instant);
+            // A converting or serial correction predicts the whole acceleration, so the law's own
+            // value is subtracted from it.
             let replaced = match self.mode {
                 BranchMode::Parallel => 0.0,
                 BranchMode::Convert | BranchMode::Serial => instant.accelerations[*place],
@@ -66,6 +69,7 @@ impl LearnedBranch for Learned {
         if share == 0.0 {
             return gradient;
         }
+        // Product rule: the share depends on the motion, too.
         let by_share = self.domain.gradient(instant);
         for (place, output, regressor) in &self.outputs {
             let replaces = self.mode != BranchMode::Parallel;

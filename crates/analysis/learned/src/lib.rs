@@ -1,7 +1,9 @@
-//! Learned branches: what is learned beside a law of motion, from trials, and sailed with it.
+//! Learned corrections: regressors trained on trials that add to the accelerations of a law of
+//! motion.
 //!
-//! [`train`] makes a branch and its weights, [`ship`] joins them to the model's own law. The same
-//! foundation, trials, recipe and seed give the same bytes (decision 20).
+//! Training gives a correction and its weights; [`attach`] joins them to a model, which is then
+//! simulated with its correction. The same foundation, trials, recipe and seed give the same bytes
+//! (decision 20).
 
 mod answer;
 mod boosted;

@@ -1,52 +1,54 @@
-//! Multilayer perceptrons, trained by Adam (Kingma and Ba 2015, Algorithm 1) with decay of the
-//! weights beside the gradient (Loshchilov and Hutter 2019). Neurons answer `x / sqrt(1 + x^2)`,
-//! which every processor rounds alike, as it does not the hyperbolic tangent.
+//! Multilayer perceptrons, trained by Adam (Kingma and Ba 2015, Algorithm 1) with weight decay
+//! decoupled from the gradient (Loshchilov and Hutter 2019). The activation function is `x / sqrt(1
+//! + x^2)`, which every processor rounds in the same way, unlike the hyperbolic tangent.
 
 use serde::{Deserialize, Serialize};
 
 use crate::draws::Draws;
 use crate::sample::Sample;
 
-/// Layers of neurons; the last has one, which answers its sum.
+/// Layers of neurons; the last layer has one neuron, which is linear.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Perceptron(Vec<Layer>);
 
-/// Neurons that see the same.
+/// Layer of neurons with common inputs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Layer {
-    /// Of each neuron after the other, one for every input.
+    /// Weights of one neuron after the other, one weight for each input.
     weights: Vec<f64>,
     biases: Vec<f64>,
 }
 
-/// How a perceptron is trained.
+/// Settings of the training of a perceptron.
 #[derive(Debug, Clone)]
 pub struct Descent<'a> {
-    /// Neurons of each hidden layer.
+    /// Number of neurons of each hidden layer.
     pub hidden: &'a [usize],
-    /// How often every sample is seen.
+    /// Number of passes over all samples.
     pub epochs: usize,
-    /// Samples to a step.
+    /// Number of samples per step.
     pub batch: usize,
-    /// Length of the first steps; it falls linearly to nothing.
+    /// Initial learning rate; it decreases linearly to zero.
     pub rate: f64,
-    /// Decay of the weights by step and rate.
+    /// Weight decay, multiplied by the learning rate at each step.
     pub decay: f64,
 }
 
-/// Most neurons of a layer, and room for a layer's answers.
+/// Largest number of neurons of a layer, and the size of the buffers of a layer's outputs.
 const MOST: usize = 256;
 
 impl Layer {
-    /// Small random weights by the fan in and out (Glorot and Bengio 2010, Eq. 16).
+    /// Random initial weights, uniform within limits by the number of inputs and neurons (Glorot
+    /// and Bengio 2010, Eq. 16).
     fn drawn(inputs: usize, neurons: usize, draws: &mut Draws) -> Self {
         let limit = (6.0 / (inputs + neurons) as f64).sqrt();
         let weights = (0..inputs * neurons).map(|_| limit * draws.signed()).collect();
         Self { weights, biases: vec![0.0; neurons] }
     }
 
+    /// Weighted sums of the inputs, `W x + b`.
     fn sums(&self, inputs: &[f64], out: &mut [f64]) {
         let rows = self.weights.chunks_exact(inputs.len());
         for ((out, row), bias) in out.iter_mut().zip(rows).zip(&self.biases) {
@@ -54,8 +56,9 @@ impl Layer {
         }
     }
 
-    /// Derivatives with the inputs of a layer from those with its sums.
+    /// Derivatives with respect to the inputs of a layer from those with respect to its sums.
     fn backward(&self, by_sum: &[f64]) -> Vec<f64> {
+        // The number of inputs is not stored; it follows from the weights.
         let width = self.weights.len() / self.biases.len();
         let mut by_input = vec![0.0; width];
         for (row, value) in self.weights.chunks_exact(width).zip(by_sum) {
@@ -64,20 +67,22 @@ impl Layer {
         by_input
     }
 
+    /// Weights and biases, in this order.
     fn numbers(&mut self) -> impl Iterator<Item = &mut f64> {
         self.weights.iter_mut().chain(&mut self.biases)
     }
 }
 
-/// A neuron's answer to its sum, and the slope there.
+/// Activation of a neuron at its weighted sum, and the derivative there.
 fn neuron(sum: f64) -> (f64, f64) {
     let root = 1.0 / (1.0 + sum * sum).sqrt();
     (sum * root, root * root * root)
 }
 
 impl Perceptron {
-    /// The answer for inputs in deviations.
+    /// Prediction for inputs in standard deviations.
     pub fn answer(&self, inputs: &[f64]) -> f64 {
+        // Fixed buffers on the stack: this is called at every step of a simulation.
         let (mut here, mut next) = ([0.0; MOST], [0.0; MOST]);
         let mut width = inputs.len();
         here[..width].copy_from_slice(inputs);
@@ -92,12 +97,13 @@ impl Perceptron {
         here[0]
     }
 
-    /// The layers in order: weights neuron after neuron, and biases.
+    /// Layers in order: the weights, neuron after neuron, and the biases.
     pub fn layers(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         self.0.iter().map(|layer| (&layer.weights[..], &layer.biases[..]))
     }
 
-    /// Adds the derivatives of the answer to `slopes`, backwards through the layers.
+    /// Adds the derivatives of the prediction with respect to the inputs to `slopes`, by
+    /// backpropagation through the layers.
     pub fn add_gradient(&self, inputs: &[f64], slopes: &mut [f64]) {
         let mut here = inputs.to_vec();
         let mut hidden = Vec::with_capacity(self.0.len());
@@ -107,6 +113,8 @@ impl Perceptron {
             hidden.push(sums.iter().map(|sum| neuron(*sum).1).collect::<Vec<f64>>());
             here = sums.into_iter().map(|sum| neuron(sum).0).collect();
         }
+        // Backwards from the output, whose derivative with respect to itself is 1. The last layer
+        // is linear and has no factor of the activation.
         let mut after = vec![1.0];
         for (place, layer) in self.0.iter().enumerate().rev() {
             if place + 1 < self.0.len() {
@@ -117,9 +125,10 @@ impl Perceptron {
         slopes.iter_mut().zip(after).for_each(|(slope, value)| *slope += value);
     }
 
-    /// Whether layers go together, end in one neuron and are of numbers.
+    /// True if the layers fit together, end in one neuron and hold finite numbers only.
     pub fn is_sound(&self, inputs: usize) -> bool {
         let mut width = inputs;
+        // Buffers have a fixed size, so wider layers must be rejected here.
         let goes_on = |layer: &Layer| {
             let before = std::mem::replace(&mut width, layer.biases.len());
             let mut numbers = layer.weights.iter().chain(&layer.biases);
@@ -143,10 +152,12 @@ pub fn train(sample: &Sample, descent: &Descent<'_>, draws: &mut Draws) -> Perce
     let steps = descent.epochs * sample.len().div_ceil(descent.batch);
     let mut taken = 0;
     for _ in 0..descent.epochs {
+        // A new random order of all samples in each epoch.
         for batch in draws.some_of(sample.len(), sample.len()).chunks(descent.batch) {
             for row in batch {
                 trainee.learn(&rows[*row as usize], sample.targets[*row as usize]);
             }
+            // Linear decay of the learning rate to zero over all steps.
             let rate = descent.rate * (1.0 - taken as f64 / steps as f64);
             trainee.step(batch.len(), rate, descent.decay);
             taken += 1;
@@ -155,24 +166,24 @@ pub fn train(sample: &Sample, descent: &Descent<'_>, draws: &mut Draws) -> Perce
     trainee.network
 }
 
-/// A network with the sums of its gradient and Adam's moments.
+/// State of the training: the network, the sums of its gradient and the moments of Adam.
 struct Trainee {
     network: Perceptron,
     gradient: Vec<Layer>,
     first: Vec<Layer>,
     second: Vec<Layer>,
-    /// What the moments lack of their full size: powers of the decays.
+    /// Bias of the moments relative to their full size: powers of the decay rates.
     lacks: [f64; 2],
-    /// Answers of each layer, the inputs first, and slopes there.
+    /// Outputs of each layer, the inputs first, and derivatives there.
     answers: Vec<Vec<f64>>,
     slopes: Vec<Vec<f64>>,
-    /// How the error changes with each sum of a layer, and of the one before it.
+    /// Derivatives of the error with respect to the sums of a layer, and of the one before it.
     blame: Vec<f64>,
     before: Vec<f64>,
 }
 
-/// Adam's decays of the moments and what keeps it from dividing by nothing, as its authors give
-/// them.
+/// Decay rates of the moments of Adam, and the constant that prevents a division by zero, as given
+/// by its authors.
 const DECAYS: [f64; 2] = [0.9, 0.999];
 const EPSILON: f64 = 1e-8;
 
@@ -200,11 +211,12 @@ impl Trainee {
         }
     }
 
-    /// Adds the gradient of a row's squared error by half.
+    /// Adds the gradient of half the squared error of a row.
     fn learn(&mut self, inputs: &[f64], target: f64) {
         self.forward(inputs);
         let last = self.network.0.len();
         self.blame.clear();
+        // Derivative of half the squared error with respect to the output.
         self.blame.push(self.answers[last][0] - target);
         for place in (0..last).rev() {
             self.backward(place);
@@ -212,6 +224,7 @@ impl Trainee {
         }
     }
 
+    /// Evaluates all layers and keeps their outputs and derivatives.
     fn forward(&mut self, inputs: &[f64]) {
         self.answers[0].clear();
         self.answers[0].extend_from_slice(inputs);
@@ -227,7 +240,7 @@ impl Trainee {
         }
     }
 
-    /// Adds a layer's gradient, and finds the blame of the one before.
+    /// Adds the gradient of a layer, and computes the error derivatives of the layer before it.
     fn backward(&mut self, place: usize) {
         let (inputs, layer) = (&self.answers[place], &self.network.0[place]);
         self.before.clear();
@@ -242,14 +255,16 @@ impl Trainee {
             let back = self.before.iter_mut().zip(&layer.weights[own]);
             back.for_each(|(back, weight)| *back += blame * weight);
         }
+        // The inputs themselves have no activation.
         if place > 0 {
             self.before.iter_mut().zip(&self.slopes[place - 1]).for_each(|(b, slope)| *b *= slope);
         }
     }
 
-    /// A step of Adam by the mean gradient of a batch, which is forgotten.
+    /// Applies a step of Adam with the mean gradient of a batch, then resets the gradient.
     fn step(&mut self, batch: usize, rate: f64, decay: f64) {
         self.lacks.iter_mut().zip(DECAYS).for_each(|(lack, decay)| *lack *= decay);
+        // Correction of the bias of the moments, which start at zero (Algorithm 1).
         let full = self.lacks.map(|lack| 1.0 - lack);
         let layers = self.network.0.iter_mut().zip(&mut self.gradient);
         let moments = self.first.iter_mut().zip(&mut self.second);
@@ -260,6 +275,7 @@ impl Trainee {
                 *m = DECAYS[0] * *m + (1.0 - DECAYS[0]) * slope;
                 *v = DECAYS[1] * *v + (1.0 - DECAYS[1]) * slope * slope;
                 let move_by = (*m / full[0]) / ((*v / full[1]).sqrt() + EPSILON);
+                // The decay does not pass through the moments: that is the decoupling.
                 *number -= rate * (move_by + decay * *number);
             }
         }

@@ -1,4 +1,4 @@
-//! What was learned of one acceleration, of any kind.
+//! Regressor of one acceleration, of any kind of learner.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::branch::Learner;
@@ -11,39 +11,43 @@ use crate::perceptron::{self, Descent, Perceptron};
 use crate::sample::Sample;
 use crate::tree::{Growth, Tree};
 
-/// Weights of one output.
+/// Trained weights of one output.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regressor {
-    /// The mean of trees.
+    /// Mean of trees.
     RandomForest(Vec<Tree>),
-    /// The sum of trees.
+    /// Sum of trees.
     BoostedTrees(BoostedTrees),
-    /// The sum of kernels.
+    /// Sum of kernels.
     KernelRidge(Kernels),
-    /// A network.
+    /// Neural network.
     Perceptron(Perceptron),
 }
 
-/// Half width of the secants that stand for the derivatives of trees, whose own are zero or
-/// infinite, in deviations of the input over the training. Wider secants miss the curvature of what
-/// was learned, narrower ones show single leaves; the test below has the errors at half and double.
+/// Half width of the secants that replace the derivatives of trees, which are zero or infinite, in
+/// standard deviations of the input over the training data. Wider secants miss the curvature of the
+/// learned function, narrower ones show single leaves; the test below has the errors at half and
+/// double.
 const HALF_SECANT: f64 = 0.5;
 
-/// Streams of random numbers between the outputs: more than the trees that one may have.
+/// Distance between the random number streams of two outputs: more than the largest number of
+/// trees.
 const STREAMS: u64 = 1 << 16;
 
 impl Regressor {
-    /// Learns one output; none where its equations are singular.
+    /// Trains the regressor of one output. Returns `None` if its equations are singular.
     pub fn train(learner: &Learner, sample: &Sample, seed: u64, output: usize) -> Option<Self> {
         let stream = STREAMS * output as u64;
         let mut draws = Draws::new(seed, stream);
         Some(match *learner {
+            // Trees draw from streams of their own, counted from the output's first stream.
             Learner::RandomForest { trees, tried, leaf, depth } => {
                 let growth = Growth { leaf, depth, tried };
                 Self::RandomForest(forest::train(sample, trees, growth, seed, stream))
             }
             Learner::BoostedTrees { trees, leaf, depth, rate, sampled } => {
+                // Boosted trees consider all inputs at each split.
                 let growth = Growth { leaf, depth, tried: sample.columns.len() };
                 let boosting = Boosting { trees, rate, sampled };
                 Self::BoostedTrees(boosted::train(sample, boosting, growth, seed, stream))
@@ -58,7 +62,7 @@ impl Regressor {
         })
     }
 
-    /// The answer, in deviations, to inputs in deviations.
+    /// Prediction for scaled inputs, in standard deviations of the target.
     #[inline]
     pub fn answer(&self, inputs: &[f64]) -> f64 {
         match self {
@@ -69,14 +73,16 @@ impl Regressor {
         }
     }
 
-    /// The derivatives of the answer with the inputs, both in deviations: analytic where the answer
-    /// is smooth, else secants over [`HALF_SECANT`] to either side.
+    /// Derivatives of the prediction with respect to the inputs, both in standard deviations:
+    /// analytic where the regressor is smooth, otherwise secants over [`HALF_SECANT`] to either
+    /// side.
     pub fn gradient(&self, inputs: &[f64]) -> Vec<f64> {
         let mut slopes = vec![0.0; inputs.len()];
         match self {
             Self::KernelRidge(kernels) => kernels.add_gradient(inputs, &mut slopes),
             Self::Perceptron(network) => network.add_gradient(inputs, &mut slopes),
             Self::RandomForest(_) | Self::BoostedTrees(_) => {
+                // One copy is enough: each secant restores the input that it moves.
                 let mut moved = inputs.to_vec();
                 for (place, slope) in slopes.iter_mut().enumerate() {
                     *slope = self.secant(&mut moved, place, HALF_SECANT);
@@ -86,7 +92,7 @@ impl Regressor {
         slopes
     }
 
-    /// The mean slope about the place of an input; `inputs` are as before afterwards.
+    /// Slope of the secant through two points about one input; `inputs` are restored afterwards.
     fn secant(&self, inputs: &mut [f64], place: usize, half: f64) -> f64 {
         let centre = inputs[place];
         let [above, below] = [1.0, -1.0].map(|side| {
@@ -97,7 +103,7 @@ impl Regressor {
         (above - below) / (2.0 * half)
     }
 
-    /// Whether it is of a learner's kind.
+    /// True if the regressor is of the kind of the learner.
     pub fn is_of(&self, learner: &Learner) -> bool {
         matches!(
             (self, learner),
@@ -108,7 +114,7 @@ impl Regressor {
         )
     }
 
-    /// Whether its parts go together for so many inputs.
+    /// True if the parts are consistent with each other for this number of inputs.
     pub fn is_sound(&self, inputs: usize) -> bool {
         match self {
             Self::RandomForest(trees) => {

@@ -1,55 +1,57 @@
-//! What a branch is trained on: the accelerations of trials over short windows, and what the
-//! foundation gives there.
+//! Training rows of a learned correction: measured accelerations of trials over short windows, and
+//! those of the foundation there.
 //!
-//! Nothing is differentiated. The change of a velocity over a window is compared with the integral
-//! of the foundation's rate along the recorded motion, `nu(t + T/2) - nu(t - T/2) - int f dt`; by T
-//! that is what the foundation lacks in the mean over the window, as the weak form has it with a
-//! window of constant weight (decision 6).
+//! No signal is differentiated. The change of a velocity over a window is compared with the
+//! integral of the foundation's rate along the recorded motion, `nu(t + T/2) - nu(t - T/2) - int f
+//! dt`; divided by T that is the mean unexplained acceleration over the window, as in the weak form
+//! with a window of constant weight (decision 6).
 
 use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
 use sistership_simulation::branch::Instant;
 use sistership_simulation::recorded::{MissingChannel, instants_along};
 
-/// The mean over a window.
+/// Means over one window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// What a branch would see, with the foundation's accelerations.
+    /// Inputs of a correction, with the foundation's accelerations.
     pub instant: Instant,
-    /// Accelerations that were measured: m/s2, m/s2, rad/s2.
+    /// Measured accelerations: m/s2, m/s2, rad/s2.
     pub measured: [f64; 3],
 }
 
-/// Why trials cannot be learned from.
+/// Error of preparing trials for training.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RowsError {
     /// A channel is missing.
     #[error(transparent)]
     Channel(#[from] MissingChannel),
-    /// What was recorded, or the foundation's rate there, is no number.
+    /// A recorded value, or the foundation's rate there, is not a finite number.
     #[error("trial `{trial}`, {t_s} s: the motion or the foundation's rate is no number")]
     NotANumber {
-        /// The trial.
+        /// Name of the trial.
         trial: String,
-        /// When, s.
+        /// Time of the sample, s.
         t_s: f64,
     },
 }
 
-/// The rows of a trial: windows of about `window_s`, one every `hop_s`, none across a gap.
+/// Returns the rows of a trial: windows of about `window_s`, one every `hop_s`, none across a gap.
 ///
 /// # Errors
-/// Names the channel that the trial lacks, or the sample that is no number.
+/// Returns an error that names the missing channel, or the sample that is not a finite number.
 pub fn rows(ship: &Ship, trial: &Trial, window_s: f64, hop_s: f64) -> Result<Vec<Row>, RowsError> {
     let instants = instants_along(ship, trial)?;
     if let Some(k) = instants.iter().position(|instant| !is_number(instant)) {
         return Err(RowsError::NotANumber { trial: trial.name.clone(), t_s: trial.t_s[k] });
     }
     let interval_s = trial.interval_s();
+    // Times are rounded to whole samples, at least one.
     let samples = |time_s: f64| ((time_s / interval_s).round() as usize).max(1);
     let (window, hop) = (samples(window_s), samples(hop_s));
     let instants = instants.as_slice();
     let of_segment = |segment: std::ops::Range<usize>| {
+        // A window lies completely within one segment.
         let last = segment.end.saturating_sub(window);
         (segment.start..last).step_by(hop).map(move |k| row(trial, instants, k..=k + window))
     };
@@ -61,11 +63,13 @@ fn is_number(instant: &Instant) -> bool {
     numbers.chain([&instant.delta_rad, &instant.n_rps]).all(|number| number.is_finite())
 }
 
-/// The mean over a window by the trapezoidal rule.
+/// Row of one window: means by the trapezoidal rule, and measured accelerations from the change of
+/// velocity.
 fn row(trial: &Trial, instants: &[Instant], window: std::ops::RangeInclusive<usize>) -> Row {
     let (start, end) = (*window.start(), *window.end());
     let lasts_s = trial.t_s[end] - trial.t_s[start];
     let mean = |of: &dyn Fn(&Instant) -> f64| {
+        // Steps need not be equal, so each is weighted by its own duration.
         let part = |k: usize| {
             let step_s = trial.t_s[k + 1] - trial.t_s[k];
             0.5 * step_s * (of(&instants[k]) + of(&instants[k + 1]))
@@ -79,5 +83,7 @@ fn row(trial: &Trial, instants: &[Instant], window: std::ops::RangeInclusive<usi
         n_rps: mean(&|i| i.n_rps),
         accelerations: std::array::from_fn(|axis| mean(&|i| i.accelerations[axis])),
     };
+    // The mean acceleration is the change of the velocity over the window; nothing is
+    // differentiated.
     Row { instant, measured: std::array::from_fn(|axis| change(axis) / lasts_s) }
 }

@@ -1,4 +1,4 @@
-//! What a regression learns from: inputs and targets in deviations.
+//! Samples of a regression: inputs and targets in standard deviations.
 
 use sistership_model::branch::{BranchInput, Signal};
 use sistership_simulation::branch::Instant;
@@ -6,14 +6,14 @@ use sistership_simulation::branch::Instant;
 /// Inputs by column, and targets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
-    /// Each input's values.
+    /// Values of each input.
     pub columns: Vec<Vec<f64>>,
-    /// What is to be answered in each row.
+    /// Target of each row.
     pub targets: Vec<f64>,
 }
 
 impl Sample {
-    /// Whether there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.targets.is_empty()
     }
@@ -23,13 +23,13 @@ impl Sample {
         self.targets.len()
     }
 
-    /// The inputs of a row.
+    /// Returns the inputs of a row.
     pub fn row(&self, k: usize) -> Vec<f64> {
         self.columns.iter().map(|column| column[k]).collect()
     }
 }
 
-/// The value of an input, SI and radians.
+/// Value of a signal at an instant, SI units and radians.
 pub fn value(signal: Signal, instant: &Instant) -> f64 {
     let [u, v, r] = instant.velocities;
     match signal {
@@ -45,12 +45,12 @@ pub fn value(signal: Signal, instant: &Instant) -> f64 {
     }
 }
 
-/// An input as the weights take it.
+/// Value of an input at an instant, scaled as in training.
 pub fn scaled(input: &BranchInput, instant: &Instant) -> f64 {
     (value(input.signal, instant) - input.centre) / input.scale
 }
 
-/// Mean and standard deviation; 1 for what does not vary.
+/// Mean and standard deviation; the latter is 1 for constant values.
 pub fn centre_and_scale(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();

@@ -1,4 +1,4 @@
-//! What may be asked of a training, and what is taken where nothing is.
+//! Settings of the training of a learned correction, with their defaults.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,65 +10,66 @@ use sistership_simulation::{PlantError, Ship};
 
 use crate::train::Training;
 
-/// A kind of learner, with settings that restrain it as small data need.
+/// Kind of learner, with default settings that suit small data sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BranchKind {
-    /// A random forest.
+    /// Random forest.
     Forest,
     /// Boosted trees.
     Boosted,
     /// Kernel ridge, the mean of a Gaussian process.
     Kernels,
-    /// A multilayer perceptron.
+    /// Multilayer perceptron.
     Perceptron,
 }
 
-/// What a branch is to be; what is absent is settled by the foundation and the trials.
+/// Settings of a learned correction. Defaults follow from the foundation and the trials.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BranchSettings {
-    /// What learns; where absent, every kind is tried, and one is taken where trials left out of
-    /// its training say that it wins by more than its uncertainty.
+    /// Kind of learner. By default, every kind is evaluated on held-out trials, and one is used if
+    /// it is better than the foundation by more than its uncertainty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<BranchKind>,
-    /// How it is joined to the foundation; `parallel` where absent.
+    /// Way in which the correction is combined with the foundation; default `parallel`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mode: Option<BranchMode>,
-    /// Every setting of what learns, in place of `kind`.
+    /// All settings of the learner, in place of `kind`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub learner: Option<Learner>,
-    /// Of every random number drawn; 1 where absent.
+    /// Seed of the random numbers; default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Time over which accelerations are taken; where absent, half of that in which the ship sails
-    /// its length at its approach speed, and four sampling intervals at least.
+    /// Length of the window over which accelerations are averaged, s. Default: half of the time in
+    /// which the ship travels its length at its approach speed, at least four sampling intervals.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub window_s: Option<f64>,
-    /// From one sample of the training to the next; an eighth of the window where absent.
+    /// Time from one training sample to the next, s. Default: an eighth of the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub hop_s: Option<f64>,
-    /// How far beyond what the trials covered nothing of it is left, by half ranges; 1 where
-    /// absent.
+    /// Distance outside the range covered by trials at which the correction reaches zero, in half
+    /// ranges; default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 3), extend("exclusiveMinimum" = 0))]
     pub fade: Option<f64>,
 }
 
-/// Window by the time in which a ship sails its length (docs/evidence/branches.md, RM-RF).
+/// Window, relative to the time in which a ship travels its length (docs/evidence/branches.md,
+/// RM-RF).
 const WINDOW: f64 = 0.5;
 /// Fewest sampling intervals in a window.
 const INTERVALS: f64 = 4.0;
-/// Samples of the training to a window.
+/// Number of training samples per window.
 const HOPS: f64 = 8.0;
 
 impl BranchKind {
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Self; 4] = [Self::Forest, Self::Boosted, Self::Kernels, Self::Perceptron];
 
-    /// Its name.
+    /// Name of the kind in files and requests.
     pub fn name(self) -> &'static str {
         match self {
             Self::Forest => "forest",
@@ -78,7 +79,7 @@ impl BranchKind {
         }
     }
 
-    /// Its settings where none are given: those that docs/evidence/branches.md was measured with.
+    /// Default settings of the learner: those that docs/evidence/branches.md was measured with.
     pub fn learner(self) -> Learner {
         match self {
             Self::Forest => Learner::RandomForest { trees: 50, tried: 2, leaf: 20, depth: 12 },
@@ -101,8 +102,10 @@ impl BranchSettings {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// Names the field and what it may be.
+    /// Returns the name of the invalid field, and the values that it may have.
     pub fn check(&self) -> Result<(), (String, String)> {
+        // The checks of a recipe apply here, too; settings that are still open get valid
+        // placeholders.
         let recipe = BranchRecipe {
             learner: self.learner(),
             seed: self.seed(),
@@ -127,17 +130,17 @@ impl BranchSettings {
         }
     }
 
-    /// Whether it is left open what learns.
+    /// True if neither a kind nor a learner is set.
     pub fn is_open(&self) -> bool {
         self.kind.is_none() && self.learner.is_none()
     }
 
-    /// The same with a kind named.
+    /// Returns the same settings with this kind.
     pub fn of(&self, kind: BranchKind) -> Self {
         Self { kind: Some(kind), ..self.clone() }
     }
 
-    /// What learns; the baseline of small data where it is left open.
+    /// Learner; kernel ridge, the baseline for small data sets, by default.
     fn learner(&self) -> Learner {
         let kind = self.kind.unwrap_or(BranchKind::Kernels);
         self.learner.clone().unwrap_or_else(|| kind.learner())
@@ -147,10 +150,10 @@ impl BranchSettings {
         self.seed.unwrap_or(1)
     }
 
-    /// Everything that a training needs, settled for a foundation and its trials.
+    /// Completes the settings for a foundation and its trials.
     ///
     /// # Errors
-    /// The foundation cannot be sailed.
+    /// Returns an error if the foundation cannot be simulated.
     pub fn training(
         &self,
         model: &Model,
@@ -159,6 +162,7 @@ impl BranchSettings {
     ) -> Result<Training, PlantError> {
         let ship = Ship::new(&model.foundation(), law)?;
         let mode = self.mode.unwrap_or(BranchMode::Parallel);
+        // The window must hold several samples of the coarsest trial.
         let coarsest_s = trials.iter().map(|trial| trial.interval_s()).fold(0.0, f64::max);
         let length_s = ship.lpp_m() / ship.approach_speed_m_s();
         let window_s =
@@ -175,11 +179,12 @@ impl BranchSettings {
     }
 }
 
-/// All that a branch can be told from, for each of the three accelerations.
+/// All signals that a correction can use, for each of the three accelerations.
 fn inputs(ship: &Ship, mode: BranchMode) -> Vec<(Axis, Vec<Signal>)> {
     let mut signals = vec![Signal::U, Signal::V, Signal::R];
     signals.extend(ship.has_rudder().then_some(Signal::Delta));
     signals.extend(ship.has_propeller().then_some(Signal::N));
+    // Only a serial correction uses the law's accelerations as inputs.
     if mode == BranchMode::Serial {
         signals.extend([Signal::UDot, Signal::VDot, Signal::RDot]);
     }

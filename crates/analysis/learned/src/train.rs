@@ -1,4 +1,4 @@
-//! Training: from a foundation, trials and a recipe to a branch and its weights.
+//! Training of a learned correction and its weights from a foundation, trials and a recipe.
 
 use std::collections::BTreeMap;
 
@@ -21,34 +21,34 @@ use crate::rows::{Row, RowsError, rows};
 use crate::sample::{Sample, centre_and_scale, scaled, value};
 use crate::weights::{Weights, WeightsError};
 
-/// What is to be trained, and how.
+/// Complete settings of a training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Training {
-    /// How it is joined to the foundation.
+    /// Way in which the correction is combined with the foundation.
     pub mode: BranchMode,
-    /// What each acceleration is told from; axes that are absent are the foundation's.
+    /// Input signals of each acceleration; axes that are absent are left to the foundation.
     pub inputs: Vec<(Axis, Vec<Signal>)>,
-    /// What learns.
+    /// Learner and its settings.
     pub learner: Learner,
-    /// Of every random number drawn.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Time over which accelerations are taken, s.
+    /// Length of the window over which accelerations are averaged, s.
     pub window_s: f64,
-    /// From one sample to the next, s.
+    /// Time from one sample to the next, s.
     pub hop_s: f64,
-    /// How far beyond the domain nothing is left, by half ranges; less is taken where it would
-    /// reach beyond the physical range.
+    /// Distance outside the domain at which the correction reaches zero, in half ranges; reduced if
+    /// it would reach outside the physical range.
     pub fade: f64,
 }
 
-/// Why nothing was trained.
+/// Error of a training.
 #[derive(Debug, thiserror::Error)]
 pub enum TrainError {
-    /// The foundation cannot be sailed.
+    /// The foundation cannot be simulated.
     #[error(transparent)]
     Foundation(#[from] PlantError),
-    /// A trial cannot be learned from.
+    /// A trial cannot be used for training.
     #[error(transparent)]
     Rows(#[from] RowsError),
     /// A setting is out of range.
@@ -57,18 +57,18 @@ pub enum TrainError {
     /// There are too few samples.
     #[error("{found} samples are too few to learn from: give trials of {wanted} at least")]
     Few {
-        /// How many.
+        /// Number of samples.
         found: usize,
-        /// The fewest.
+        /// Smallest number that is accepted.
         wanted: usize,
     },
     /// The equations cannot be solved.
     #[error("outputs.{0}: the equations are singular; give more ridge or fewer centres")]
     Singular(Axis),
-    /// What the trials covered fills the physical range.
+    /// The range covered by trials fills the physical range.
     #[error("what the trials covered reaches the physical range of `{0}`: is a reading wrong?")]
     Reach(String),
-    /// What was trained does not go with its foundation.
+    /// The trained correction does not fit its foundation.
     #[error(transparent)]
     Joined(#[from] Box<JoinError>),
     /// The weights cannot be written.
@@ -76,14 +76,14 @@ pub enum TrainError {
     Weights(#[from] WeightsError),
 }
 
-/// Fewest samples: as many as one leaf and its neighbour take, with twenty each.
+/// Smallest number of samples: enough for two leaves of twenty samples each.
 const FEWEST: usize = 40;
 
-/// Trains a branch on what the foundation, `model` under `law`, leaves of the trials. The bytes of
-/// branch and weights depend on the arguments alone.
+/// Trains a correction on the accelerations of the trials that the foundation, `model` under `law`,
+/// does not explain. The bytes of correction and weights depend on the arguments alone.
 ///
 /// # Errors
-/// Names the trial or the setting that is at fault.
+/// Returns an error that names the trial or the setting at fault.
 pub fn train(
     model: &Model,
     law: &Law,
@@ -98,6 +98,8 @@ pub fn train(
         trials: trials.iter().map(|trial| trial.name.clone()).collect(),
     };
     recipe.check()?;
+    // The foundation alone: a correction that the model may have already is not part of the
+    // residual.
     let ship = Ship::new(&model.foundation(), law)?;
     let mut all = Vec::new();
     for trial in trials {
@@ -107,8 +109,11 @@ pub fn train(
         return Err(TrainError::Few { found: all.len(), wanted: FEWEST });
     }
     let reached = || TrainError::Reach(model.name.clone());
+    // The domain is that of the training rows, and the fade is reduced until the correction cannot
+    // act outside the physical range.
     let domain = covered(&all, ship.has_propeller()).ok_or_else(reached)?;
     let fade = fade_within(&domain, training.fade, ship.envelope()).ok_or_else(reached)?;
+    // The document names its weights by hash, so they are trained first.
     let (outputs, weights) = learn(&all, training)?;
     let weights_sha256 = sha256(&weights.bytes()?);
     let branch = Branch {
@@ -124,10 +129,10 @@ pub fn train(
     Ok((branch, weights))
 }
 
-/// Trains a model's branch again, as its document says.
+/// Trains a model's correction again, by the recipe in its document.
 ///
 /// # Errors
-/// As [`train`].
+/// Returns the errors of a first training.
 pub fn retrain(
     model: &Model,
     branch: &Branch,
@@ -149,7 +154,7 @@ pub fn retrain(
     train(model, law, trials, &training)
 }
 
-/// The region that the samples covered, without what stands out of a single reading.
+/// Region that the rows cover, without the outliers of single readings.
 fn covered(rows: &[Row], has_propeller: bool) -> Option<Region> {
     let column = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
     let mut columns: BTreeMap<String, Vec<f64>> = ["u", "v", "r"]
@@ -164,16 +169,20 @@ fn covered(rows: &[Row], has_propeller: bool) -> Option<Region> {
     Region::of(&columns)
 }
 
-/// The fade asked for, or nine tenths of it and so on until it keeps to the physical range.
+/// Returns the requested fade, or the largest of its multiples 0.9, 0.81, ... that keeps the
+/// correction inside the physical range.
 fn fade_within(domain: &Region, fade: f64, envelope: &Envelope) -> Option<f64> {
     std::iter::successors(Some(fade), |fade| Some(0.9 * fade))
+        // The search ends at one hundredth of the requested fade.
         .take_while(|tried| *tried > 0.01 * fade)
         .find(|fade| FadedDomain::of(domain, *fade).is_some_and(|d| d.is_within(envelope)))
 }
 
+/// Trains the regressor of every output.
 fn learn(rows: &[Row], training: &Training) -> Result<(Vec<BranchOutput>, Weights), TrainError> {
     let (mut outputs, mut regressors) = (Vec::new(), Vec::new());
     for (place, (axis, signals)) in training.inputs.iter().enumerate() {
+        // Scales are computed from the rows, then the sample is scaled by them.
         let output = output(rows, *axis, signals, &targets(rows, *axis, training.mode));
         let sample = sample_of(rows, &output, training.mode);
         let learned = Regressor::train(&training.learner, &sample, training.seed, place);
@@ -183,7 +192,7 @@ fn learn(rows: &[Row], training: &Training) -> Result<(Vec<BranchOutput>, Weight
     Ok((outputs, Weights { outputs: regressors }))
 }
 
-/// Inputs and targets of an output, in deviations.
+/// Inputs and targets of an output, in standard deviations.
 pub(crate) fn sample_of(rows: &[Row], output: &BranchOutput, mode: BranchMode) -> Sample {
     let column = |input: &BranchInput| rows.iter().map(|r| scaled(input, &r.instant)).collect();
     let targets = targets(rows, output.axis, mode);
@@ -193,7 +202,8 @@ pub(crate) fn sample_of(rows: &[Row], output: &BranchOutput, mode: BranchMode) -
     }
 }
 
-/// What a branch is to answer.
+/// Targets of an axis: the measured acceleration, less that of the foundation for a parallel
+/// correction.
 fn targets(rows: &[Row], axis: Axis, mode: BranchMode) -> Vec<f64> {
     let place = [Axis::X, Axis::Y, Axis::N].iter().position(|a| *a == axis).unwrap_or_default();
     let target = |row: &Row| match mode {
@@ -203,6 +213,7 @@ fn targets(rows: &[Row], axis: Axis, mode: BranchMode) -> Vec<f64> {
     rows.iter().map(target).collect()
 }
 
+/// Output with the scales of its inputs, and the scale and range of its targets.
 fn output(rows: &[Row], axis: Axis, signals: &[Signal], targets: &[f64]) -> BranchOutput {
     let input = |signal: &Signal| {
         let values: Vec<f64> = rows.iter().map(|row| value(*signal, &row.instant)).collect();

@@ -1,21 +1,21 @@
-//! Regression trees that split by the variance left (Breiman and others 1984; Hastie and others
-//! 2009, Sec. 9.2.2), on inputs sorted into at most 256 bins.
+//! Regression trees that split by the remaining variance (Breiman and others 1984; Hastie and
+//! others 2009, Sec. 9.2.2), on inputs sorted into at most 256 bins.
 
 use serde::{Deserialize, Serialize};
 
 use crate::draws::Draws;
 
-/// What a leaf has in place of an input.
+/// Mark of a leaf in place of an input.
 const LEAF: u8 = u8::MAX;
 
-/// A tree: nodes of an input, the place of the right child, and what the input is compared with.
-/// The left child stands next to its parent; a leaf has its answer in place of the last.
+/// Regression tree: nodes of an input, the index of the right child, and the bound of the input.
+/// The left child directly follows its parent; a leaf has its prediction in place of the bound.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Tree(Vec<(u8, u32, f64)>);
 
 impl Tree {
-    /// The answer for inputs in deviations.
+    /// Prediction for inputs in standard deviations.
     #[inline]
     pub fn answer(&self, inputs: &[f64]) -> f64 {
         let mut at = 0;
@@ -24,19 +24,22 @@ impl Tree {
             if input == LEAF {
                 return value;
             }
+            // The left child is the next node.
             at = if inputs[usize::from(input)] <= value { at + 1 } else { right as usize };
         }
     }
 
-    /// A node: the input of a split (none of a leaf), the place of the right child, and the bound
-    /// of the split or the leaf's answer.
+    /// Node at an index: the input of a split (`None` for a leaf), the index of the right child,
+    /// and the bound of the split or the leaf's prediction.
     pub fn node(&self, at: usize) -> (Option<usize>, usize, f64) {
         let (input, right, value) = self.0[at];
         ((input != LEAF).then_some(usize::from(input)), right as usize, value)
     }
 
-    /// Whether every path ends in a leaf, and asks for inputs that there are.
+    /// True if every path ends in a leaf and uses existing inputs.
     pub fn is_sound(&self, inputs: usize) -> bool {
+        // Children stand after their parents, so that a prediction ends; the last node must be a
+        // leaf.
         let within = |at: usize, &(input, right, value): &(u8, u32, f64)| {
             let right = right as usize;
             value.is_finite()
@@ -47,7 +50,7 @@ impl Tree {
             && self.0.iter().enumerate().all(|(at, node)| within(at, node))
     }
 
-    /// The same with its answers multiplied.
+    /// Returns the tree with its predictions multiplied by a factor.
     pub fn times(mut self, factor: f64) -> Self {
         self.0.iter_mut().filter(|node| node.0 == LEAF).for_each(|node| node.2 *= factor);
         self
@@ -56,17 +59,19 @@ impl Tree {
 
 /// Inputs sorted into bins by their quantiles.
 pub struct Bins {
-    /// The bin of each row, by input.
+    /// Bin of each row, by input.
     codes: Vec<Vec<u8>>,
-    /// The upper bound of each bin but the last, by input.
+    /// Upper bound of each bin but the last, by input.
     edges: Vec<Vec<f64>>,
 }
 
-/// Most bins: what a byte holds.
+/// Largest number of bins: the values of a byte.
 const BINS: usize = 256;
 
 impl Bins {
+    /// Sorts the values of each column into bins.
     pub fn of(columns: &[Vec<f64>]) -> Self {
+        // Codes are bytes: a byte has as many values as there are bins.
         let edges: Vec<Vec<f64>> = columns.iter().map(|column| edges(column)).collect();
         let code = |edges: &Vec<f64>, x: f64| edges.partition_point(|edge| *edge < x) as u8;
         let codes = columns.iter().zip(&edges);
@@ -75,13 +80,14 @@ impl Bins {
     }
 }
 
-/// Values halfway between neighbours at even steps through a sorted column.
+/// Bounds halfway between neighbours at even steps through the sorted column.
 fn edges(column: &[f64]) -> Vec<f64> {
     let mut sorted = column.to_vec();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().saturating_sub(1);
     let mut edges: Vec<f64> = (1..BINS)
         .map(|k| k * last / BINS)
+        // Equal neighbours share a bin.
         .filter(|&k| k < last && sorted[k] < sorted[k + 1])
         .map(|k| 0.5 * (sorted[k] + sorted[k + 1]))
         .collect();
@@ -89,18 +95,18 @@ fn edges(column: &[f64]) -> Vec<f64> {
     edges
 }
 
-/// When a tree stops growing, and what it looks at.
+/// Limits of the growth of a tree.
 #[derive(Debug, Clone, Copy)]
 pub struct Growth {
-    /// Fewest samples in a leaf.
+    /// Smallest number of samples in a leaf.
     pub leaf: usize,
-    /// Most splits from root to leaf.
+    /// Largest number of splits from root to leaf.
     pub depth: usize,
-    /// Inputs tried at each split.
+    /// Number of random inputs considered at each split.
     pub tried: usize,
 }
 
-/// Grows a tree on some rows; a row may be there more than once.
+/// Grows a tree on the given rows; a row may occur more than once.
 pub fn grow(
     bins: &Bins,
     targets: &[f64],
@@ -113,6 +119,7 @@ pub fn grow(
     grower.tree
 }
 
+/// State of a tree under construction.
 struct Grower<'a> {
     bins: &'a Bins,
     targets: &'a [f64],
@@ -121,16 +128,19 @@ struct Grower<'a> {
     tree: Tree,
 }
 
+/// Split of the rows of a node.
 struct Split {
     input: usize,
-    /// The last bin on the left.
+    /// Last bin on the left.
     bin: usize,
     gain: f64,
 }
 
 impl Grower<'_> {
+    /// Adds the node of some rows, and its subtree, in depth-first order.
     fn node(&mut self, rows: Vec<u32>, depth: usize) {
         let sum: f64 = rows.iter().map(|row| self.targets[*row as usize]).sum();
+        // Both children of a split need the smallest number of samples.
         let may_split = depth > 0 && rows.len() >= 2 * self.growth.leaf;
         let split = if may_split { self.best(&rows, sum) } else { None };
         let Some(Split { input, bin, .. }) = split else {
@@ -143,19 +153,24 @@ impl Grower<'_> {
         let at = self.tree.0.len();
         self.tree.0.push((input as u8, 0, self.bins.edges[input][bin]));
         self.node(left, depth - 1);
+        // The index of the right child is known once the left subtree is complete.
         self.tree.0[at].1 = self.tree.0.len() as u32;
         self.node(right, depth - 1);
     }
 
-    /// The split that leaves the least variance, if any leaves less.
+    /// Returns the split of least remaining variance, if one reduces it.
     fn best(&mut self, rows: &[u32], sum: f64) -> Option<Split> {
         let inputs = self.bins.codes.len();
         let mut tried = self.draws.some_of(self.growth.tried, inputs);
+        // Equal gains are decided by the order of inputs, not by the order of the draws.
         tried.sort_unstable();
+        // The variance that remains is the sum of squares less sum^2/count of each side. The sum of
+        // squares is common to all splits, so the largest gain has the least variance.
         let whole = sum * sum / rows.len() as f64;
         let mut best: Option<Split> = None;
         for input in tried {
             let Some(split) = self.best_of(input as usize, rows, sum) else { continue };
+            // The first split must exceed the gain of no split by more than rounding.
             let least = best.as_ref().map_or(whole * (1.0 + 1e-12), |best| best.gain);
             if split.gain > least {
                 best = Some(split);
@@ -164,7 +179,9 @@ impl Grower<'_> {
         best
     }
 
+    /// Returns the best split by one input.
     fn best_of(&self, input: usize, rows: &[u32], sum: f64) -> Option<Split> {
+        // Count and sum of the targets in each bin; one pass over them then gives every split.
         let mut bins = [(0_usize, 0.0_f64); BINS];
         let codes = &self.bins.codes[input];
         for row in rows {

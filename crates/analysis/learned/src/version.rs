@@ -1,12 +1,13 @@
-//! A foundation with a branch as a model of its own.
+//! Models made of a foundation and a learned correction.
 
 use sistership_model::Model;
 use sistership_model::branch::Branch;
 use sistership_model::vessel::Status;
 
-/// The foundation with a learned correction. How far its coefficients may be from the truth stays:
-/// they act on the law around the correction as before. What its trials left open of the noise is
-/// another matter with the correction, and is left out until it has been learned anew.
+/// Returns the foundation with a learned correction as a new model. The uncertainty of its
+/// coefficients stays: they act on the law around the correction as before. The noise estimated
+/// from its trials does not apply with the correction, and is removed until it has been estimated
+/// again.
 pub fn with_branch(foundation: &Model, branch: Branch) -> Model {
     let trials = branch.recipe.trials.len();
     let said = format!("{} of {trials} trials learned beside the law", branch.words());
@@ -14,6 +15,7 @@ pub fn with_branch(foundation: &Model, branch: Branch) -> Model {
     Model {
         status: Status::Refined,
         note: Some(note),
+        // The noise was estimated without the correction and does not apply to the new model.
         uncertainty: None,
         branch: Some(branch),
         ..foundation.clone()

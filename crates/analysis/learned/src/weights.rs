@@ -1,4 +1,4 @@
-//! The weights of a branch as bytes, which its document names by hash.
+//! Weights of a learned correction as bytes, which its document names by hash.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::branch::Branch;
@@ -7,60 +7,63 @@ use sistership_model::version::sha256;
 
 use crate::regressor::Regressor;
 
-/// Weights of the outputs, in the order of the branch's.
+/// Weights of the outputs, in the order of the correction's outputs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
-    /// What was learned of each.
+    /// Regressor of each output.
     pub outputs: Vec<Regressor>,
 }
 
-/// Why weights are not those of a branch.
+/// Error of weights that do not belong to a correction.
 #[derive(Debug, thiserror::Error)]
 pub enum WeightsError {
-    /// They are others.
+    /// The hash differs.
     #[error("branch.weights_sha256: names {named}, but the weights given have {found}")]
     Hash {
-        /// The hash in the document.
+        /// Hash in the document.
         named: String,
-        /// Theirs.
+        /// Hash of the weights.
         found: String,
     },
-    /// They cannot be read.
+    /// The weights cannot be read.
     #[error("weights: {0}")]
     Json(#[from] serde_json::Error),
-    /// There are more or fewer than outputs.
+    /// The number of weights differs from the number of outputs.
     #[error("weights.outputs: there are {found}, and the branch has {wanted} outputs")]
     Count {
-        /// How many.
+        /// Number of weights.
         found: usize,
-        /// How many outputs.
+        /// Number of outputs.
         wanted: usize,
     },
-    /// They are of another kind than the recipe says, or of another shape.
+    /// The weights are of another kind than in the recipe, or of another shape.
     #[error("weights.outputs.{axis}: not of the recipe's kind, or not for {inputs} inputs")]
     Shape {
-        /// The output.
+        /// Axis of the output.
         axis: Axis,
-        /// Its inputs.
+        /// Number of its inputs.
         inputs: usize,
     },
 }
 
 impl Weights {
-    /// Their bytes. Numbers are written so that they are read back to the last bit.
+    /// Returns the weights as JSON bytes. Numbers are written so that they are read back to the
+    /// last bit.
     ///
     /// # Errors
-    /// None that weights which were trained could cause.
+    /// Returns an error only for weights that no training gives, such as numbers that are not
+    /// finite.
     pub fn bytes(&self) -> Result<Vec<u8>, WeightsError> {
         Ok(serde_json::to_vec(self)?)
     }
 
-    /// The weights of a branch from their bytes.
+    /// Reads the weights of a correction from their bytes.
     ///
     /// # Errors
-    /// Says that they are not the ones that it names, or do not suit it.
+    /// Returns an error if they are not the weights that the correction names, or do not fit it.
     pub fn read(bytes: &[u8], branch: &Branch) -> Result<Self, WeightsError> {
+        // The hash is checked before the bytes are parsed.
         let found = sha256(bytes);
         if found != branch.weights_sha256 {
             return Err(WeightsError::Hash { named: branch.weights_sha256.clone(), found });
@@ -70,7 +73,7 @@ impl Weights {
         Ok(weights)
     }
 
-    /// Checks that there is one of the recipe's kind and shape for each output.
+    /// Checks that each output has one regressor of the recipe's kind and of its shape.
     fn check(&self, branch: &Branch) -> Result<(), WeightsError> {
         let (found, wanted) = (self.outputs.len(), branch.outputs.len());
         if found != wanted {

@@ -1,10 +1,11 @@
-//! Whether a learned correction is taken beside what was chosen.
+//! Choice of a learned correction for the chosen model.
 //!
-//! It is judged on trials that neither it nor its foundation has seen: the foundations are the
-//! models of the chosen candidate's folds, and the corrections are trained beside them on the same
-//! trials. What wins there must win at a level of 95 %, sail what every model must, leave the
-//! standard manoeuvres no less certain, and be no worse where the trials of the largest and least
-//! rudder angles and speeds are held out ([`crate::correction`]).
+//! A correction is judged on trials that neither it nor its base model has seen: the base models
+//! are those of the chosen candidate's folds, and the corrections are trained with them on the same
+//! trials. The best one must be significantly better there (95 %), complete the manoeuvres that
+//! every model must complete, leave the standard manoeuvres no less certain, and be no worse where
+//! the trials of the largest and smallest rudder angles and speeds are held out
+//! ([`crate::correction`]).
 
 use sistership_identification::refine::{Progress, RefineError, ReplayedTrials, Thinning};
 use sistership_learned::{
@@ -16,11 +17,11 @@ use crate::correction::Correction;
 use crate::foundation::Foundation;
 use crate::thresholds::SEARCH;
 
-/// Tries kinds of corrections beside a model, with as many samples as simulations need; few trials
-/// leave too little out.
+/// Tries kinds of corrections for a model, with as many samples as simulations need; none if there
+/// are too few trials to hold any out.
 ///
 /// # Errors
-/// It was cancelled.
+/// Returns an error if it was cancelled.
 pub(super) fn branch(
     foundation: &Foundation<'_>,
     progress: Progress<'_>,
@@ -29,6 +30,7 @@ pub(super) fn branch(
     if trials.len() < SEARCH.branch_trials {
         return Ok(BranchChoice::untried(few(trials.len())));
     }
+    // Without folds there is no base model that has not seen a trial.
     let folds = foundation.held_out();
     if folds.is_empty() {
         return Ok(BranchChoice::untried(IN_PARTS.to_owned()));
@@ -45,6 +47,8 @@ pub(super) fn branch(
         progress(0.99, &format!("fitting a learned correction: {}", kind.name()))
     };
     let choice = match choose(model, &on, (&settings, kinds), &told) {
+        // `None` is a cancelled training; a correction that cannot be trained is no error of the
+        // search.
         Ok(choice) => choice.ok_or(RefineError::Cancelled)?,
         Err(error) => return Ok(BranchChoice::untried(untrained(&error))),
     };

@@ -1,8 +1,8 @@
-//! The choice among what was tried, by errors on the same trials left out.
+//! The choice among evaluated candidates, by errors on the same held-out trials.
 //!
-//! What is compared is the logarithm of the mean error, whose differences are ratios of errors. Its
-//! scatter over the trials is told by the jackknife (Efron and Tibshirani 1993, An introduction to
-//! the bootstrap, Eq. 11.5).
+//! Candidates are compared by the logarithm of the mean error, whose differences are ratios of
+//! errors. Its scatter over the trials is estimated by the jackknife (Efron and Tibshirani 1993, An
+//! introduction to the bootstrap, Eq. 11.5).
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use sistership_identification::refine::Weighed;
 use crate::thresholds::SEARCH;
 use sistership_assessment::uncertainty::student;
 
-/// Below this an error is no error: the logarithm of less would decide alone.
+/// Smallest error; the logarithm of a smaller one would decide alone.
 const LEAST: f64 = 1e-9;
 
-/// The logarithm of a mean error, and the same with each trial left out.
+/// Logarithm of a mean error, and the same without each trial.
 struct LogError {
     all: f64,
     without: Vec<f64>,
@@ -27,7 +27,8 @@ impl LogError {
         Self { all: (sum / count).max(LEAST).ln(), without: each.values().map(without).collect() }
     }
 
-    /// Standard error of the difference to another; none where a single trial tells nothing of it.
+    /// Standard error of the difference to another; `None` for a single trial, which has no
+    /// scatter.
     fn standard_error(&self, other: &[f64]) -> Option<f64> {
         let differences: Vec<f64> =
             self.without.iter().zip(other).map(|(one, other)| one - other).collect();
@@ -38,31 +39,39 @@ impl LogError {
     }
 }
 
-/// Standard error of a mean error over its trials; none below two.
+/// Standard error of a mean error over its trials; `None` for fewer than two.
 pub fn standard_error(weighed: &Weighed) -> Option<f64> {
     let zeros = vec![0.0; weighed.each.len()];
     let relative = LogError::of(&weighed.each).standard_error(&zeros)?;
+    // The error of a logarithm is relative.
     Some(relative * weighed.error?)
 }
 
-/// The place of what is taken: of all that is within one standard error of the least error, that
-/// with the least sum of its error and so many times ([`SEARCH`]`.elsewhere`) its variance where no
-/// trial reaches ([`Weighed`]`.variance`). A law with more coefficients than the trials hold, and a
-/// strength of the prior that does not hold them, are as good on trials like those that were
-/// sailed; elsewhere they scatter. The rule of one standard error (Breiman et al. 1984,
-/// Classification and regression trees, section 3.4.3) counts coefficients in this place, which
-/// says less where a prior holds them. What a population holds (`true`) is taken before all else
-/// unless the least error is less at a level of 95 %: what trials do not tell apart other ships do
-/// (docs/evidence/population.md). What is alike only because its own error scatters gives way to
-/// what is less in both, error and sum. `None` where every simulation diverged.
+/// Returns the place of the chosen candidate: of all within one standard error of the least error,
+/// the one with the least sum of its error and a multiple ([`SEARCH`]`.elsewhere`) of its variance
+/// where no trial reaches. `None` if every simulation diverged.
+///
+/// A law with more coefficients than the trials determine, and a prior too weak for them, do as
+/// well on trials like the recorded ones; elsewhere they scatter. The rule of one standard error
+/// (Breiman et al. 1984, Classification and regression trees, section 3.4.3) counts coefficients
+/// instead of the variance, which is less informative where a prior determines them.
+///
+/// A candidate with a prior from a population (`true`) is preferred to all others unless the least
+/// error is significantly less (95 %): where trials are statistically tied, other ships decide
+/// (docs/evidence/population.md). A candidate that is tied only because its own error scatters is
+/// replaced by one that is less in both error and sum.
 pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
     let (tried, held): (Vec<&Weighed>, Vec<bool>) = all.iter().copied().unzip();
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
     let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();
+    // Errors are compared on the same trials, so that differences of jackknife values cancel what
+    // trials have in common.
     let logs: Vec<LogError> = tried.iter().map(|one| LogError::of(&one.each)).collect();
     let least = |a: &usize, b: &usize| logs[*a].all.total_cmp(&logs[*b].all);
     let best = sailed.iter().copied().min_by(least)?;
     let alike = |place: &usize| {
+        // One standard error for most candidates; a population is tied up to the 95 % quantile of
+        // Student's distribution.
         let within = if held[*place] { student(logs[best].without.len().max(2) - 1) } else { 1.0 };
         let scatter = logs[*place].standard_error(&logs[best].without);
         let apart = logs[*place].all - logs[best].all;
@@ -77,6 +86,7 @@ pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
         by_population_first(a, b).then(anywhere(a).total_cmp(&anywhere(b))).then(least(a, b))
     };
     let taken = sailed.iter().copied().filter(alike).min_by(first)?;
+    // A candidate with a large scatter is tied with much better ones; this corrects such a choice.
     let is_less_in_both = |place: &usize| {
         !held[taken] && least(place, &taken).is_lt() && anywhere(place) < anywhere(&taken)
     };

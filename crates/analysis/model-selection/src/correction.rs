@@ -1,4 +1,4 @@
-//! What a learned correction must pass, beside trials held out at random, before it is taken.
+//! Checks of a learned correction besides trials held out at random.
 
 use rayon::prelude::*;
 use sistership_assessment::uncertainty::student;
@@ -17,11 +17,11 @@ use crate::foundation::Foundation;
 use crate::sailed::unsailed_rudder;
 use crate::scatter::scatter_ratio;
 
-/// A kind of correction that won on trials held out.
+/// A kind of correction that was best on held-out trials.
 pub(super) struct Correction<'a> {
-    /// What it was learned beside.
+    /// Base model and trials of the correction.
     pub foundation: &'a Foundation<'a>,
-    /// What it won on.
+    /// Held-out trials on which it was best.
     pub on: HeldOutTrials<'a>,
     /// The kind.
     pub kind: BranchKind,
@@ -30,13 +30,16 @@ pub(super) struct Correction<'a> {
 }
 
 impl Correction<'_> {
-    /// The choice after every check until one is not passed, the cheapest first.
+    /// Returns the choice after the checks, the cheapest first, up to the first one that is not
+    /// passed.
     ///
     /// # Errors
-    /// It cannot be trained.
+    /// Returns an error if the correction cannot be trained.
     pub fn checked(&self, mut choice: BranchChoice) -> Result<BranchChoice, TrainError> {
         let model = &self.foundation.refinement.model;
         let training = BranchSettings::default().of(self.kind);
+        // Trained on the thinned trials of the choice; the check of simulations trains on all
+        // samples.
         let training = training.training(model, self.on.law, self.on.trials)?;
         type Check<'b> = &'b dyn Fn() -> Result<BranchCheck, TrainError>;
         let tried = choice.tried.iter().find(|tried| tried.kind == self.kind).cloned();
@@ -44,6 +47,7 @@ impl Correction<'_> {
         let sails = || self.sails();
         let certainty = || self.certainty(&training);
         let elsewhere = || self.elsewhere(&training);
+        // Checks are closures, so that an expensive one runs only if all before it are passed.
         let checks: [Check<'_>; 4] = [&level, &sails, &certainty, &elsewhere];
         for check in checks {
             let check = check()?;
@@ -58,7 +62,8 @@ impl Correction<'_> {
         Ok(choice)
     }
 
-    /// Whether it sails what every model must, trained on all trials.
+    /// Checks that the correction, trained on all trials, completes the records that every model
+    /// must complete.
     fn sails(&self) -> Result<BranchCheck, TrainError> {
         let Foundation { refinement, trials, .. } = *self.foundation;
         let settings = BranchSettings::default().of(self.kind);
@@ -70,7 +75,8 @@ impl Correction<'_> {
         Ok(check("rudders and motions that no trial had, as failures", own, both))
     }
 
-    /// Whether the models of folds are no further apart in the standard manoeuvres.
+    /// Checks that the models of folds scatter no more in the standard manoeuvres with the
+    /// correction.
     fn certainty(&self, training: &Training) -> Result<BranchCheck, TrainError> {
         let pair = |fold: &HeldOutFold| {
             let both = self.on.corrected(fold, training)?;
@@ -90,8 +96,8 @@ impl Correction<'_> {
         Ok(standard(&ship, &settings))
     }
 
-    /// Whether it is no worse on the trials of the largest and least rudder angles and speeds, each
-    /// held out of both halves.
+    /// Checks that the correction is no worse on the trials of the largest and smallest rudder
+    /// angles and speeds, held out of both base model and correction.
     fn elsewhere(&self, training: &Training) -> Result<BranchCheck, TrainError> {
         let what = "trials of the largest and least rudder angles and speeds, held out";
         let held_out = extremes(self.foundation.trials);
@@ -104,9 +110,10 @@ impl Correction<'_> {
         ))
     }
 
-    /// The chosen refinement without some trials; none where the others make no model.
+    /// The base model refined without some trials; `None` if the others give no model.
     fn refitted(&self, held_out: Vec<usize>) -> Option<HeldOutFold> {
         let Foundation { request, trials, .. } = *self.foundation;
+        // The others are fitted by the same request, with nothing held out.
         let others = trials.iter().enumerate().filter(|(place, _)| !held_out.contains(place));
         let others: Vec<&Trial> = others.map(|(_, trial)| *trial).collect();
         let settings = Settings { held_out: Vec::new(), ..request.settings.clone() };
@@ -116,7 +123,7 @@ impl Correction<'_> {
     }
 }
 
-/// Whether the gain on trials held out at random is sure at a level of 95 %.
+/// Checks that the gain on trials held out at random is significant (95 %).
 fn level(tried: Option<&TriedKind>, trials: usize) -> BranchCheck {
     let what = "trials held out, sure to 95 %";
     tried.map_or_else(
@@ -128,11 +135,13 @@ fn level(tried: Option<&TriedKind>, trials: usize) -> BranchCheck {
     )
 }
 
+/// The check that an error or count with the correction is not above the one without it.
 fn check(what: &str, foundation: f64, branch: f64) -> BranchCheck {
     let passed = branch <= foundation;
     BranchCheck { what: what.to_owned(), foundation, branch, passed }
 }
 
+/// A check as part of a sentence.
 fn words(check: &BranchCheck) -> String {
     let BranchCheck { what, foundation, branch, passed } = check;
     let end = if *passed { "" } else { ": it is not taken" };

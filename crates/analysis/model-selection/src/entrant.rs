@@ -1,4 +1,4 @@
-//! What enters the search: sources with the laws that can be fitted to what was measured.
+//! Candidates of the search: sources with the laws that can be fitted to the measured channels.
 
 use std::sync::Arc;
 
@@ -8,45 +8,46 @@ use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_identification::refine::{Prior, Settings};
 use sistership_priors::transfer::{approach_of, blank};
 
-/// Laws that belong to no ship.
+/// General laws, which belong to no ship.
 const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
 
-/// The law that a population holds: the one that says most, without roll, of which few ships say
-/// anything.
+/// Law of the candidate with a prior from a population: the most general one without roll, on which
+/// few ships give information.
 pub(super) const POPULATION_LAW: &str = "low-speed";
 
-/// A source, or none, with the law to be fitted.
+/// A candidate: a source, or none, with the law to be fitted.
 #[derive(Debug, Clone)]
 pub struct Entrant {
-    /// Where the fit starts; without coefficients where there is no source.
+    /// Starting point of the fit; without coefficients if there is no source.
     pub source: Model,
-    /// The law of the source; none where there is no source.
+    /// Law of the source; none if there is no source.
     pub source_law: Option<Arc<Law>>,
     /// The law to be fitted.
     pub law: Arc<Law>,
-    /// What holds the coefficients.
+    /// Prior of the coefficients.
     pub held_by: HeldBy,
 }
 
-/// What holds the coefficients of an entrant.
+/// Prior of a candidate's coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HeldBy {
     /// The source.
     Source,
-    /// The estimate from the ship's particulars in its place ([`Prior::Mixture`] at its end).
+    /// The estimate from the ship's particulars in place of the source ([`Prior::Mixture`] at its
+    /// end).
     Estimate,
-    /// What other ships say ([`Prior::Population`]).
+    /// A population of ships ([`Prior::Population`]).
     Population,
 }
 
 impl Entrant {
-    /// What it is, for people.
+    /// Returns the name for reports.
     pub fn name(&self) -> String {
         let source = self.source_name().unwrap_or("no source");
         format!("{source}, {}", self.law.name)
     }
 
-    /// The source's name; none where the trials alone make the model.
+    /// Returns the source's name; `None` if only the trials determine the model.
     pub fn source_name(&self) -> Option<&str> {
         let name = match self.held_by {
             HeldBy::Source => &self.source.name,
@@ -56,7 +57,7 @@ impl Entrant {
         self.source_law.as_ref().map(|_| name)
     }
 
-    /// Settings by which it is fitted.
+    /// Returns the settings by which it is fitted.
     pub fn settings(&self, settings: &Settings) -> Settings {
         match self.held_by {
             HeldBy::Source => settings.clone(),
@@ -68,17 +69,18 @@ impl Entrant {
     }
 }
 
-/// What may hold coefficients beside a source.
+/// Additional priors besides those of the sources.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Beside<'a> {
-    /// The estimate from the ship's particulars.
+    /// True to add the estimate from the ship's particulars.
     pub estimate: bool,
-    /// A population, at the states of this model's manoeuvres.
+    /// Model at the states of whose manoeuvres a population is evaluated; none without a
+    /// population.
     pub population: Option<&'a Model>,
 }
 
-/// Each source with its own law and the general ones, estimate and population with the general ones
-/// where they are asked for, and each general law without a source.
+/// Returns the candidates: each source with its own law and the general ones, estimate and
+/// population with the general laws if they are requested, and each general law without a source.
 pub fn entrants(
     zoo: &Zoo,
     target: &Vessel,
@@ -92,12 +94,13 @@ pub fn entrants(
         .collect();
     let with_source = sources.iter().flat_map(|source| of_source(zoo, source, &general, trials));
     let approach = approach_of(trials);
+    // Without a source the trials alone determine the coefficients, from a model without any.
     let alone = general.iter().filter_map(|law| {
         let source = blank(law, target, approach).ok()?;
         let held_by = HeldBy::Source;
         Some(Entrant { source, source_law: None, law: law.clone(), held_by })
     });
-    // What an order names beside either is a source of another ship.
+    // The estimate alone is the end of a mixture, which requires a source of another ship.
     let others = || sources.iter().filter(|source| source.ship != target.name());
     let estimated = others().take(usize::from(beside.estimate)).flat_map(|source| {
         let entrants = of_source(zoo, source, &general, trials).into_iter();
@@ -112,6 +115,7 @@ pub fn entrants(
     with_source.chain(estimated).chain(population).chain(alone).collect()
 }
 
+/// Candidates of one source: its own law and the general ones, as far as they are measured.
 fn of_source(zoo: &Zoo, source: &Model, general: &[Arc<Law>], trials: &[&Trial]) -> Vec<Entrant> {
     let Some(own) = zoo.law(&source.law) else { return Vec::new() };
     let others = general.iter().filter(|law| law.name != own.name);
@@ -125,7 +129,7 @@ fn of_source(zoo: &Zoo, source: &Model, general: &[Arc<Law>], trials: &[&Trial])
     laws.map(one).collect()
 }
 
-/// Whether roll was recorded throughout where a law has it.
+/// Returns true if the trials record what a law needs: roll in every trial for a law with roll.
 fn is_measured(law: &Law, trials: &[&Trial]) -> bool {
     !law.has_roll() || trials.iter().all(|trial| trial.channel(Channel::Phi).is_some())
 }

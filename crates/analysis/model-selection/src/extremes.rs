@@ -1,16 +1,17 @@
-//! Trials beyond the others in rudder angle or speed.
+//! Trials with extreme rudder angles or speeds.
 
 use sistership_model::trial::{Channel, Trial};
 
 /// Share of the largest value from which on a trial is among the largest, and by its reciprocal
-/// among the least. Chosen: readings of the same order differ by a few hundredths, the next usual
-/// order (20 after 25 deg, 30 after 35) by a seventh or more.
+/// among the smallest. Chosen: readings of the same order differ by a few hundredths, the next
+/// usual order (20 after 25 deg, 30 after 35) by a seventh or more.
 const NEAR: f64 = 0.9;
 
-/// Sets of trials that are held out together: those of the largest rudder angles, of the least, of
-/// the highest approach speeds and of the lowest. A set that would leave less than half of the
-/// trials is left out: these are then of one kind.
+/// Returns sets of trials that are held out together: those of the largest rudder angles, of the
+/// smallest, of the highest approach speeds and of the lowest. A set that would leave less than
+/// half of the trials is omitted: these trials are then of one kind.
 pub(super) fn extremes(trials: &[&Trial]) -> Vec<Vec<usize>> {
+    // Both lists have a value for every trial, or the quantity is not compared at all.
     let rudder: Option<Vec<f64>> = trials.iter().map(|trial| largest_rudder(trial)).collect();
     let speed: Option<Vec<f64>> = trials.iter().map(|trial| approach(trial)).collect();
     let sets = [rudder, speed].into_iter().flatten().flat_map(|values| {
@@ -18,18 +19,22 @@ pub(super) fn extremes(trials: &[&Trial]) -> Vec<Vec<usize>> {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         [at(&values, |value| value > NEAR * most), at(&values, |value| value * NEAR < least)]
     });
+    // At least half of the trials remain for the fit.
     sets.filter(|set| !set.is_empty() && 2 * set.len() <= trials.len()).collect()
 }
 
+/// Places of the values that are extreme.
 fn at(values: &[f64], is_extreme: impl Fn(f64) -> bool) -> Vec<usize> {
     (0..values.len()).filter(|place| is_extreme(values[*place])).collect()
 }
 
+/// Largest rudder angle of a trial to either side, rad.
 fn largest_rudder(trial: &Trial) -> Option<f64> {
     let angles = trial.channel(Channel::Delta)?;
     Some(angles.iter().fold(0.0, |most: f64, angle| most.max(angle.abs())))
 }
 
+/// Speed at the beginning of a trial, m/s.
 fn approach(trial: &Trial) -> Option<f64> {
     trial.channel(Channel::U)?.first().map(|speed| speed.abs())
 }

@@ -1,25 +1,25 @@
-//! What a learned correction stands beside: a refinement and the models of its folds.
+//! The base of a learned correction: a refinement and the models of its folds.
 
 use sistership_identification::refine::{FoldModel, Refinement, Request};
 use sistership_learned::HeldOutFold;
 use sistership_model::trial::Trial;
 
-/// What a correction may be learned beside.
+/// The base of a learned correction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Foundation<'a> {
-    /// The refinement that was chosen, as an explicit request.
+    /// The request that gives the chosen refinement.
     pub request: Request<'a>,
-    /// What it gave.
+    /// The chosen refinement.
     pub refinement: &'a Refinement,
-    /// The models of its folds; none of the source as carried over, which has seen no trial.
+    /// Models of its folds; none for the transferred source, which has seen no trial.
     pub folds: &'a [FoldModel],
-    /// The trials that have a say.
+    /// Trials that are used.
     pub trials: &'a [&'a Trial],
 }
 
 impl Foundation<'_> {
-    /// The folds with models that have not seen what they hold out; none where they held out parts
-    /// of trials.
+    /// Returns the folds with base models that have not seen the trials held out; empty if trials
+    /// were held out in parts.
     pub(crate) fn held_out(&self) -> Vec<HeldOutFold> {
         if self.folds.is_empty() && self.refinement.is_source_kept() {
             return HeldOutFold::of_one(&self.refinement.model, self.trials.len());

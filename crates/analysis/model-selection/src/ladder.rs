@@ -1,15 +1,15 @@
-//! What the search has tried, with error and cost.
+//! The selection report: evaluated candidates with error and cost.
 
 use serde::Serialize;
 
 use sistership_identification::refine::Method;
 use sistership_learned::BranchChoice;
 
-/// How far an entrant was taken.
+/// Stage of the selection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rung {
-    /// The source as carried over.
+    /// The transferred source.
     CarriedOver,
     /// The weak form.
     Weak,
@@ -18,7 +18,7 @@ pub enum Rung {
 }
 
 impl Rung {
-    /// The estimator by which the entrant is weighed there.
+    /// Returns the estimator by which candidates are evaluated at the stage.
     pub fn method(self) -> Method {
         match self {
             Self::CarriedOver | Self::Weak => Method::Weak,
@@ -27,48 +27,49 @@ impl Rung {
     }
 }
 
-/// One entrant on one rung.
+/// One candidate at one stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Line {
-    /// The source; none where the trials alone make the model.
+    /// Source; none if only the trials determine the model.
     pub source: Option<String>,
     /// The law.
     pub law: String,
-    /// How far it was taken.
+    /// Stage.
     pub rung: Rung,
     /// Coefficients fitted.
     pub coefficients: usize,
-    /// Standardised mean squared error on manoeuvres left out, the geometric mean over restart
-    /// intervals; none where a simulation diverged at the shortest.
+    /// Standardised mean squared error on held-out manoeuvres, the geometric mean over restart
+    /// intervals; none if a simulation diverged at the shortest.
     pub error: Option<f64>,
-    /// Its standard error over the trials; none below two.
+    /// Standard error of `error` over the trials; none for fewer than two.
     pub standard_error: Option<f64>,
-    /// Jackknife variance of what it simulates under rudders that no trial had, on the same scales;
-    /// none where it is not known or a fold does not sail.
+    /// Jackknife variance of the states that are simulated under rudder orders that no trial had,
+    /// on the same scales; none if it is not known or a fold's model cannot be simulated to the
+    /// end.
     pub variance: Option<f64>,
-    /// Wall time until it was weighed, s; weak forms are weighed side by side.
+    /// Elapsed time of its evaluation, s; weak forms are evaluated in parallel.
     pub cost_s: f64,
-    /// Whether it was taken.
+    /// True if it was chosen.
     pub chosen: bool,
-    /// Whether it is the reference: the most similar ship by correlation that is eligible, refined
-    /// with the l2 prior.
+    /// True for the reference: the most similar eligible ship by correlation, refined with the l2
+    /// prior.
     pub reference: bool,
-    /// Why it is out, or why it was taken.
+    /// Reason why it was excluded, or why it was chosen.
     pub reason: String,
 }
 
-/// Everything that was tried, in the order of the rungs.
+/// All evaluated candidates, in the order of the stages.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Ladder {
-    /// The lines.
+    /// Evaluated candidates.
     pub lines: Vec<Line>,
-    /// Whether a learned branch is taken beside what was chosen; none where that was not asked.
+    /// Choice of a learned correction for the chosen model; none if it was not requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch: Option<BranchChoice>,
 }
 
 impl Ladder {
-    /// What the reference leaves on manoeuvres left out, beside what was taken.
+    /// Returns a sentence that compares the reference's error with that of the chosen candidate.
     pub fn reference(&self) -> String {
         let Some(line) = self.lines.iter().find(|line| line.reference) else {
             return "Reference: no ship is eligible as a source.".to_owned();
@@ -79,6 +80,7 @@ impl Ladder {
              {})",
             line.law
         );
+        // Error of the chosen candidate.
         let taken = self.lines.iter().find(|line| line.chosen).and_then(|line| line.error);
         match (line.error, taken) {
             _ if line.chosen => format!("{head}, is what was taken."),

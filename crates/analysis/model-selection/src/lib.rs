@@ -1,9 +1,11 @@
-//! The search for the best model that a ship's trials allow, over sources, laws and estimators.
+//! Model selection: the search for the best model that a ship's trials allow, over sources, laws
+//! and estimators.
 //!
-//! Every entrant (a source, or none, and the law to be fitted) is weighed by one error on the same
-//! manoeuvres left out. Entrants climb by successive halving ([`search`]). Of what is alike
-//! [`chosen`] takes what single trials move least elsewhere; it is refined as if a person had named
-//! its source, law and method, and where no model comes of that which sails, the next is taken.
+//! Every candidate (a source, or none, and the law to be fitted) is evaluated by one error on the
+//! same held-out manoeuvres. Candidates pass the stages by successive halving. Of candidates that
+//! are statistically tied, the one is preferred that depends least on single trials elsewhere; it
+//! is refined by an explicit request with its source, law and method. If that gives no model that
+//! completes the required manoeuvres, the next one is chosen.
 
 mod branch;
 mod choice;

@@ -1,4 +1,4 @@
-//! The ships of which a population is made.
+//! The ships of a population.
 
 use sistership_identification::refine::Member;
 use sistership_model::vessel::Status;
@@ -9,10 +9,10 @@ use sistership_priors::source::{Similarity, similar};
 use crate::entrant::POPULATION_LAW;
 use crate::thresholds::SEARCH;
 
-/// Other ships of the zoo with their published models, by rank of similarity, whatever their
-/// category. Estimates from particulars say what their formulas have in common, not what ships
-/// have; refined models are left out because what one ship's trials say is no part of another's
-/// provenance unless it is its source.
+/// Returns other ships of the zoo with their published models, by rank of similarity, of all
+/// categories. Estimates from particulars are excluded, since they show what formulas have in
+/// common, not ships. Refined models are excluded, since the trials of one ship belong to another's
+/// provenance only if it is its source.
 pub fn population(zoo: &Zoo, target: &Vessel) -> Vec<Member> {
     let ranking = similar(zoo, target, None, &[]).ranking;
     let others = ranking.iter().filter(|ranked| ranked.ship != target.name());
@@ -21,16 +21,17 @@ pub fn population(zoo: &Zoo, target: &Vessel) -> Vec<Member> {
     models.filter_map(member).take(SEARCH.population).collect()
 }
 
-/// The ship of a population at the states of whose manoeuvres all are asked: the first that is
-/// eligible as a source, else the most similar one. It must not be of the law that the population
-/// holds. It does not depend on what else might be a source: at the states of a poor model a
-/// population says something else.
+/// Returns the ship of a population at the states of whose manoeuvres all are evaluated: the first
+/// that is eligible as a source, otherwise the most similar one. Its law must differ from the law
+/// that is fitted. The choice does not depend on other possible sources: at the states of a poor
+/// model a population has other accelerations.
 pub fn asked_at<'a>(population: &'a [Member], similarity: &Similarity) -> Option<&'a Model> {
     let across = || population.iter().map(|of| &of.model).filter(|of| of.law != POPULATION_LAW);
     let eligible = |ranked: &RankedSource| across().find(|of| of.ship == ranked.ship);
     similarity.eligible().find_map(eligible).or_else(|| across().next())
 }
 
+/// The first published model of a vessel.
 fn published(zoo: &Zoo, vessel: &Vessel) -> Option<Model> {
     let measured = vessel.file.models.iter().find(|model| model.status == Status::Published)?;
     zoo.published(vessel, Some(&measured.name)).ok()

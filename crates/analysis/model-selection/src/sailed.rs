@@ -1,6 +1,6 @@
-//! What a model must sail before it is taken: rudders, zigzags, motions and revolutions that no trial
-//! had. That it comes to rest, stops and goes astern is asked of every refinement, whichever way it
-//! is chosen (`sistership_propulsion::check`).
+//! Simulations that a model must complete before it is chosen: rudder orders, zigzags, motions and
+//! revolutions that no trial had. That it comes to rest, stops and goes astern is checked for every
+//! refinement, however it is chosen (`sistership_propulsion::check`).
 
 use sistership_identification::refine::{Beginning, Helm, helms, record};
 use sistership_model::Model;
@@ -15,21 +15,22 @@ use sistership_simulation::recorded::{Recorded, ReplaySettings, replay_all};
 
 use crate::thresholds::SAILED;
 
-/// Rudders at random and turns, from straight ahead.
+/// Random rudder orders and turns, from straight ahead.
 fn asked() -> Vec<Helm> {
     let held = SAILED.turns.into_iter().flat_map(|angle| [angle, -angle]).map(Helm::Held);
     Helm::random(SAILED.records).into_iter().chain(held).collect()
 }
 
-/// Why a model does not sail wherever its rudder and its motion may be: what the rudder was
-/// ordered, and where its simulation stops. None where it sails, or where a rudder does not tell
-/// all that its law takes.
+/// Returns why a model does not complete a simulation within the range of its rudder and its
+/// motion: the order, and where the simulation stops. `None` if it completes all of them, or if the
+/// records lack an input of its law.
 pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<String> {
     let mut helms = helms(model, trials, (&asked(), SAILED.lengths))?;
     helms.extend(from_recorded_motion(model, trials).unwrap_or_default());
     let ship = ready(model, law, trials).ok()?;
     let all: Vec<Recorded<'_>> =
         helms.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
+    // Records are simulated in lockstep, which makes many of them cheap.
     let runs = replay_all(&ship, &all, &ReplaySettings::default()).ok()?;
     let stopped =
         helms.iter().zip(&runs).find_map(|(helm, run)| Some((helm, run.stopped.as_ref()?)));
@@ -39,16 +40,19 @@ pub fn unsailed_rudder(model: &Model, law: &Law, trials: &[&Trial]) -> Option<St
         .or_else(|| propulsion_fault(&ship))
 }
 
-/// What a ship does wrong with her propeller stopped or reversed, straight ahead or out of a turn.
+/// Fault of a ship with the propeller stopped or reversed, straight ahead or out of a turn. A ship
+/// without revolutions to change has none.
 fn propulsion_fault(ship: &Ship) -> Option<String> {
     let fault = check(ship).and_then(|()| check_turning(ship)).err()?;
     (fault != PropulsionFault::NoRevolutions).then(|| fault.to_string())
 }
 
-/// Zigzags to both sides, from small angles to the gear's limit.
+/// First zigzag that a ship does not complete, of those to both sides from small angles to the
+/// gear's limit.
 fn unsailed_zigzag(ship: &Ship, steering: &Steering) -> Option<String> {
     let step_s = ReplaySettings::default().step_s;
     let settings = ManoeuvreSettings { step_s: Some(step_s), ..ManoeuvreSettings::default() };
+    // Evenly spaced angles, the last of which is the gear's limit.
     let step_deg = steering.limit_deg / SAILED.zigzags as f64;
     let angles = (1..=SAILED.zigzags).flat_map(|k| [k as f64 * step_deg, -(k as f64) * step_deg]);
     let asked: Vec<(f64, f64)> = angles.map(|angle| (angle, angle.abs())).collect();
@@ -58,20 +62,22 @@ fn unsailed_zigzag(ship: &Ship, steering: &Steering) -> Option<String> {
     Some(format!("does not sail a zigzag of {angle:.1} deg: {stopped}"))
 }
 
-/// Revolutions by those that were recorded: the propeller stopped, and reversed.
+/// Factors of the recorded revolutions, with their description: the propeller stopped, and
+/// reversed.
 const ENGINE: [(f64, &str); 2] = [(0.0, ", propeller stopped,"), (-1.0, ", propeller reversed,")];
 
-/// Records that begin in motions of the trials, spread over all of them: a ship comes into motions
-/// in which the model by itself never is. From each the rudder goes hard over to both sides, and
-/// about at random; where revolutions were recorded, the propeller is stopped and reversed with the
+/// Records that begin in motions of the trials, spread over all of them: a ship gets into motions
+/// that the model does not reach by itself. From each the rudder goes hard over to both sides, and
+/// moves at random; where revolutions were recorded, the propeller is stopped and reversed with the
 /// rudder amidships.
 fn from_recorded_motion(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
     let places: Vec<(&Trial, usize)> =
         trials.iter().flat_map(|trial| (0..trial.len()).map(move |at| (*trial, at))).collect();
     let one = |k: usize, helm: Helm, (turns, engine): (f64, &str)| {
+        // The middle of the k-th of `motions` equal parts of all samples.
         let (trial, at) = *places.get((2 * k + 1) * places.len() / (2 * SAILED.motions))?;
         let of = |channel: Channel| Some((channel, trial.channel(channel)?[at]));
-        // Without all of these nothing begins there; what else was recorded begins as it was.
+        // A sample that lacks one of these cannot start a record; other channels start as recorded.
         let angle_rad = of(Channel::Delta)?.1;
         let moving = [Channel::U, Channel::V, Channel::R].map(of).into_iter();
         let moving = moving.collect::<Option<Vec<_>>>()?;

@@ -1,12 +1,12 @@
-//! How far the models of folds are apart in the standard manoeuvres.
+//! Scatter of the models of folds in the standard manoeuvres.
 
 use std::collections::BTreeMap;
 
 use sistership_simulation::manoeuvre::StandardManoeuvres;
 
-/// Variance of the figures of the standard manoeuvres over folds by that over other ones, the
-/// geometric mean over the figures that all of the latter reach; infinite where one of those is not
-/// reached. One where no figure scatters.
+/// Returns the ratio of the variances of the figures of the standard manoeuvres over two sets of
+/// folds, `after` to `before`: the geometric mean over the figures that all of `before` reach;
+/// infinite if one of `after` does not reach such a figure, 1 if no figure scatters.
 pub(super) fn scatter_ratio(before: &[StandardManoeuvres], after: &[StandardManoeuvres]) -> f64 {
     let [before, after] = [before, after].map(|all| all.iter().map(figures).collect::<Vec<_>>());
     let names = before.first().into_iter().flat_map(BTreeMap::keys);
@@ -21,13 +21,14 @@ pub(super) fn scatter_ratio(before: &[StandardManoeuvres], after: &[StandardMano
     (ratios.iter().sum::<f64>() / ratios.len() as f64).exp()
 }
 
-/// Figures that are reached, but the criteria, which repeat them.
+/// Figures that are reached, without the IMO criteria, which repeat them.
 fn figures(sailed: &StandardManoeuvres) -> BTreeMap<String, f64> {
     let reached = sailed.figures().into_iter();
     let reached = reached.filter_map(|figure| Some((figure.name, figure.value?)));
     reached.filter(|(name, _)| !name.starts_with("IMO")).collect()
 }
 
+/// Variance of a figure; `None` if one of all does not reach it.
 fn variance(all: &[BTreeMap<String, f64>], name: &str) -> Option<f64> {
     let values: Vec<f64> = all.iter().map(|one| one.get(name).copied()).collect::<Option<_>>()?;
     if values.is_empty() {

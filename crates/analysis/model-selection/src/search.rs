@@ -1,6 +1,6 @@
-//! Successive halving over entrants (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and
-//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next,
-//! costlier estimator.
+//! Successive halving over candidates (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and
+//! Talwalkar 2016, AISTATS, Algorithm 1): at each stage a share of them goes on to the next, more
+//! expensive estimator.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,21 +19,22 @@ use sistership_identification::refine::{
 };
 use sistership_priors::transfer::approach_of;
 
-/// Searches the best entrant and estimator.
+/// Returns the best candidate and estimator with its refinement.
 ///
 /// # Errors
-/// It was cancelled, a setting is refused, or nothing could be simulated to its end.
+/// Returns an error if it was cancelled, a setting is refused, or nothing could be simulated to its
+/// end.
 pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let settings = searched_by(search);
     climbed(&Search { settings: &settings, ..*search }, progress)
 }
 
-/// Samples on which a search has the noise model learned, where nothing else is asked.
+/// Default number of samples on which a search learns the noise model.
 pub fn calibration_samples() -> usize {
     SEARCH.calibration
 }
 
-/// What the search sets beside what is asked of it.
+/// The settings of the search: the requested ones with the defaults of the search.
 fn searched_by(search: &Search<'_>) -> Settings {
     let (settings, fitted) = (search.settings, search.fitted());
     let length_s = search.target.particular("lpp_m").zip(approach_of(&fitted));
@@ -62,9 +63,9 @@ fn searched_by(search: &Search<'_>) -> Settings {
     }
 }
 
-/// The restart interval at which a bias shows: longer than every trial, so that each is simulated
-/// as a whole; as long as parts where some laws have trials left out in those, so that all
-/// candidates have the same.
+/// The longer restart interval, at which a bias shows: longer than every trial, so that each is
+/// simulated as a whole; or the length of parts if some laws have trials held out in parts, so that
+/// all candidates have the same interval.
 fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
     let (settings, fitted) = (search.settings, search.fitted());
     if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
@@ -79,6 +80,7 @@ fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>
     longer_s.into_iter().collect()
 }
 
+/// Passes the candidates through the stages and selects one.
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
@@ -90,14 +92,16 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     let population = which(&|entrant| entrant.held_by == HeldBy::Population);
     carried_over((search, &known), &mut tried, progress)?;
     let mut next = leading_by_law(search, &tried);
-    // Parts of one manoeuvre tell nothing of others, and without a source nothing else does.
+    // Parts of one manoeuvre have no information on other manoeuvres, and without a source there is
+    // no other information.
     if search.settings.in_parts && !next.is_empty() {
         alone.clear();
     }
     next.extend(alone);
-    // What ships have in common says little of one as it is, and much of how far it may be.
+    // A population is not evaluated as transferred: its mean describes a single ship poorly, but
+    // its scatter describes well how far a ship may differ.
     next.extend(population);
-    // The reference is reported whatever comes of it.
+    // The reference is always evaluated, for the report.
     next.extend(search.reference().filter(|reference| !next.contains(reference)));
     climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(search, &tried);
@@ -105,8 +109,8 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     taken(search, tried, progress)
 }
 
-/// Weighs each source as carried over, by its own law where that is fitted: what another law says
-/// in its place is an imitation of that, and needed only where that does not sail.
+/// Evaluates each source as transferred, by its own law if that is among the fitted ones; by
+/// another law, which only approximates it, if its own one cannot be simulated.
 fn carried_over(
     (search, known): (&Search<'_>, &SourceEnvelopes),
     tried: &mut Vec<Tried>,
@@ -133,8 +137,8 @@ fn carried_over(
     Ok(())
 }
 
-/// Weighs entrants on a rung side by side; its progress begins at a fraction of the whole and takes
-/// a span of it.
+/// Evaluates candidates at a stage in parallel; progress begins at a fraction of the whole and
+/// takes a span of it.
 fn climb(
     (search, known): (&Search<'_>, &SourceEnvelopes),
     rung: Rung,
@@ -143,6 +147,7 @@ fn climb(
     tried: &mut Vec<Tried>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
+    // Only a counter for progress: no other data depend on it, so that relaxed ordering suffices.
     let done = AtomicUsize::new(0);
     let one = |&entrant: &usize| {
         let named = search.entrants[entrant].name();
@@ -156,13 +161,15 @@ fn climb(
         Ok(tried)
     };
     let weighed: Result<Vec<Tried>, RefineError> =
+        // One task a candidate; results keep the candidates' order.
         entrants.par_iter().with_max_len(1).map(one).collect();
     tried.extend(weighed?);
     Ok(())
 }
 
-/// Fits trajectories, each entrant within the one before it: what an entrant has prepared is kept
-/// until all have been weighed, and made into a refinement where it is what is taken then.
+/// Fits trajectories, each candidate within the callback of the one before: the data that a
+/// candidate has prepared are kept until all have been evaluated, and become its refinement if it
+/// is the chosen one.
 fn descend(
     (search, known): (&Search<'_>, &SourceEnvelopes),
     entrants: &[usize],
@@ -178,6 +185,7 @@ fn descend(
         |fraction: f64, what: &str| progress(begin + share * fraction, &format!("{named}: {what}"));
     let own = search.entrants[entrant].settings(search.settings);
     let settings = settings_on(&own, Rung::Trajectory, ridge_of(tried, entrant));
+    // The candidate's place among all, by which it recognises itself as the chosen one.
     let (begun, place) = (Instant::now(), tried.len());
     let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
         let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
@@ -185,6 +193,8 @@ fn descend(
         tried.push(Tried { entrant, rung, weighed, refinement, cost_s, roll_strength, refusal });
         descend((search, known), others, rest, tried, progress)
     };
+    // `note` evaluates the other candidates by recursion before this one learns whether it is
+    // chosen.
     let is_taken = |all: &[Weighed]| {
         note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
         Ok(chosen_of(search, tried) == Some(place))
@@ -195,6 +205,7 @@ fn descend(
         Ok((_, refinement)) => tried[place].refinement = refinement,
         Err(error) => {
             let refused = on_rung(Rung::Trajectory, Err(error))?;
+            // The fit may have failed before or after its evaluation was stored.
             match tried.get_mut(place) {
                 Some(weighed) => weighed.weighed = refused,
                 None => note(tried, refused)?,
@@ -204,8 +215,9 @@ fn descend(
     Ok(())
 }
 
-/// Entrants with their errors at the shortest restart interval, the least first; those that did not
-/// sail are left out. What goes wrong in whole trials the next stage may put right.
+/// Candidates with their errors at the shortest restart interval, the least first; those that
+/// diverged are omitted. Errors in whole trials are not used here, since the next stage may correct
+/// them.
 fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
     let sailed = tried.filter(|one| one.weighed.error.is_some());
     let mut order: Vec<(usize, f64)> =
@@ -214,8 +226,8 @@ fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
     order
 }
 
-/// Of each law the sources that lead as carried over, one in [`SEARCH`]`.share`: how well a source
-/// is carried over says which source serves a law best, but not how well a law can be fitted.
+/// The leading transferred sources of each law, one in [`SEARCH`]`.share`: the error of a
+/// transferred source shows which source suits a law best, but not how well a law can be fitted.
 fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     let order = ordered(tried.iter());
     let sources = order.iter().filter_map(|(entrant, _)| search.entrants[*entrant].source_name());
@@ -234,9 +246,9 @@ fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     by_law.into_values().flat_map(first).collect()
 }
 
-/// The entrants that lead in weak form: trajectories seldom gain more than
-/// [`SEARCH`]`.trajectory_gain`. A population, which is near wherever other ships hold the law,
-/// takes the place of none of the others.
+/// The leading candidates in weak form: trajectories seldom gain more than
+/// [`SEARCH`]`.trajectory_gain`. A population, which is near the least error wherever other ships
+/// determine the law, does not displace any of the others.
 fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
     let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
     let least = order.first().map_or(0.0, |(_, error)| *error);

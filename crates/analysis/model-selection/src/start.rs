@@ -1,4 +1,4 @@
-//! Where a refinement starts that names neither source, law nor method.
+//! The default call: a refinement without a given source, law or method.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::tried::{Search, request};
 use sistership_identification::refine::{Member, Progress, RefineError, Refinement, Settings};
 use sistership_priors::source::{Similarity, similar_with};
 
-/// What is to be started.
+/// Request of a default refinement.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked<'a> {
     /// Ships and laws.
@@ -25,33 +25,34 @@ pub struct Asked<'a> {
     pub target: &'a Vessel,
     /// Models better than the published ones, by ship.
     pub champions: &'a BTreeMap<String, Model>,
-    /// Every trial.
+    /// All trials.
     pub trials: &'a [&'a Trial],
-    /// Settings but the method; trials that they keep out have no say.
+    /// Settings except the method; trials that they hold out are not used.
     pub settings: &'a Settings,
 }
 
-/// Where to start, and how that was found.
+/// The selected source, law and method, with the evidence for them.
 #[derive(Debug, Clone)]
 pub struct Start {
     /// The source and the law to fit.
     pub entrant: Entrant,
-    /// The ships whose population holds it; none where something else does.
+    /// Ships of the population that is its prior; empty for other priors.
     pub population: Vec<Member>,
     /// Settings that name the method.
     pub settings: Settings,
-    /// How ships ranked.
+    /// Ranking of the ships by similarity.
     pub similarity: Similarity,
-    /// What was tried.
+    /// Selection report.
     pub ladder: Ladder,
     /// The refinement itself.
     pub refinement: Refinement,
 }
 
-/// Finds the best start.
+/// Selects source, law and method, and refines by them.
 ///
 /// # Errors
-/// It was cancelled, a setting is refused, or no entrant could be simulated to its end.
+/// Returns an error if it was cancelled, a setting is refused, or no candidate could be simulated
+/// to its end.
 pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, RefineError> {
     let Asked { zoo, target, champions, trials, settings } = *asked;
     let held_out = &settings.held_out;
@@ -59,6 +60,7 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     let similarity = similar_with(zoo, target, None, &fitted, champions);
     let population = population(zoo, target);
+    // With few trials the estimate from particulars is a candidate as well.
     let beside = Beside {
         estimate: fitted.len() < SEARCH.few,
         population: asked_at(&population, &similarity),
@@ -75,12 +77,14 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
     let branch = Some(branch(&foundation, progress)?);
     let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
     let ladder = Ladder { branch, ..winner.ladder };
+    // The population is part of the recipe only if the chosen candidate depends on it.
     let is_held = entrant.held_by == HeldBy::Population;
     let population = if is_held { population } else { Vec::new() };
     Ok(Start { entrant, population, settings: winner.settings, similarity, ladder, refinement })
 }
 
-/// The models of the first eligible ships; a file that does not read is no source.
+/// Models of the first eligible ships: the version in use of a ship, else the published model. A
+/// file that cannot be read is skipped.
 fn sources(asked: &Asked<'_>, similarity: &Similarity) -> Vec<Model> {
     let model = |ship: &str, name: &str| match asked.champions.get(ship) {
         Some(champion) => Some(champion.clone()),

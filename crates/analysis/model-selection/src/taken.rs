@@ -1,4 +1,4 @@
-//! What is taken of all that was tried: the choice that also sails the standard manoeuvres.
+//! Selection of the candidate whose model also completes the required manoeuvres.
 
 use sistership_model::Law;
 
@@ -15,29 +15,29 @@ use crate::tried::{
     Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on, weighed_on,
 };
 
-/// What was taken, and how it is refined explicitly.
+/// The selected candidate, with the settings that give its refinement explicitly.
 #[derive(Debug, Clone)]
 pub struct Winner {
-    /// Its place among the entrants.
+    /// Place among the candidates.
     pub entrant: usize,
     /// Settings that name its method.
     pub settings: Settings,
-    /// What was tried.
+    /// Selection report.
     pub ladder: Ladder,
-    /// The refinement that naming all of it gives.
+    /// Refinement that these settings give.
     pub refinement: Refinement,
     /// The models of its folds.
     pub folds: Vec<FoldModel>,
 }
 
-/// Refines the choice by its own settings. Where nothing that was fitted can be taken then, for no
-/// such model keeps the constraints and sails the standard manoeuvres, it is out, and the next
-/// choice is refined: the source as it is, or a law without coefficients, is not what was chosen.
-/// So it is where the model leaves the physical range under rudders at random, as long as another
-/// choice does not.
+/// Refines the chosen candidate by its own settings. If its refinement keeps the source, since no
+/// fitted model keeps the constraints and completes the standard manoeuvres, the candidate is
+/// excluded and the next one is chosen: the source as it is, or a law without coefficients, is not
+/// what was chosen. The same applies if the model leaves the physical range under rudder orders at
+/// random, as long as another candidate does not.
 ///
 /// # Errors
-/// It was cancelled, a setting is refused, or nothing is left.
+/// Returns an error if it was cancelled, a setting is refused, or no candidate is left.
 pub(super) fn taken(
     search: &Search<'_>,
     mut tried: Vec<Tried>,
@@ -63,17 +63,21 @@ pub(super) fn taken(
                 let folds = tried[best].weighed.folds.clone();
                 let winner = Winner { entrant, settings, ladder, refinement, folds };
                 let Some(reason) = unsailed else { return Ok(winner) };
+                // The first model that only fails the additional records is used if no other one
+                // passes.
                 spare.get_or_insert(winner);
                 reason
             }
         };
         tried[best].refusal = Some(reason);
+        // A refused weak form gets a successor with a stronger prior. Strengths only grow, so that
+        // the loop ends.
         tried.extend(held_more(search, &tried[best], progress)?);
     }
 }
 
-/// The weak form of an entrant whose choice cannot be taken, by a stronger prior: nearer to what it
-/// began with. None of another rung, or where no strength is left.
+/// The weak form of a refused candidate with a stronger prior, nearer to the prior's mean. `None`
+/// for another stage, or if no stronger prior is left.
 fn held_more(
     search: &Search<'_>,
     refused: &Tried,
@@ -98,20 +102,22 @@ fn held_more(
     weighed_on((search, &known), (entrant, Rung::Weak), &settings, &told).map(Some)
 }
 
-/// The strength of roll's own prior after a refusal: it is the likeliest by the trials whatever the
-/// common one is, and a ship that capsizes does so by what the trials say of her roll.
+/// Strength of roll's own prior after a refusal. It is relative to the likeliest by the trials,
+/// which does not depend on the common strength: a ship that capsizes does so by its roll as the
+/// trials give it.
 fn stronger_roll(law: &Law, before: Option<f64>) -> Option<f64> {
     law.has_roll().then(|| SEARCH.roll_stronger * before.unwrap_or(1.0))
 }
 
+/// The error that no candidate is left, with the reasons.
 fn nothing_left(tried: &[Tried]) -> RefineError {
     let reason = |one: &'_ Tried| one.refusal.clone().or_else(|| one.weighed.reason.clone());
     let reasons: Vec<String> = tried.iter().filter_map(reason).collect();
     RefineError::diverged(reasons.iter().map(String::as_str))
 }
 
-/// Settings that name a rung's method, and of a weak form or of what trajectories begin with the
-/// strength.
+/// Settings that give an evaluated candidate explicitly: the method of its stage, and the strength
+/// of its weak form or of the one from which its trajectories start.
 fn settings_that_give(search: &Search<'_>, tried: &[Tried], place: usize) -> Settings {
     let (entrant, rung) = (tried[place].entrant, tried[place].rung);
     let own = search.entrants[entrant].settings(search.settings);
@@ -119,10 +125,13 @@ fn settings_that_give(search: &Search<'_>, tried: &[Tried], place: usize) -> Set
         let own = Settings { roll_strength: tried[place].roll_strength, ..own };
         return settings_of(&own, tried[place].weighed.ridge);
     }
+    // Only evaluations before the first trajectory: later ones may be weak forms with a stronger
+    // prior.
     let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
     settings_on(&own, rung, ridge_of(&tried[..below], entrant))
 }
 
+/// The refinement of a candidate by some settings.
 fn refined(
     search: &Search<'_>,
     (entrant, settings): (usize, &Settings),
@@ -134,8 +143,8 @@ fn refined(
     refine(&request(search, entrant, settings), &told)
 }
 
-/// A refinement with something fitted in it, or why there is none; of a source as carried over
-/// nothing else is asked.
+/// Returns a refinement in which something was fitted, or the reason (inner error) why there is
+/// none; a transferred source need not be fitted.
 fn fitted(
     made: Result<Refinement, RefineError>,
     rung: Rung,
@@ -148,6 +157,7 @@ fn fitted(
     }
 }
 
+/// The selection report with the place of the chosen candidate.
 fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
     let left = tried.iter().filter(|one| one.refusal.is_none());
     let least = left.filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
@@ -158,12 +168,14 @@ fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
     Ladder { lines: lines.map(line).collect(), branch: None }
 }
 
-/// The place of the reference as it was first fitted.
+/// Place of the first fit of the reference.
 fn reference(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
     let entrant = search.reference()?;
     tried.iter().position(|one| one.entrant == entrant && one.rung == Rung::Weak)
 }
 
+/// Line of the report for one evaluated candidate; `least` is the least error of all that were not
+/// refused.
 fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
     let entrant = &search.entrants[tried.entrant];
     let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;

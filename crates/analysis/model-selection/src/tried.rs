@@ -1,4 +1,4 @@
-//! What is tried: entrants on rungs, the settings by which each is fitted there, and what it gives.
+//! Evaluation of candidates at the stages, and the settings of each.
 
 use std::time::Instant;
 
@@ -14,51 +14,51 @@ use sistership_identification::refine::{
     Weighed, weigh,
 };
 
-/// What is searched.
+/// Inputs of the search.
 #[derive(Debug, Clone, Copy)]
 pub struct Search<'a> {
     /// The ship.
     pub target: &'a Vessel,
-    /// What enters.
+    /// Candidates.
     pub entrants: &'a [Entrant],
-    /// Every trial; those that the settings keep out have no say.
+    /// All trials; those that the settings hold out are not used.
     pub trials: &'a [&'a Trial],
-    /// Ships of which a population is made.
+    /// Ships of the population.
     pub population: &'a [Member],
-    /// Settings but the method.
+    /// Settings except the method.
     pub settings: &'a Settings,
 }
 
 impl<'a> Search<'a> {
-    /// The trials that have a say.
+    /// Returns the trials that are used.
     pub(super) fn fitted(&self) -> Vec<&'a Trial> {
         let held_out = &self.settings.held_out;
         self.trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect()
     }
 
-    /// The place of the reference: the most similar ship by correlation that is eligible, under its
-    /// own law where that can be fitted, with the source as l2 prior. None without such a ship.
+    /// Returns the place of the reference: the most similar eligible ship by correlation, under its
+    /// own law if that can be fitted, with the source as l2 prior. `None` without such a ship.
     pub(super) fn reference(&self) -> Option<usize> {
         let is_source = |one: &Entrant| one.source_law.is_some() && one.held_by == HeldBy::Source;
         self.entrants.iter().position(is_source)
     }
 }
 
-/// A candidate with where it came from.
+/// An evaluated candidate, with its stage.
 pub(super) struct Tried {
     pub entrant: usize,
     pub rung: Rung,
     pub weighed: Weighed,
-    /// Where it has been made already.
+    /// Its refinement, if that was computed with the evaluation.
     pub refinement: Option<Refinement>,
     pub cost_s: f64,
-    /// By how much more than the likeliest roll was held; none where not more.
+    /// Factor of roll's prior on the likeliest strength; none for a factor of 1.
     pub roll_strength: Option<f64>,
-    /// Why it cannot be taken, though it was weighed.
+    /// Reason why it is excluded after its evaluation, if so.
     pub refusal: Option<String>,
 }
 
-/// An entrant's refinement by some settings.
+/// Returns the request that refines a candidate by some settings.
 pub(super) fn request<'a>(
     search: &Search<'a>,
     entrant: usize,
@@ -76,14 +76,18 @@ pub(super) fn request<'a>(
     }
 }
 
-/// What an entrant gives on a rung; one that cannot be fitted is out with the reason.
+/// Returns the evaluation of a candidate at a stage; a candidate that cannot be fitted is excluded
+/// with the reason.
 pub(super) fn on_rung(
     rung: Rung,
     weighed: Result<Vec<Weighed>, RefineError>,
 ) -> Result<Weighed, RefineError> {
     let (of_source, of_fit) = (0, 1);
+    // Evaluations are those of the source and of the best fit, in this order.
     let wanted = if rung == Rung::CarriedOver { of_source } else { of_fit };
     match weighed {
+        // Cancellation and wrong settings end the search; all other errors exclude the candidate
+        // alone.
         Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
         Err(error) => Ok(Weighed::refused(error.to_string())),
         Ok(all) => {
@@ -93,7 +97,7 @@ pub(super) fn on_rung(
     }
 }
 
-/// Weighs an entrant on a rung by its settings.
+/// Evaluates a candidate at a stage by its settings.
 pub(super) fn weighed_on(
     (search, known): (&Search<'_>, &SourceEnvelopes),
     (entrant, rung): (usize, Rung),
@@ -110,7 +114,7 @@ pub(super) fn weighed_on(
     Ok(Tried { entrant, rung, weighed, refinement: None, cost_s, roll_strength, refusal: None })
 }
 
-/// The place of what is taken of all that was tried and not refused.
+/// Returns the place of the chosen candidate among those that were not refused.
 pub(super) fn chosen_of(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
     let is_held = |one: &Tried| search.entrants[one.entrant].held_by == HeldBy::Population;
     let left: Vec<(usize, &Tried)> =
@@ -119,18 +123,21 @@ pub(super) fn chosen_of(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
     chosen(&all).map(|place| left[place].0)
 }
 
-/// The weak form that an entrant had.
+/// Family and strength of a candidate's last evaluation.
 pub(super) fn ridge_of(tried: &[Tried], entrant: usize) -> Option<(Family, f64)> {
+    // Later stages come later in the list.
     tried.iter().rev().find(|one| one.entrant == entrant)?.weighed.ridge
 }
 
-/// Settings by which an entrant is fitted on a rung. Carried over, the prior is so strong that the
-/// source stays; in weak form few strengths are tried; trajectories begin near the best of those.
+/// Returns the settings by which a candidate is fitted at a stage. As transferred, the prior is so
+/// strong that the source stays; in weak form few strengths are tried; trajectories start near the
+/// best of those.
 pub(super) fn settings_on(
     settings: &Settings,
     rung: Rung,
     ridge: Option<(Family, f64)>,
 ) -> Settings {
+    // Families and strengths that the request names take precedence over those of the stage.
     let mut settings = Settings { method: rung.method(), ..settings.clone() };
     let (families, strengths) = match (rung, ridge) {
         (Rung::CarriedOver, _) => (vec![Family::Own], vec![SEARCH.kept]),
@@ -148,7 +155,7 @@ pub(super) fn settings_on(
     settings
 }
 
-/// Settings that give a weak form and no other: the others have been tried already.
+/// Returns the settings that give one weak form and no other: the others have been tried already.
 pub(super) fn settings_of(settings: &Settings, ridge: Option<(Family, f64)>) -> Settings {
     let mut settings = settings.clone();
     if let Some((family, lambda)) = ridge {

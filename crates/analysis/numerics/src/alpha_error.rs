@@ -1,10 +1,10 @@
-//! The error on held-out samples as a function of the share of the zero vector in the prior.
+//! Error on held-out samples as a function of alpha, the share of the zero vector in the prior.
 
 use std::ops::Add;
 
-/// A mean squared error that is quadratic in the weight `w = 1 - alpha` of the source's
-/// coefficients: `constant + linear w + square w^2`. Errors on several sets of samples add up to
-/// one such function.
+/// Mean squared error that is quadratic in the weight `w = 1 - alpha` of the source's coefficients:
+/// `constant + linear w + square w^2`. Errors on several sets of samples add up to one such
+/// function.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AlphaError {
     pub(super) constant: f64,
@@ -13,15 +13,16 @@ pub struct AlphaError {
 }
 
 impl AlphaError {
-    /// The error at an alpha.
+    /// Error at an alpha.
     pub fn at(self, alpha: f64) -> f64 {
         let weight = 1.0 - alpha;
         self.constant + self.linear * weight + self.square * weight * weight
     }
 
-    /// The alpha from 0 to `alpha_max` with the least error, and that error; 0 where the error does
-    /// not depend on alpha.
+    /// Returns the alpha from 0 to `alpha_max` with the least error, and that error; alpha is 0 if
+    /// the error does not depend on it.
     pub fn least(self, alpha_max: f64) -> (f64, f64) {
+        // Minimum of the parabola in the weight; without curvature, the full weight of the source.
         let stationary = if self.square > 0.0 { -self.linear / (2.0 * self.square) } else { 1.0 };
         let alpha = 1.0 - stationary.clamp(1.0 - alpha_max, 1.0);
         (alpha, self.at(alpha))

@@ -1,5 +1,5 @@
-//! Linear regression with a prior: sufficient statistics, and the whole path of ridge solutions
-//! from one decomposition.
+//! Linear regression with a prior: sufficient statistics, and the full path of ridge solutions from
+//! one decomposition.
 
 mod alpha_error;
 pub mod cma_es;

@@ -1,28 +1,29 @@
-//! How a prior measures coefficients.
+//! Metrics by which a prior measures coefficients.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::Moments;
 
-/// A root of a prior's precision at strength 1: in the coordinates `z = root b` of coefficients
-/// `b`, the prior holds every direction alike.
+/// Root of a prior's precision at strength 1: in the coordinates `z = root b` of coefficients `b`,
+/// the prior is isotropic.
 #[derive(Debug, Clone)]
 pub struct Metric {
     root: DMatrix<f64>,
-    /// The root's inverse; zero for what is still.
+    /// Inverse of the root; zero for coefficients without variation.
     back: DMatrix<f64>,
-    /// Coefficients that nothing moves: their regressor does not vary.
+    /// True for coefficients that the data cannot change: their regressor does not vary.
     still: Vec<bool>,
 }
 
 impl Metric {
-    /// Each coefficient by the standard deviation of its regressor times the root of `shrinkage`,
-    /// which is how many times the precision of its prior is the common one (Kanazawa 2023, Eq.
-    /// 5.11, with every shrinkage 1).
+    /// Metric of each coefficient by the standard deviation of its regressor times the root of
+    /// `shrinkage`, the precision of its prior relative to the common one (Kanazawa 2023, Eq. 5.11,
+    /// with every shrinkage 1).
     pub fn of_regressors(moments: &Moments, shrinkage: &[f64]) -> Self {
         let p = moments.regressors();
         let deviation = |j: usize| moments.variance(j).sqrt();
         let still: Vec<bool> =
+            // Relative to the mean: rounding leaves a small deviation to a constant.
             (0..p).map(|j| deviation(j) / moments.mean(j).abs().max(1e-300) <= 1e-10).collect();
         let scales = DVector::from_fn(p, |j, _| {
             if still[j] { 0.0 } else { (moments.variance(j) * shrinkage[j]).sqrt() }
@@ -35,8 +36,8 @@ impl Metric {
         }
     }
 
-    /// All coefficients jointly by a precision; one that has none is still. None where it is not
-    /// positive definite.
+    /// Metric of all coefficients jointly by a precision matrix; a coefficient with a precision of
+    /// zero is fixed. Returns `None` if the matrix is not positive definite.
     pub fn of_precision(precision: &DMatrix<f64>) -> Option<Self> {
         let p = precision.nrows();
         let still: Vec<bool> = precision.diagonal().iter().map(|own| *own == 0.0).collect();
@@ -45,6 +46,7 @@ impl Metric {
         let entry = |i: usize, j: usize| {
             if i == j { 1.0 } else { precision[(i, j)] * inverse[i] * inverse[j] }
         };
+        // Decomposed with a unit diagonal, as precisions differ by orders of magnitude.
         let unit = DMatrix::from_fn(p, p, entry).cholesky()?.unpack().transpose();
         let back = DMatrix::from_diagonal(&inverse)
             * unit.solve_upper_triangular(&DMatrix::identity(p, p))?;
@@ -56,29 +58,29 @@ impl Metric {
         self.still.len()
     }
 
-    /// Whether nothing moves a coefficient.
+    /// True if the data cannot change a coefficient.
     pub fn is_still(&self, coefficient: usize) -> bool {
         self.still[coefficient]
     }
 
-    /// From coefficients to coordinates.
+    /// Matrix from coefficients to coordinates.
     pub fn root(&self) -> &DMatrix<f64> {
         &self.root
     }
 
-    /// From coordinates to coefficients.
+    /// Matrix from coordinates to coefficients.
     pub fn back(&self) -> &DMatrix<f64> {
         &self.back
     }
 
-    /// Mean products of the regressors that belong to the coordinates.
+    /// Mean products of the regressors, transformed to the coordinates.
     pub fn products(&self, moments: &Moments) -> DMatrix<f64> {
         let p = self.size();
         let own = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j));
         self.back.transpose() * own * &self.back
     }
 
-    /// Their mean products with a target.
+    /// Mean products of the transformed regressors with a target.
     pub fn products_with_target(&self, moments: &Moments, target: usize) -> DVector<f64> {
         let own = DVector::from_fn(self.size(), |j, _| moments.covariance_with_target(j, target));
         self.back.tr_mul(&own)

@@ -1,5 +1,5 @@
-//! Sufficient statistics of a linear regression: counts, means and centred products, which merge
-//! without the samples.
+//! Sufficient statistics of a linear regression: counts, means and centred products, which can be
+//! merged without the samples.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,11 +16,11 @@ pub struct Moments {
     regressors: usize,
 }
 
-/// Rows accumulated at a time: their columns stay in the first-level cache.
+/// Number of rows accumulated at a time: their columns stay in the first-level cache.
 const CHUNK: usize = 128;
 
 impl Moments {
-    /// Of no samples.
+    /// Creates the statistics of no samples.
     pub fn empty(regressors: usize, targets: usize) -> Self {
         let size = regressors + targets;
         Self {
@@ -31,7 +31,8 @@ impl Moments {
         }
     }
 
-    /// Of samples given by column: each column holds one regressor or target over all samples.
+    /// Computes the statistics of samples given by column: each column holds one regressor or
+    /// target over all samples.
     pub fn of_columns(columns: &[Vec<f64>], regressors: usize) -> Self {
         let rows = columns.first().map_or(0, Vec::len);
         let mut all = Self::empty(regressors, columns.len() - regressors);
@@ -43,14 +44,15 @@ impl Moments {
         all
     }
 
-    /// Of samples given by column, about zero instead of their means, for models without intercept;
-    /// each sample counts as the share `weight` of an independent one.
+    /// Computes the statistics of samples given by column, about zero instead of their means, for
+    /// models without intercept; each sample counts as the share `weight` of an independent one.
     pub fn about_zero(columns: &[Vec<f64>], regressors: usize, weight: f64) -> Self {
         let size = columns.len();
         let rows = columns.first().map_or(0, Vec::len);
         let mut products = DMatrix::zeros(size, size);
         for i in 0..size {
             for j in i..size {
+                // Only the upper triangle is computed.
                 let product = weight * dot(&columns[i], &columns[j]);
                 products[(i, j)] = product;
                 products[(j, i)] = product;
@@ -59,6 +61,7 @@ impl Moments {
         Self { count: weight * rows as f64, mean: DVector::zeros(size), products, regressors }
     }
 
+    /// Computes the statistics of a few rows in two passes, means first.
     fn of_chunk(columns: &[&[f64]], regressors: usize) -> Self {
         let size = columns.len();
         let count = columns[0].len() as f64;
@@ -80,14 +83,15 @@ impl Moments {
         Self { count, mean, products, regressors }
     }
 
-    /// Adds the statistics of other samples (Chan, Golub and LeVeque 1979, Eq. 2.1: nothing is lost
-    /// to cancellation).
+    /// Adds the statistics of other samples (Chan, Golub and LeVeque 1979, Eq. 2.1: without
+    /// cancellation).
     pub fn merge(&mut self, other: &Self) {
         let total = self.count + other.count;
         if other.count == 0.0 {
             return;
         }
         let shift = &other.mean - &self.mean;
+        // Products of the shift between the two means, weighted by both counts.
         let weight = self.count * other.count / total;
         self.products += &other.products;
         self.products.ger(weight, &shift, &shift, 1.0);
@@ -95,7 +99,7 @@ impl Moments {
         self.count = total;
     }
 
-    /// The statistics of several sets of samples together.
+    /// Returns the statistics of several sets of samples together; `None` without any set.
     pub fn sum<'a>(parts: impl IntoIterator<Item = &'a Self>) -> Option<Self> {
         let mut parts = parts.into_iter();
         let mut all = parts.next()?.clone();
@@ -103,9 +107,9 @@ impl Moments {
         Some(all)
     }
 
-    /// The statistics with each set of samples left out in turn, and those of all. Sums from both
-    /// ends meet in the gap: nothing is subtracted, so that a regressor which only the set left out
-    /// excites is exactly still.
+    /// Returns the statistics with each set of samples held out in turn, and those of all. Sums
+    /// from both ends meet in the gap: nothing is subtracted, so that a regressor which only the
+    /// held-out set excites has a variance of exactly zero.
     pub fn leave_one_out(parts: &[Self]) -> Option<(Vec<Self>, Self)> {
         let first = parts.first()?;
         let none = || Self::empty(first.regressors, first.targets());
@@ -114,6 +118,7 @@ impl Moments {
             sum.merge(part);
             sum
         };
+        // after[k] holds the sum of the last k sets.
         let mut after = vec![none()];
         parts.iter().rev().for_each(|part| after.push(grown(&after[after.len() - 1], part)));
         let mut before = none();
@@ -125,20 +130,22 @@ impl Moments {
         Some((without, after.swap_remove(parts.len())))
     }
 
-    /// The statistics of `map' z` where these are those of the samples `z`, regressors then
-    /// targets; the first `regressors` columns of the map give the new regressors. Maps and merges
-    /// may change places.
+    /// Returns the statistics of `map' z` where these are those of the samples `z`, regressors then
+    /// targets; the first `regressors` columns of the map give the new regressors. Mapping and
+    /// merging commute.
     pub fn mapped(&self, map: &DMatrix<f64>, regressors: usize) -> Self {
         let transposed = map.transpose();
         Self {
             count: self.count,
             mean: &transposed * &self.mean,
+            // Centred products transform as M' P M, whatever the mean is.
             products: &transposed * (&self.products * map),
             regressors,
         }
     }
 
-    /// The same samples about zero instead of their means, for models without intercept.
+    /// Returns the statistics of the same samples about zero instead of their means, for models
+    /// without intercept.
     pub fn about_origin(&self) -> Self {
         let products = self.raw_products() * self.count;
         Self {
@@ -149,14 +156,14 @@ impl Moments {
         }
     }
 
-    /// The same with the upper triangle of the products below as well: sums leave the two apart by
-    /// a rounding.
+    /// Returns the same statistics with the upper triangle of the products copied to the lower:
+    /// summation leaves differences by rounding.
     pub fn symmetric(mut self) -> Self {
         self.products.fill_lower_triangle_with_upper_triangle();
         self
     }
 
-    /// Count, means and the upper triangle of the centred products, a row after another.
+    /// Returns count, means and the upper triangle of the centred products, row by row.
     pub fn numbers(&self) -> Vec<f64> {
         let size = self.mean.len();
         let triangle =
@@ -164,8 +171,8 @@ impl Moments {
         std::iter::once(self.count).chain(self.mean.iter().copied()).chain(triangle).collect()
     }
 
-    /// From [`numbers`](Self::numbers); none where they are not as many as these regressors and
-    /// targets need, or not finite.
+    /// Creates the statistics from such numbers. Returns `None` if their count does not match these
+    /// regressors and targets, or if one is not finite.
     pub fn from_numbers(numbers: &[f64], regressors: usize, targets: usize) -> Option<Self> {
         let size = regressors + targets;
         if numbers.len() != 1 + size + size * (size + 1) / 2
@@ -198,12 +205,13 @@ impl Moments {
         self.mean.len() - self.regressors
     }
 
-    /// The sum over the samples of regressors times residuals of the first target at
-    /// `coefficients`, both about the means of `all`, of which these samples are a part.
+    /// Sum over the samples of regressors times residuals of the first target at `coefficients`,
+    /// both about the means of `all`, of which these samples are a part.
     pub fn score(&self, all: &Self, coefficients: &DVector<f64>) -> DVector<f64> {
         let p = self.regressors;
         let mut weights = DVector::zeros(self.mean.len());
         weights.rows_mut(0, p).copy_from(&-coefficients);
+        // Residual = target - regressors' coefficients, as one linear combination of the columns.
         weights[p] = 1.0;
         let apart = &self.mean - &all.mean;
         let own = &self.products * &weights + &apart * (self.count * apart.dot(&weights));
@@ -245,16 +253,17 @@ impl Moments {
         )
     }
 
-    /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs
-    /// them; zero of no samples.
+    /// Mean products without centring, `E[x x']`, for the error of a model without intercept; zero
+    /// without samples.
     pub fn raw_products(&self) -> DMatrix<f64> {
         let mut raw = &self.products / self.count.max(f64::MIN_POSITIVE);
+        // E[x x'] = covariance + mean mean'.
         raw.ger(1.0, &self.mean, &self.mean, 1.0);
         raw
     }
 }
 
-/// A dot product in four independent sums, which the compiler turns into vector instructions.
+/// Dot product in four independent sums, which the compiler turns into vector instructions.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
@@ -267,7 +276,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + tail
 }
 
-/// The statistics of some trials together, one set per regression; `None` where none is kept.
+/// Returns the statistics of the trials for which `keep` is true, one set per regression; `None` if
+/// there is no such trial.
 pub fn merged(moments: &[Vec<Moments>], keep: impl Fn(usize) -> bool) -> Option<Vec<Moments>> {
     let kept: Vec<&Vec<Moments>> =
         moments.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, m)| m).collect();

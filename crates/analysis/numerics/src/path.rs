@@ -1,27 +1,27 @@
-//! The ridge with the source's coefficients as l2 prior: Kanazawa 2023, Eqs. 5.11-5.17.
+//! Ridge regression with the source's coefficients as l2 prior: Kanazawa 2023, Eqs. 5.11-5.17.
 //!
 //! With z-scored regressors, `C` their correlation matrix and `b` the mean products with the
 //! target, `beta' = (C + lambda I)^-1 (b + lambda (1 - alpha) beta'_source)`. One symmetric
-//! eigendecomposition of `C` gives every (lambda, alpha); nothing is inverted.
+//! eigendecomposition of `C` gives the solution for every (lambda, alpha); no matrix is inverted.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::{AlphaError, Metric, Moments};
 
-/// Everything that one set of samples and one source need for all (lambda, alpha).
+/// Solutions of one set of samples and one source for all (lambda, alpha).
 #[derive(Debug, Clone)]
 pub struct RidgePath {
     metric: Metric,
     eigenvalues: DVector<f64>,
     eigenvectors: DMatrix<f64>,
-    /// Per target: the data's and the source's part in the eigenbasis.
+    /// For each target, the contributions of the data and of the source in the eigenbasis.
     data: Vec<DVector<f64>>,
     source: Vec<DVector<f64>>,
     target_variance: Vec<f64>,
     count: f64,
 }
 
-/// A point of the path: how strongly the source holds, and how much of it is replaced by zero.
+/// Point of the path: strength of the prior, and the share of the source that is replaced by zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RidgeChoice {
     /// Strength of the prior.
@@ -31,20 +31,20 @@ pub struct RidgeChoice {
 }
 
 impl RidgePath {
-    /// Decomposes the statistics once; `source[t]` are the prior coefficients for target `t`, in
+    /// Decomposes the statistics once; `source[t]` holds the prior coefficients of target `t`, in
     /// the units of the regressors. A regressor that does not vary keeps its source value.
     pub fn new(moments: &Moments, source: &[Vec<f64>]) -> Self {
         Self::shrunken(moments, source, &vec![1.0; moments.regressors()])
     }
 
-    /// The same with a prior whose precision is `shrinkage[j]` times the common one for regressor
-    /// `j`: each is measured not by its standard deviation but by that times the root of its
+    /// Creates the path of a prior whose precision is `shrinkage[j]` times the common one for
+    /// regressor `j`: its coefficient is measured by the standard deviation times the root of its
     /// shrinkage.
     pub fn shrunken(moments: &Moments, source: &[Vec<f64>], shrinkage: &[f64]) -> Self {
         Self::measured(moments, source, Metric::of_regressors(moments, shrinkage))
     }
 
-    /// The same with any measure of the coefficients.
+    /// Creates the path with any metric of the coefficients.
     pub fn measured(moments: &Moments, source: &[Vec<f64>], metric: Metric) -> Self {
         let SymmetricEigen { eigenvalues, eigenvectors } =
             SymmetricEigen::new(metric.products(moments));
@@ -58,6 +58,7 @@ impl RidgePath {
             .map(|beta| tr_mul(&eigenvectors, &(metric.root() * DVector::from_column_slice(beta))));
         let source = source.collect();
         let target_variance = targets.map(|t| moments.target_variance(t)).collect();
+        // A correlation matrix is positive semidefinite; negative eigenvalues are rounding errors.
         let eigenvalues = eigenvalues.map(|value| value.max(0.0));
         Self {
             metric,
@@ -70,14 +71,14 @@ impl RidgePath {
         }
     }
 
-    /// The coefficients of a target in the units of the regressors.
+    /// Coefficients of a target in the units of the regressors.
     pub fn solve(&self, target: usize, choice: RidgeChoice, source: &[f64]) -> Vec<f64> {
         let (from_data, from_source) = self.parts(target, choice.lambda);
         self.unscaled(&(from_data + from_source * (1.0 - choice.alpha)), source)
     }
 
-    /// The two vectors of which every solution at `lambda` is `data + (1 - alpha) source`,
-    /// standardised.
+    /// Returns the two vectors of which every solution at `lambda` is `data + (1 - alpha) source`,
+    /// in the coordinates of the metric.
     fn parts(&self, target: usize, lambda: f64) -> (DVector<f64>, DVector<f64>) {
         let divide = |v: &DVector<f64>, by: f64| {
             v.zip_map(&self.eigenvalues, |x, d| by * x / (d + lambda).max(1e-300))
@@ -87,6 +88,7 @@ impl RidgePath {
         (data, source)
     }
 
+    /// Coefficients in the units of the regressors; a fixed one keeps its source value.
     fn unscaled(&self, beta: &DVector<f64>, source: &[f64]) -> Vec<f64> {
         let coefficients = self.metric.back() * beta;
         let one = |(j, kept): (usize, &f64)| {
@@ -95,8 +97,8 @@ impl RidgePath {
         source.iter().enumerate().map(one).collect()
     }
 
-    /// The mean squared error at `lambda` on held-out samples as a function of alpha: that of the
-    /// model without intercept.
+    /// Mean squared error at `lambda` on held-out samples as a function of alpha, for the model
+    /// without intercept.
     pub fn error_by_alpha(
         &self,
         target: usize,
@@ -105,52 +107,58 @@ impl RidgePath {
         validation: &Validation,
     ) -> AlphaError {
         let (data, prior) = self.parts(target, lambda);
+        // The solution is fixed + (1 - alpha) along, so its squared error is quadratic in alpha.
         let fixed = self.unscaled(&data, source);
         let zero = vec![0.0; source.len()];
         let along = self.unscaled(&prior, &zero);
         validation.error_along(target, &fixed, &along)
     }
 
-    /// Residual variance of a target at a solution, from the statistics alone; degrees of freedom
-    /// as the ridge uses them.
+    /// Residual variance of a target at a solution, from the statistics alone, with the effective
+    /// degrees of freedom of the ridge.
     pub fn residual_variance(&self, target: usize, choice: RidgeChoice) -> f64 {
         let solution = |i: usize| {
+            // Solution in the eigenbasis: (data + lambda (1 - alpha) source) / (d + lambda).
             let pull = choice.lambda * (1.0 - choice.alpha) * self.source[target][i];
             (self.data[target][i] + pull) / (self.eigenvalues[i] + choice.lambda).max(1e-300)
         };
+        // In the eigenbasis: g (2 b - d g) is the part of the variance explained by each direction.
         let explained: f64 = (0..self.eigenvalues.len())
             .map(|i| solution(i) * (2.0 * self.data[target][i] - self.eigenvalues[i] * solution(i)))
             .sum();
+        // Effective number of parameters, sum of d / (d + lambda); one more for the mean.
         let freedom: f64 =
             self.eigenvalues.iter().map(|d| d / (d + choice.lambda).max(1e-300)).sum();
         let mean = (self.target_variance[target] - explained).max(0.0);
         mean * self.count / (self.count - freedom - 1.0).max(1.0)
     }
 
-    /// Mean square of a target about its mean, or about zero where the statistics are.
+    /// Mean square of a target about its mean, or about zero if the statistics are about zero.
     pub fn target_variance(&self, target: usize) -> f64 {
         self.target_variance[target]
     }
 
-    /// How badly a strength of the prior explains a target: twice the negative logarithm of the
-    /// marginal likelihood by the number of samples, with the residual variance at its best and
-    /// without what does not depend on lambda. Where the prior has the variance `s^2/(n lambda)`
-    /// about the source, the samples less what the source explains are normal with eigenvalues `s^2
-    /// (d + lambda)/lambda` in the eigenbasis (MacKay 1992, Neural Computation 4, 415-447, section
-    /// 3).
+    /// Misfit of a strength of the prior: minus twice the logarithm of the marginal likelihood per
+    /// sample, with the residual variance at its maximum-likelihood value and without terms that do
+    /// not depend on lambda. If the prior has the variance `s^2/(n lambda)` about the source, the
+    /// samples less the prediction of the source are normal with eigenvalues `s^2 (d +
+    /// lambda)/lambda` in the eigenbasis (MacKay 1992, Neural Computation 4, 415-447, section 3).
     pub fn misfit(&self, target: usize, lambda: f64) -> f64 {
         let (data, source, d) = (&self.data[target], &self.source[target], &self.eigenvalues);
         let terms = || data.iter().zip(source).zip(d).map(|((z, s), d)| (*z, *s, *d));
+        // Variance of the residual of the source's prediction.
         let unexplained = self.target_variance[target]
             + terms().map(|(z, s, d)| s * (d * s - 2.0 * z)).sum::<f64>();
         let gained: f64 = terms().map(|(z, s, d)| (z - d * s).powi(2) / (d + lambda)).sum();
+        // Logarithm of the determinant of the samples' covariance.
         let width: f64 = d.iter().map(|d| (1.0 + d / lambda).ln()).sum();
         (unexplained - gained).max(1e-300).ln() + width / self.count.max(1.0)
     }
 
-    /// Posterior standard deviations of the coefficients at residual variance 1, and the prior's,
-    /// both in the units of the regressors.
+    /// Posterior standard deviations of the coefficients at residual variance 1, and those of the
+    /// prior, both in the units of the regressors.
     pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
+        // Posterior covariance n^-1 (C + lambda I)^-1 in the eigenbasis.
         let weights = self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda).max(1e-300)));
         let directions = self.metric.back() * &self.eigenvectors;
         let posterior = |j: usize| {
@@ -161,13 +169,14 @@ impl RidgePath {
         (0..self.metric.size()).map(|j| (posterior(j).sqrt(), held(j).sqrt())).collect()
     }
 
-    /// Half the second derivative of what a solution at `lambda` makes least, the sum of squares
-    /// and of the prior's pull, in the units of the regressors; 1 for a regressor that does not
+    /// Half the second derivative of the cost at a solution with `lambda`, the sum of squares plus
+    /// the penalty of the prior, in the units of the regressors; 1 for a regressor that does not
     /// vary.
     pub fn curvature(&self, lambda: f64) -> DMatrix<f64> {
         let weights = self.eigenvalues.map(|d| self.count * (d + lambda));
         let standard =
             &self.eigenvectors * DMatrix::from_diagonal(&weights) * self.eigenvectors.transpose();
+        // Chain rule: coordinates are root times coefficients.
         let own = self.metric.root().transpose() * standard * self.metric.root();
         let still = |j: usize| self.metric.is_still(j);
         DMatrix::from_fn(self.metric.size(), self.metric.size(), |i, j| {
@@ -178,28 +187,31 @@ impl RidgePath {
         })
     }
 
-    /// Largest eigenvalue of the correlation matrix over the smallest of those that belong to
+    /// Largest eigenvalue of the correlation matrix divided by the smallest of those that belong to
     /// varying regressors.
     pub fn condition_number(&self) -> f64 {
         let still = (0..self.metric.size()).filter(|j| self.metric.is_still(*j)).count();
         let mut values: Vec<f64> = self.eigenvalues.iter().copied().collect();
         values.sort_by(f64::total_cmp);
+        // Each regressor without variation adds an eigenvalue of zero.
         let smallest = values.get(still).copied().unwrap_or(0.0);
         values.last().map_or(1.0, |largest| largest / smallest.max(largest * f64::EPSILON))
     }
 
-    /// Groups of regressors that the samples cannot tell apart: those that share an eigenvector
+    /// Groups of regressors that the samples cannot distinguish: those that share an eigenvector
     /// whose eigenvalue is below `tolerance` of the largest.
     pub fn collinear_groups(&self, tolerance: f64) -> Vec<Vec<usize>> {
         let largest = self.eigenvalues.max();
         let small =
             (0..self.eigenvalues.len()).filter(|&i| self.eigenvalues[i] < tolerance * largest);
         let members = |i: usize| -> Vec<usize> {
+            // Components of the eigenvector by coefficient, each scaled to its own size.
             let moved = self.metric.back() * self.eigenvectors.column(i);
             let moved = DVector::from_fn(moved.len(), |j, _| {
                 moved[j] * self.metric.root().column(j).norm()
             })
             .normalize();
+            // Members are the coefficients with a large component of the normalised eigenvector.
             (0..moved.len()).filter(|&j| moved[j].abs() > 0.3).collect()
         };
         let mut groups: Vec<Vec<usize>> =
@@ -210,12 +222,12 @@ impl RidgePath {
     }
 }
 
-/// `V' x`, a column at a time: nalgebra's own transposed product is far slower.
+/// Product `V' x`, column by column: nalgebra's own transposed product is far slower.
 fn tr_mul(matrix: &DMatrix<f64>, vector: &DVector<f64>) -> DVector<f64> {
     DVector::from_iterator(matrix.ncols(), matrix.column_iter().map(|column| column.dot(vector)))
 }
 
-/// Samples on which solutions are judged, prepared once.
+/// Held-out samples on which solutions are evaluated, prepared once.
 #[derive(Debug, Clone)]
 pub struct Validation {
     raw: DMatrix<f64>,
@@ -223,7 +235,7 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// From their statistics.
+    /// Creates them from their statistics.
     pub fn new(moments: &Moments) -> Self {
         Self { raw: moments.raw_products(), regressors: moments.regressors() }
     }
@@ -231,6 +243,7 @@ impl Validation {
     /// Mean squared error of `fixed + w along`, with `w` the weight of the source.
     fn error_along(&self, target: usize, fixed: &[f64], along: &[f64]) -> AlphaError {
         let (p, t) = (self.regressors, self.regressors + target);
+        // Expansion of E[(y - x'(fixed + w along))^2] in powers of w; one pass over the columns.
         let (mut cross, mut square, mut own, mut data, mut shift) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for j in 0..p {
             let column = self.raw.column(j);

@@ -1,4 +1,4 @@
-//! The scatter of several vectors about a robust mean, as the prior's covariance of another one.
+//! Scatter of several vectors about a robust mean, as the covariance of a prior.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,14 +7,15 @@ use crate::Metric;
 /// Mean and scatter of members.
 #[derive(Debug, Clone)]
 pub struct Scatter {
-    /// By target.
+    /// Robust means, by target.
     pub means: Vec<DVector<f64>>,
-    /// Of all targets, each by its own size; of trace 1.
+    /// Scatter matrix over all targets, each scaled by its own size; of trace 1.
     matrix: DMatrix<f64>,
 }
 
 impl Scatter {
-    /// Of coordinates by target and member; the robust mean is sought in so many rounds.
+    /// Computes mean and scatter of coordinates by target and member, with `rounds` iterations of
+    /// the robust mean.
     pub fn new(coordinates: &[Vec<DVector<f64>>], rounds: usize) -> Self {
         let size = coordinates.first().and_then(|all| all.first()).map_or(0, DVector::len);
         let mut matrix = DMatrix::zeros(size, size);
@@ -31,21 +32,25 @@ impl Scatter {
         Self { means, matrix }
     }
 
-    /// The precision of coefficients, of which a metric has the coordinates, with a share `outside`
-    /// of their variance in what no member shows; none where it is not positive definite.
+    /// Precision of coefficients, whose coordinates are given by a metric, with a share `outside`
+    /// of their variance in directions that no member shows. Returns `None` if the covariance is
+    /// not positive definite.
     pub fn precision(&self, metric: &Metric, outside: f64) -> Option<DMatrix<f64>> {
         let size = metric.size();
         let moving = (0..size).filter(|k| !metric.is_still(*k)).count() as f64;
+        // Scaled so that the trace equals the number of varying coefficients, as for the identity.
         let mut covariance = &self.matrix * ((1.0 - outside) * moving);
         (0..size).for_each(|k| covariance[(k, k)] += outside);
         let precision =
             metric.root().transpose() * covariance.cholesky()?.inverse() * metric.root();
+        // Rounding leaves the product slightly asymmetric.
         Some((&precision + precision.transpose()) * 0.5)
     }
 }
 
-/// The mean of members, and what each counts: one that is further from it than the median counts
-/// as if it were that far (Huber 1981, Robust Statistics, section 8.4: a monotone M-estimate).
+/// Robust mean of members, and their weights: a member that is further from it than the median
+/// counts as if it were at that distance (Huber 1981, Robust Statistics, section 8.4: a monotone
+/// M-estimate).
 fn weighted_mean(members: &[DVector<f64>], rounds: usize) -> (DVector<f64>, Vec<f64>) {
     let mut weights = vec![1.0; members.len()];
     let mean = |weights: &[f64]| {
@@ -58,6 +63,7 @@ fn weighted_mean(members: &[DVector<f64>], rounds: usize) -> (DVector<f64>, Vec<
         let mut sorted = far.clone();
         sorted.sort_by(f64::total_cmp);
         let middle = sorted[sorted.len() / 2];
+        // Huber weights with the median distance as their limit.
         weights = far.iter().map(|far| if *far > middle { middle / far } else { 1.0 }).collect();
     }
     (mean(&weights), weights)

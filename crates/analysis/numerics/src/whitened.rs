@@ -1,18 +1,18 @@
-//! The path of ridge solutions about zero in coordinates where the prior is white, with its errors
-//! on samples left out: all of it matrix products after one eigendecomposition, for thousands of
-//! ships a second.
+//! Path of ridge solutions about zero in coordinates in which the prior is white, with its errors
+//! on held-out samples: matrix products after one eigendecomposition, for thousands of ships per
+//! second.
 
 use nalgebra::{DMatrix, DVector, DVectorView, SymmetricEigen};
 
 use super::Moments;
 
-/// The decomposed statistics of some samples.
+/// Decomposed statistics of some samples.
 #[derive(Debug, Clone)]
 pub struct Whitened {
-    /// Of the regressors' covariance.
+    /// Eigenvalues of the regressors' covariance.
     eigenvalues: DVector<f64>,
     eigenvectors: DMatrix<f64>,
-    /// Covariances with the targets in the eigenbasis, a column for each target.
+    /// Covariances with the targets in the eigenbasis, one column for each target.
     data: DMatrix<f64>,
     target_variance: Vec<f64>,
     count: f64,
@@ -23,13 +23,14 @@ impl Whitened {
     pub fn new(moments: &Moments) -> Self {
         let (covariance, cross) = moments.covariances();
         let SymmetricEigen { mut eigenvalues, eigenvectors } = SymmetricEigen::new(covariance);
+        // Negative eigenvalues are rounding errors.
         eigenvalues.apply(|value| *value = value.max(0.0));
         let data = eigenvectors.transpose() * cross;
         let target_variance = (0..moments.targets()).map(|t| moments.target_variance(t)).collect();
         Self { eigenvalues, eigenvectors, data, target_variance, count: moments.count }
     }
 
-    /// The eigenvectors, a column each.
+    /// Eigenvectors as columns.
     pub fn basis(&self) -> &DMatrix<f64> {
         &self.eigenvectors
     }
@@ -39,22 +40,24 @@ impl Whitened {
         self.count
     }
 
-    /// A lambda so small that the prior decides only what the samples leave open.
+    /// Lambda so small that the prior decides only the directions that the samples do not
+    /// determine.
     pub fn least_lambda(&self) -> f64 {
         (1e-9 * self.eigenvalues.max()).max(f64::MIN_POSITIVE)
     }
 
-    /// The solution for a target in the eigenbasis.
+    /// Solution for a target in the eigenbasis.
     pub fn solution(&self, target: usize, lambda: f64) -> DVector<f64> {
         self.data.column(target).zip_map(&self.eigenvalues, |x, d| x / (d + lambda))
     }
 
-    /// The posterior's variances along the eigenvectors by the residual variance.
+    /// Posterior variances along the eigenvectors, relative to the residual variance.
     pub fn variances(&self, lambda: f64) -> DVector<f64> {
         self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda)))
     }
 
-    /// Residual variance of a target at a solution; degrees of freedom as the ridge uses them.
+    /// Residual variance of a target at a solution, with the effective degrees of freedom of the
+    /// ridge.
     pub fn residual_variance(&self, target: usize, lambda: f64) -> f64 {
         let terms = || {
             self.data
@@ -69,15 +72,17 @@ impl Whitened {
             / (self.count - freedom - 1.0).max(1.0)
     }
 
-    /// Mean squared errors of the solutions for each target at each lambda on other samples, as of
-    /// a model without intercept.
+    /// Mean squared errors of the solutions for each target at each lambda on other samples, for a
+    /// model without intercept.
     pub fn errors(&self, lambdas: &[f64], left_out: &Moments) -> Vec<Vec<f64>> {
         let raw = left_out.raw_products();
         let p = self.eigenvalues.len();
-        // Not nalgebra's product with a transpose, which does without the fast kernel.
+        // An explicit transpose: nalgebra's product with a transposed matrix does not use the fast
+        // kernel.
         let back = self.eigenvectors.transpose();
         let turned = &back * (raw.view((0, 0), (p, p)) * &self.eigenvectors);
         let cross = back * raw.view((0, p), (p, self.data.ncols()));
+        // One matrix for all lambdas; each target scales its rows by its own data.
         let weights =
             DMatrix::from_fn(p, lambdas.len(), |k, l| 1.0 / (self.eigenvalues[k] + lambdas[l]));
         let of_target = |target: usize| {
@@ -88,6 +93,7 @@ impl Whitened {
             let pulled = &turned * &solutions;
             let (own, linear) = (raw[(p + target, p + target)], cross.column(target));
             let error = |(g, pulled): (DVectorView<'_, f64>, DVectorView<'_, f64>)| {
+                // E[(y - x'g)^2] = E[y^2] + g' E[x x'] g - 2 g' E[x y], in the eigenbasis.
                 own + g.dot(&pulled) - 2.0 * g.dot(&linear)
             };
             solutions.column_iter().zip(pulled.column_iter()).map(error).collect()

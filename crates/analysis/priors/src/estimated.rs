@@ -1,9 +1,9 @@
-//! Parameters of a law that neither particulars nor source give, by a published estimate.
+//! Published estimates of a law's parameters that neither particulars nor source give.
 //!
 //! The law `low-speed` has formulas for mass, inertia and added masses of any ship: a radius of
 //! gyration of a quarter of the length, a twentieth of the mass added in surge, and Clarke, Gedling
-//! and Hine (1983) for sway and yaw. A parameter of another law that has its name and meaning
-//! follows from the same.
+//! and Hine (1983) for sway and yaw. A parameter of another law with the same name and meaning is
+//! estimated by the same formula.
 
 use std::sync::LazyLock;
 
@@ -15,10 +15,11 @@ static ESTIMATES: LazyLock<Option<Law>> = LazyLock::new(|| {
     Law::parse("low-speed", include_str!("../../../../models/laws/low-speed.yaml")).ok()
 });
 
-/// An estimate of a law's parameter, labelled as one.
+/// Estimate of a law's parameter, with a source that marks it as one.
 pub(crate) fn estimated(law: &Law, name: &str, target: &Vessel) -> Option<Quantity> {
     let estimates = ESTIMATES.as_ref()?;
     let (wanted, known) = (law.parameters.get(name)?, estimates.parameters.get(name)?);
+    // The same name may have another meaning in another law: dimension and meaning must agree.
     let is_same = known.dimension == wanted.dimension && known.meaning.starts_with(&wanted.meaning);
     let value = estimates.derived_parameter(name, &target.particulars).filter(|_| is_same)?;
     Some(Quantity::new(value, "estimated: Clarke et al. 1983, as in the law low-speed"))

@@ -1,6 +1,5 @@
-//! Which ship is similar, and what its model says of another: similarity of ships, eligibility by
-//! category and trend, the transfer of a source model to a ship's particulars, and the steering gear
-//! that its trials show.
+//! Priors from other ships: similarity of ships, eligibility by category and trend, the transfer of
+//! a source model to a ship's particulars, and the steering gear by the ship's trials.
 
 mod estimated;
 pub mod estimates;

@@ -1,9 +1,9 @@
-//! A source of the plane carried over to a law with roll.
+//! Extension of a 3-DOF source model to a 4-DOF law.
 //!
-//! Such a source says nothing of roll, and a fit that begins without it holds no term of the heel
-//! by more than the few degrees that the trials have: where the ship heels further it capsizes.
-//! What hydrostatics say follows from the ship's particulars; with it the source sails the standard
-//! manoeuvres, and each term is measured there.
+//! A 3-DOF source has no information on roll, and a fit without a prior on roll determines the
+//! terms of heel only within the few degrees of the trials: at larger heel the ship capsizes. The
+//! hydrostatic terms follow from the ship's particulars; with them the source model simulates the
+//! standard manoeuvres, where each term is evaluated.
 
 use sistership_model::coefficient::Axis;
 use sistership_model::law::{AxisLaw, Law};
@@ -12,20 +12,21 @@ use sistership_model::{Model, Vessel, particulars};
 
 use crate::transfer::{Approach, blank_of};
 
-/// `zeta`: damping in roll by the critical one, dimensionless. Source: chosen; trials correct it,
-/// and `docs/evidence/plain.md` has half and double.
+/// `zeta`: damping in roll by the critical damping, dimensionless. Source: chosen; trials correct
+/// it, and `docs/evidence/plain.md` has half and double.
 const DAMPING: f64 = 0.1;
-/// m/s2.
+/// Acceleration of gravity, m/s2.
 const GRAVITY: f64 = 9.806_65;
-/// Roll moment by `phi g L/U^2` and by `p L/U`, as laws with roll spell them.
+/// Names of the coefficients of the roll moment by `phi g L/U^2` and by `p L/U` in laws with roll.
 const STIFFNESS_AND_DAMPING: [&str; 2] = ["K_heel", "K_p"];
 
-/// Where the two come from, as quantities name it.
+/// Source of the two in quantities.
 pub const HYDROSTATICS: &str = "hydrostatics";
 
-/// A source that is carried over to a ship, by a law that says the same in the plane, with the
-/// stiffness that the ship's metacentric height gives and a usual damping. `None` where the source
-/// rolls itself, the law says something else, or the ship's particulars do not give the stiffness.
+/// Extends a source model that was transferred to a ship to a law with the same terms in surge,
+/// sway and yaw, with the stiffness by the ship's metacentric height and a usual damping. Returns
+/// `None` where the source has roll itself, the laws differ in the plane, or the ship's particulars
+/// do not give the stiffness.
 pub fn with_roll(
     (carried, own): (&Model, &Law),
     law: &Law,
@@ -46,8 +47,8 @@ pub fn with_roll(
     Some(rolling)
 }
 
-/// Coefficients of roll by the stiffness that a ship's metacentric height gives and a usual
-/// damping. `None` where its particulars do not give the stiffness, or the law does not spell the two.
+/// Coefficients of roll by the stiffness of a ship's metacentric height and a usual damping. `None`
+/// where its particulars do not give the stiffness, or the law does not have the two coefficients.
 pub fn hydrostatics(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]> {
     let [stiffness, damping] = stiffness_and_damping(model, law)?;
     let named = |(name, value): (&str, f64)| (name.to_owned(), Quantity::new(value, HYDROSTATICS));
@@ -55,20 +56,21 @@ pub fn hydrostatics(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]>
     Some([(by_heel, stiffness), (by_rate, damping)].map(named))
 }
 
-/// Whether every coefficient of a model means the same by another law.
+/// Returns true if all coefficients of a model have the same meaning in another law.
 fn says_the_same(own: &Law, law: &Law, model: &Model) -> bool {
     let is_kept = |(name, value): (&String, _)| law.values.get(name) == Some(value);
     let as_before = |axis: &Axis, of: &AxisLaw| {
         law.axes.get(axis).is_some_and(|other| other.scale == of.scale && other.rest == of.rest)
     };
+    // Both laws have the coefficient, on the same axis with the same regressor.
     let spelled = |name: &String| own.term(name).is_ok() && own.term(name) == law.term(name);
     own.values.iter().all(is_kept)
         && own.axes.iter().all(|(axis, of)| as_before(axis, of))
         && model.coefficients.keys().all(spelled)
 }
 
-/// [`STIFFNESS_AND_DAMPING`] by `0.5 rho L^3 U^2`: a metacentric height `GM` of a volume `V` rights
-/// by `rho g V GM phi`.
+/// Values of [`STIFFNESS_AND_DAMPING`] by `0.5 rho L^3 U^2`: a metacentric height `GM` of a volume
+/// `V` gives the righting moment `rho g V GM phi`.
 fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
     let is_open = law.axes.get(&Axis::K)?.open;
     let is_spelled = STIFFNESS_AND_DAMPING.iter().all(|name| law.term(name).is_ok());
@@ -79,11 +81,12 @@ fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
     let parameter = |name: &str| Some(model.parameters.get(name)?.value);
     let inertia = parameter("I_x")? - parameter("K_pdot")?;
     let stiffness = 2.0 * volume * stable / length.powi(4);
+    // The critical damping of a harmonic oscillator, 2 sqrt(stiffness inertia), in the same units.
     let critical = 2.0 * (stiffness * GRAVITY * length / speed.powi(2) * inertia).sqrt();
     Some([-stiffness, -DAMPING * critical]).filter(|both| both.iter().all(|one| one.is_finite()))
 }
 
-/// What stands for a source's roll, of which it says nothing.
+/// Remark on the prior of roll for a source without roll.
 pub fn roll_words(carried: &Model) -> Option<String> {
     let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
     carried.coefficients.values().find(is_hydrostatic)?;

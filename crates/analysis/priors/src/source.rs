@@ -1,4 +1,4 @@
-//! Choosing the source of a refinement: `auto`, a ship, or one of its models.
+//! Selection of the source model of a refinement: `auto`, a ship, or one of its models.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -16,30 +16,30 @@ use crate::similarity::{
 use crate::transfer::{approach_of, transfer};
 use crate::trend::{TrendError, trend};
 
-/// How similar ships rank for a target.
+/// Ranking of similar ships for a target.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Similarity {
-    /// The target's name.
+    /// Name of the target.
     pub target: String,
-    /// The target's category.
+    /// Category of the target.
     #[serde(skip)]
     pub category: String,
-    /// The definition of the vector.
+    /// Definition of the characteristic vector.
     pub definition: Definition,
-    /// The target's vector.
+    /// Vector of the target.
     pub vector: BTreeMap<String, f64>,
     /// Candidates, most similar first.
     pub ranking: Vec<RankedSource>,
 }
 
 impl Similarity {
-    /// The ships that pass every step, most similar first.
+    /// Ships that pass every step, most similar first.
     pub fn eligible(&self) -> impl Iterator<Item = &RankedSource> {
         self.ranking.iter().filter(|ranked| ranked.eligible)
     }
 }
 
-/// Why there is no source.
+/// Error of the selection of a source.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SourceError {
     /// No ship of the ranking passes every step.
@@ -50,20 +50,20 @@ pub enum SourceError {
         /// Each ship with the step that it failed.
         reasons: String,
     },
-    /// The zoo's own file of the best one is at fault.
+    /// The zoo's own file of the best ship is invalid.
     #[error(transparent)]
     Zoo(#[from] FileError),
 }
 
-/// The definition by which ships are compared with a target: Mei's where it has every component of
-/// it, else Kanazawa's.
+/// Definition by which ships are compared with a target: Mei's where the target has all of its
+/// components, otherwise Kanazawa's.
 pub fn definition_for(target: &Vessel) -> Definition {
     let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
     if complete { Definition::Mei2019 } else { Definition::Kanazawa2023 }
 }
 
-/// Ranks the zoo for a target. Without a `definition`, by that of [`definition_for`].
-/// `trials` let the third step of eligibility be measured.
+/// Ranks the zoo for a target. Default definition: that of [`definition_for`]. With `trials`, the
+/// third step of eligibility is measured.
 pub fn similar(
     zoo: &Zoo,
     target: &Vessel,
@@ -73,7 +73,8 @@ pub fn similar(
     similar_with(zoo, target, definition, trials, &BTreeMap::new())
 }
 
-/// As [`similar`], where some ships have a better model than their published one, by their names.
+/// Ranks the zoo for a target, where some ships have a better model than their published one, by
+/// their names.
 pub fn similar_with(
     zoo: &Zoo,
     target: &Vessel,
@@ -91,6 +92,7 @@ pub fn similar_with(
     let candidates: Vec<SourceCandidate<'_>> =
         zoo.vessels().map(|vessel| SourceCandidate { vessel, model: head(vessel) }).collect();
     let measured = |vessel: &Vessel| {
+        // Looked up also without trials, so that an invalid model is reported in any case.
         let model = match champions.get(vessel.name()) {
             Some(champion) => champion.clone(),
             None => zoo.published(vessel, None)?,
@@ -109,14 +111,13 @@ pub fn similar_with(
     }
 }
 
-/// A vessel's first model, as [`Model::published`] calls it.
+/// Name and law of a vessel's first model, in the form of [`Model::published`].
 fn published_head(vessel: &Vessel) -> Option<ModelHead> {
     let model = vessel.file.models.first()?;
     Some(ModelHead { name: format!("{}/{}", vessel.name(), model.name), law: model.law.clone() })
 }
 
-/// The trend of a source on the target's trials, started anew each time it has sailed 20 of its
-/// lengths.
+/// Trend of a source on the target's trials, restarted after every 20 ship lengths.
 fn trend_on(
     zoo: &Zoo,
     target: &Vessel,
@@ -124,6 +125,7 @@ fn trend_on(
     trials: &[&Trial],
 ) -> Result<f64, TrendError> {
     let law = zoo.law(&source.law).ok_or_else(|| TrendError::NoLaw(source.law.clone()))?;
+    // A law with roll cannot start from a trial without recorded roll.
     let silent = [Channel::Phi, Channel::P].into_iter().find_map(|channel| {
         let without =
             trials.iter().find(|trial| law.has_roll() && trial.channel(channel).is_none())?;
@@ -134,14 +136,17 @@ fn trend_on(
     }
     let approach = approach_of(trials);
     let model = transfer(source, law, target, approach);
+    // Without a length or an approach speed, restarts are 200 s apart.
     let lengths_s = target.particular("lpp_m").zip(approach).map(|(l, a)| 20.0 * l / a.speed_m_s);
     let law = at_own_revolutions(law, &model, trials);
     trend(&model, &law, trials, lengths_s.unwrap_or(200.0))
 }
 
-/// A source's law, where revolutions that a trial does not record are those of its own approach.
+/// Law of a source, with the source's own revolutions as default where a trial does not record
+/// them.
 fn at_own_revolutions<'a>(law: &'a Law, source: &Model, trials: &[&Trial]) -> Cow<'a, Law> {
     let is_silent = trials.iter().any(|trial| trial.channel(Channel::N).is_none());
+    // The law is copied only if a default has to be added.
     let mut law = Cow::Borrowed(law);
     if is_silent && law.inputs.contains_key(Channel::N.name()) {
         let inputs = &mut law.to_mut().inputs;
@@ -151,19 +156,19 @@ fn at_own_revolutions<'a>(law: &'a Law, source: &Model, trials: &[&Trial]) -> Co
     law
 }
 
-/// The published model of the best eligible source, or every reason why there is none.
+/// Returns the published model of the best eligible source.
 ///
 /// # Errors
-/// Lists each ship of the ranking with the step it failed.
+/// Returns an error that lists each ship of the ranking with the step that it failed.
 pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, SourceError> {
     let best = best_ranked(similarity)?;
     Ok(zoo.model(best.model.as_deref().unwrap_or(&best.ship))?)
 }
 
-/// The best eligible ship of a ranking, or every reason why there is none.
+/// Returns the best eligible ship of a ranking.
 ///
 /// # Errors
-/// As [`best_source`].
+/// Returns an error that lists each ship of the ranking with the step that it failed.
 pub fn best_ranked(similarity: &Similarity) -> Result<&RankedSource, SourceError> {
     if let Some(best) = similarity.eligible().next() {
         return Ok(best);
@@ -176,7 +181,7 @@ pub fn best_ranked(similarity: &Similarity) -> Result<&RankedSource, SourceError
     Err(SourceError::NotEligible { target: similarity.target.clone(), reasons })
 }
 
-/// What to know of a category that stands in no group.
+/// Remark on a category that is in no group.
 fn unknown_category(category: &str) -> String {
     if group_of(category).is_some() {
         return String::new();

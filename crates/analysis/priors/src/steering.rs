@@ -1,16 +1,17 @@
-//! The steering gear as the rudder's recorded movements show it.
+//! Steering gear by the recorded movements of the rudder.
 //!
-//! Standard manoeuvres order the rudder; trials record where it was. Between them stands the gear's
-//! rate, which another ship's tells nothing of.
+//! Standard manoeuvres order a rudder angle; trials record the actual one. The rate of the gear is
+//! between them, and does not follow from that of another ship.
 
 use sistership_model::trial::{Channel, Trial};
 
-/// How a gear's rate is read from a rudder's angle.
+/// Thresholds of the rate of a gear by a rudder's angle.
 #[derive(Debug, Clone, Copy)]
 struct SteeringThresholds {
-    /// `w/(L/U)`: time over which the rate is taken by the time of sailing a length, dimensionless.
-    /// Source: derived: 35 deg at the least rate of SOLAS II-1/29 take 15 s, half the time in which
-    /// a ship of 250 m sails its length at 16 kn; a tenth of that is inside the movement.
+    /// `w/(L/U)`: time over which the rate is taken, by the time in which the ship covers its
+    /// length, dimensionless. Source: derived: 35 deg at the least rate of SOLAS II-1/29 take 15 s,
+    /// half the time in which a ship of 250 m covers its length at 16 kn; a tenth of that is inside
+    /// the movement.
     window: f64,
     /// `s`: share of the largest rate from which a window counts as inside a movement,
     /// dimensionless. Source: derived: windows that begin or end outside by more than a fifth of
@@ -25,8 +26,8 @@ struct SteeringThresholds {
     /// half of what `inside` leaves, `3 sqrt(2) / 0.1`. At half of it a ship of 129 m at 17 kn, its
     /// rudder read twice a second to 0.09 deg, shows no movement as a whole.
     above_noise: f64,
-    /// Most samples in a window. Source: derived: twenty of the trials' twice a second are 10 s, in
-    /// which a gear by SOLAS covers the 20 deg of a 10/10 zigzag.
+    /// Most samples in a window. Source: derived: at two samples a second twenty are 10 s, in which
+    /// a gear by SOLAS covers the 20 deg of a 10/10 zigzag.
     most_samples: usize,
 }
 
@@ -38,17 +39,17 @@ const STEERING: SteeringThresholds = SteeringThresholds {
     most_samples: 20,
 };
 
-/// Over which time a rate is taken.
+/// Choice of the time over which a rate is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RateWindow {
-    /// By the time of sailing a length alone: what versions made before the other was there have.
+    /// The time of covering a length alone, as in versions with this setting.
     OfLength,
-    /// As long as the readings' noise asks for besides.
+    /// The time of covering a length, and longer where the noise of the readings requires it.
     AboveNoise,
 }
 
-/// The gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no movement
-/// is long enough to show it. `length_s` is the time in which the ship sails its length.
+/// Returns the gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no
+/// movement is long enough to show it. `length_s` is the time in which the ship covers its length.
 pub fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Option<f64> {
     let of = |trial: &&Trial| {
         let step_s = trial.interval_s();
@@ -60,15 +61,18 @@ pub fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Op
     };
     let each: Vec<Vec<(f64, f64)>> = trials.iter().map(of).collect();
     let largest = largest(each.iter().flatten());
+    // Movements are runs of windows whose rate is near the largest one.
     let is_inside = |(rate, _): &(f64, f64)| largest > 0.0 && *rate >= STEERING.inside * largest;
     let movements =
         each.iter().flat_map(|rates| rates.chunk_by(|a, b| is_inside(a) == is_inside(b)));
+    // A short movement may end before the gear reaches its rate.
     let covered = |movement: &&[(f64, f64)]| {
         movement.iter().map(|(rate, step_s)| rate * step_s).sum::<f64>() >= STEERING.least_rad
     };
     let long = movements.filter(|movement| movement.first().is_some_and(is_inside)).filter(covered);
     let mut inside: Vec<f64> = long.flatten().map(|(rate, _)| *rate).collect();
     inside.sort_by(f64::total_cmp);
+    // The median, which single windows with large noise do not move.
     inside.get(inside.len() / 2).copied()
 }
 
@@ -80,15 +84,15 @@ fn rates(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
     let pairs = (count..angle.len()).map(|end| (end - count, end));
     let rate = |(from, to): (usize, usize)| {
         let time_s = trial.t_s[to] - trial.t_s[from];
-        // Across a gap nothing is known of the movement.
+        // Across a gap the movement is unknown.
         let whole = time_s < 1.5 * count as f64 * step_s;
         whole.then(|| ((angle[to] - angle[from]).abs() / time_s, step_s))
     };
     pairs.filter_map(rate).collect()
 }
 
-/// The same over windows of at least `count` samples, as many as it takes that the largest rate
-/// stands out of the noise.
+/// Rates over windows of at least `count` samples, long enough that the largest rate is
+/// significantly above the noise.
 fn rates_above_noise(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
     let needed_rad = STEERING.above_noise * noise_rad(trial);
     let stands_out = |count: &usize, rates: &[(f64, f64)]| {
@@ -96,6 +100,7 @@ fn rates_above_noise(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
     };
     let tried =
         (count..=STEERING.most_samples.max(count)).map(|count| (count, rates(trial, count)));
+    // The shortest window that suffices is used.
     let found = tried.into_iter().find(|(count, rates)| stands_out(count, rates));
     found.map(|(_, rates)| rates).unwrap_or_default()
 }
@@ -105,8 +110,8 @@ fn largest<'a>(rates: impl Iterator<Item = &'a (f64, f64)>) -> f64 {
 }
 
 /// Standard deviation of the noise of a rudder's readings, rad: by the median of their second
-/// differences, in which most of the time there is no movement. White noise of deviation s has
-/// second differences of sqrt(6) s, and a normal variable's median size is 0.6745 deviations.
+/// differences, as most of the time there is no movement. White noise of deviation s has second
+/// differences of sqrt(6) s, and a normal variable's median size is 0.6745 deviations.
 fn noise_rad(trial: &Trial) -> f64 {
     let Some(angle) = trial.channel(Channel::Delta) else { return 0.0 };
     let mut second: Vec<f64> =

@@ -1,4 +1,4 @@
-//! Carrying a source model over to another ship.
+//! Transfer of a source model to another ship.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 use sistership_simulation::{PlantError, Ship};
 
-/// How a ship approaches its trials.
+/// Approach of a ship to its trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     /// Speed, m/s.
@@ -26,8 +26,8 @@ pub struct Approach {
     pub n_rps: Option<f64>,
 }
 
-/// The approach of a set of trials: the median speed at their first samples; where they start from
-/// rest, the median speed under way. `None` without velocities.
+/// Returns the approach of a set of trials: the median speed at their first samples; where they
+/// start from rest, the median speed under way. `None` without velocities.
 pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
     let first = |trial: &&Trial| {
         Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
@@ -40,6 +40,7 @@ pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
     let mut revolutions: Vec<f64> =
         trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
     let (start, under_way) = (median(&mut starts)?, median(&mut speeds)?);
+    // Half of the speed under way separates a start from rest from a steady approach.
     let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
     (speed_m_s > 0.0)
         .then(|| Approach { speed_m_s, n_rps: median(&mut revolutions).filter(|n| *n > 0.0) })
@@ -50,10 +51,10 @@ fn median(values: &mut [f64]) -> Option<f64> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// A source model on the target's particulars. What the law needs and the target does not state is
-/// estimated or scaled from the source by Froude's law, and marked so ([`completed`]); parameters
-/// with a unit that do not follow from particulars and the steering gear's rate are scaled
-/// likewise.
+/// Transfers a source model to the target's particulars. Values that the law needs and the target
+/// does not state are estimated, or scaled from the source by Froude's law, and marked so;
+/// parameters with a unit that do not follow from particulars and the steering gear's rate are
+/// scaled likewise.
 pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<Approach>) -> Model {
     let ratio = ratio(source, target);
     let particulars = completed(law, target, Some(source));
@@ -63,12 +64,15 @@ pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<App
     let mut model = source.transferred(law, target.name(), &particulars, speed);
     scale_parameters(&mut model, law, ratio);
     model.speed_m_s = speed;
+    // Revolutions scale with 1/sqrt(length ratio), and then with the speed at constant advance
+    // ratio.
     let scaled_n = source
         .revolutions_rps
         .zip(froude)
         .zip(speed)
         .map(|((n, froude), speed)| n / ratio.sqrt() * speed / froude);
     model.revolutions_rps = approach.and_then(|a| a.n_rps).or(scaled_n);
+    // Under Froude's law angular rates scale with 1/sqrt(length ratio), times with its inverse.
     model.steering.rate_deg_s = source.steering.rate_deg_s / ratio.sqrt();
     model.steering.time_constant_s = source.steering.time_constant_s * ratio.sqrt();
     model.steering.source = Some(format!("scaled from {}", source.name));
@@ -78,6 +82,7 @@ pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<App
 /// Scales the parameters with a unit that are still the source's by Froude's law.
 fn scale_parameters(model: &mut Model, law: &Law, ratio: f64) {
     for (name, parameter) in law.parameters.iter().filter(|(_, one)| !one.is_approach_speed) {
+        // Parameters that follow from the target's particulars are not the source's any more.
         let follows = law.derived_parameter(name, &model.particulars).is_some();
         if let Some(quantity) = model.parameters.get_mut(name).filter(|_| !follows) {
             quantity.value *= froude_factor(parameter.dimension, ratio);
@@ -85,18 +90,18 @@ fn scale_parameters(model: &mut Model, law: &Law, ratio: f64) {
     }
 }
 
-/// What Froude's law multiplies a quantity by, for ships whose lengths have a ratio.
+/// Factor of a quantity by Froude's law, for ships whose lengths have a ratio.
 fn froude_factor(dimension: Dimension, ratio: f64) -> f64 {
     ratio.powf(dimension.length + 3.0 * dimension.mass + 0.5 * dimension.time)
 }
 
-/// Of the lengths of target and source; 1 where one is not known.
+/// Ratio of the lengths of target and source; 1 where one is not known.
 fn ratio(source: &Model, target: &Vessel) -> f64 {
     let there = particulars::value(&source.particulars, "lpp_m");
     target.particular("lpp_m").zip(there).map_or(1.0, |(here, there)| here / there)
 }
 
-/// A parameter of a law that nothing gives.
+/// Error for a parameter of a law without a value.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` of law `{law}` does not follow from the particulars of {ship}")]
 pub struct UnknownParameter {
@@ -108,7 +113,11 @@ pub struct UnknownParameter {
     pub ship: String,
 }
 
-/// As [`blank`], with what the target does not state scaled from a source.
+/// Creates a model with zero coefficients, with values that the target does not state scaled from a
+/// source.
+///
+/// # Errors
+/// Returns an error that names a parameter of the law that does not follow from the particulars.
 pub fn blank_of(
     law: &Law,
     target: &Vessel,
@@ -119,19 +128,18 @@ pub fn blank_of(
     filled(law, (target, &particulars), approach, &|name| same_parameter(law, name, source))
 }
 
-/// A source's parameter of the same name, where it has no unit and so belongs to no size.
+/// Parameter of a source with the same name, if it has no unit and so does not depend on size.
 fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
     let is_bare = law.parameters.get(name).is_some_and(|parameter| parameter.unit == "1");
     let value = source.parameters.get(name).filter(|_| is_bare)?.value;
     Some(Quantity::new(value, format!("as of {}", source.name)))
 }
 
-/// A model of a law for a ship of which nothing is known but its particulars: every coefficient
-/// that the law lists is zero, so that a prior which pulls to it is a plain ridge. Only trials make
-/// it a model.
+/// Creates a model of a law for a ship of which only the particulars are known: all coefficients of
+/// the law are zero, so that a prior with this mean is a plain ridge. Only trials give them values.
 ///
 /// # Errors
-/// Names a parameter of the law that does not follow from its particulars.
+/// Returns an error that names a parameter of the law that does not follow from the particulars.
 pub fn blank(
     law: &Law,
     target: &Vessel,
@@ -140,7 +148,8 @@ pub fn blank(
     filled(law, (target, &completed(law, target, None)), approach, &|_| None)
 }
 
-/// As [`blank`]; what does not follow from the particulars is asked of the caller, then estimated.
+/// Creates a blank model; values that do not follow from the particulars are given by the caller,
+/// or estimated.
 fn filled(
     law: &Law,
     (target, particulars): (&Vessel, &Particulars),
@@ -149,11 +158,13 @@ fn filled(
 ) -> Result<Model, UnknownParameter> {
     let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
     let parameter = |name: &String| {
+        // The law's approach speed is that of the trials.
         let own = if law.approach_speed_parameter() == Some(name) {
             approach.map(|a| a.speed_m_s)
         } else {
             None
         };
+        // In this order: approach, particulars, the caller's value, a published estimate.
         let derived = own.or_else(|| law.derived_parameter(name, particulars));
         let value = derived.map(|value| Quantity::new(value, DERIVED));
         let value = value.or_else(|| given(name)).or_else(|| estimated(law, name, target));
@@ -193,9 +204,9 @@ fn filled(
     })
 }
 
-/// How the mass of a ship lies in the plane: its own, whatever the ship that its coefficients come
-/// from. Metacentric height and the radius in roll go with the coefficients of roll instead: ships
-/// scatter about their regression by half of it.
+/// Particulars of the mass and its distribution in the plane: the ship's own, independent of the
+/// source of its coefficients. Metacentric height and the radius in roll belong to the coefficients
+/// of roll instead: ships scatter about their regression by half of it.
 const LOADING: [&str; 6] = [
     "block_coefficient",
     "displacement_m3",
@@ -205,14 +216,17 @@ const LOADING: [&str; 6] = [
     "water_density_kg_m3",
 ];
 
-/// The target's particulars with those that a law needs and the target does not state: how its mass
-/// lies by regressions, geometry scaled from the source whose coefficients belong to it, and by
-/// regressions what the source does not state either; what no regression gives is the source's.
+/// Returns the target's particulars with those that a law needs and the target does not state: the
+/// distribution of its mass by regressions; geometry scaled from the source whose coefficients
+/// depend on it, and by regressions where the source does not state it either; values without a
+/// regression are the source's.
 pub fn completed(law: &Law, target: &Vessel, source: Option<&Model>) -> Particulars {
     let needed = needed_particulars(law);
     let (loading, geometry): (Vec<&str>, Vec<&str>) =
         needed.iter().map(String::as_str).partition(|name| LOADING.contains(name));
     let mut particulars = target.particulars.clone();
+    // In this order: a loading by regression takes precedence over the source's, a geometry of the
+    // source over one by regression.
     complete_particulars(&mut particulars, loading.iter().copied());
     for name in geometry.iter().chain(&loading) {
         scale_particular(&mut particulars, target, source, name);
@@ -239,20 +253,21 @@ fn scale_particular(
     };
     let value = value * froude_factor(dimension, ratio(source, target));
     let mut quantity = Quantity::new(value, format!("{SCALED}{}", source.name));
+    // The scatter of the regression, or that of a common ratio where no regression applies.
     let scatter = estimate_particular(particulars, name).and_then(|one| one.standard_error);
     let scatter = scatter.unwrap_or(relative_scatter(dimension) * value.abs());
     quantity.standard_error = Some(DIFFERENCE * scatter);
     particulars.insert(name.to_owned(), quantity);
 }
 
-/// Where no regression holds for want of main dimensions: the scatter of ships of the zoo about a
-/// common ratio to a power of the length, 0.62 for displacements (34 ships), 0.13 to 0.30 for
+/// Scatter where no regression applies for lack of main dimensions: that of ships of the zoo about
+/// a common ratio to a power of the length, 0.62 for displacements (34 ships), 0.13 to 0.30 for
 /// diameters, heights and areas (17 to 22).
 fn relative_scatter(dimension: Dimension) -> f64 {
     if dimension.length + 3.0 * dimension.mass > 2.5 { 0.62 } else { 0.3 }
 }
 
-/// The particulars that a law's formulas mention, those of its parameters included.
+/// Particulars that a law's formulas use, those of its parameters included.
 fn needed_particulars(law: &Law) -> BTreeSet<String> {
     let axes =
         law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale, &axis.rest]));
@@ -265,12 +280,19 @@ fn needed_particulars(law: &Law) -> BTreeSet<String> {
     names.filter(|name| particulars::dimension(name).is_some()).collect()
 }
 
-/// A ship whose envelope covers the speeds of the trials.
+/// Prepares a ship whose envelope covers the speeds of the trials.
+///
+/// # Errors
+/// Returns an error if the model cannot be simulated.
 pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
     widened(Ship::new(model, law), trials)
 }
 
-/// As [`ready`], for all models that have the same names of coefficients.
+/// Prepares a ship whose envelope covers the speeds of the trials, for all models that have the
+/// same names of coefficients.
+///
+/// # Errors
+/// Returns an error if the model cannot be simulated.
 pub fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
     let mut ship = widened(Ship::sisters(model, law), trials)?;
     ship.forget_validity();
@@ -279,6 +301,7 @@ pub fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<
 
 fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, PlantError> {
     let mut ship = ship?;
+    // The range covers astern speeds by their magnitude.
     let fastest = trials
         .iter()
         .flat_map(|t| t.channel(Channel::U).into_iter().flatten())

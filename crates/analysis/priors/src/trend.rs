@@ -1,4 +1,4 @@
-//! Whether a model captures the trend of trials.
+//! Trend of trials captured by a model.
 
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
@@ -9,19 +9,19 @@ use sistership_simulation::{PlantError, Stopped};
 
 use crate::transfer::ready;
 
-/// Trials that are simulated in lockstep; more would be in vain where the first does not sail.
+/// Number of trials that are simulated in lockstep; more would be wasted where the first one fails.
 const TOGETHER: usize = 8;
 
-/// Why it cannot be told whether a model captures the trend of trials.
+/// Error of the trend of trials.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrendError {
-    /// The model's law is not known.
+    /// The model's law is unknown.
     #[error("there is no law `{0}`")]
     NoLaw(String),
-    /// The source's file is at fault.
+    /// The source's file is invalid.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The law rolls, and a trial does not record how.
+    /// The law has roll, and a trial does not record it.
     #[error("its law has roll, and trial `{trial}` has no channel `{channel}`")]
     Roll {
         /// The trial.
@@ -29,7 +29,7 @@ pub enum TrendError {
         /// The channel.
         channel: Channel,
     },
-    /// The model cannot be made ready.
+    /// The model cannot be prepared for simulation.
     #[error(transparent)]
     Model(#[from] PlantError),
     /// A trial lacks a channel.
@@ -40,20 +40,19 @@ pub enum TrendError {
     Stopped {
         /// The trial.
         trial: String,
-        /// When and why.
+        /// Time and reason of the stop.
         stopped: Stopped,
     },
-    /// Nothing turns.
+    /// The yaw rate does not vary.
     #[error("the yaw rate is constant")]
     Constant,
 }
 
-/// How well a model captures the trend of trials: Pearson's correlation of simulated and measured
-/// yaw rate over all of them, simulated with the recorded rudder and started anew every
-/// `restart_s`.
+/// Returns Pearson's correlation of simulated and measured yaw rate over all trials, simulated with
+/// the recorded rudder and restarted every `restart_s`.
 ///
 /// # Errors
-/// Says which channel is missing, or that the simulation left the physical range.
+/// Returns an error that names a missing channel, or one if the simulation left the physical range.
 pub fn trend(
     model: &Model,
     law: &Law,
@@ -71,6 +70,7 @@ pub fn trend(
                 return Err(TrendError::Stopped { trial: trial.name.clone(), stopped });
             }
             let measured = trial.channel(Channel::R).unwrap_or_default();
+            // Only the samples of the simulation are compared, by the indices of the run.
             let states = run.track.states.iter().zip(&run.samples);
             pairs.extend(states.map(|(state, &k)| (state[at::R], measured[k])));
         }

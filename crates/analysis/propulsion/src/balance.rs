@@ -1,9 +1,10 @@
-//! The surge balance of a model, by its trials and what is known of the ship beforehand.
+//! The surge balance of a model, from its trials and prior knowledge of the ship.
 //!
-//! The self-propulsion point is that of the trials. With `s` the advance ratio there by that of
-//! zero thrust and `c` the tangent of the advance angle, the slope of surge by the speed there is
-//! `-(R/u)(2 + s/(1 - s) - c^2/(1 + c^2))`: what the trials say of it gives the resistance `R`, and
-//! the estimate from particulars gives it beforehand. Both are weighed by their precision.
+//! The self-propulsion point is that of the trials. With `s` the ratio of the advance ratio there
+//! to that of zero thrust and `c` the tangent of the advance angle, the derivative of surge by the
+//! speed there is `-(R/u)(2 + s/(1 - s) - c^2/(1 + c^2))`: the derivative from the trials gives the
+//! resistance `R`, and the estimate from particulars gives it beforehand. Both are weighted by
+//! their precision.
 
 use std::collections::BTreeMap;
 
@@ -15,23 +16,23 @@ use crate::covered::{Range, by_speed, revolutions, speeds};
 use crate::slope::{Figure, slope};
 use crate::thresholds::BALANCE;
 
-/// What is known of a model's propulsion.
+/// Evidence on a model's propulsion.
 #[derive(Debug, Clone, Copy)]
 pub struct Evidence<'a> {
     /// The model, with its posterior where there is one.
     pub model: &'a Model,
     /// Its law.
     pub law: &'a Law,
-    /// The estimate of the ship from her particulars, of the law `mmg`.
+    /// Estimate of the ship from its particulars, of the law `mmg`.
     pub estimate: Option<&'a Model>,
-    /// The trials that it was fitted to.
+    /// Trials on which it was fitted.
     pub trials: &'a [&'a Trial],
 }
 
 /// The propeller at the self-propulsion point.
 #[derive(Debug, Clone, Copy)]
 struct Working {
-    /// Advance ratio by that of zero thrust.
+    /// Advance ratio relative to that of zero thrust.
     loading: f64,
     /// `J/(0.7 pi)`.
     advance: f64,
@@ -44,7 +45,8 @@ const TRIALS: &str = "self-propulsion point of the trials";
 const RANGE: &str = "range of the trials";
 const CHOSEN: &str = "docs/evidence/propulsion.md";
 
-/// The balance of a model; none where its speed or revolutions at the approach are not known.
+/// Returns the balance of a model; `None` if its speed or revolutions at the approach are not
+/// known.
 pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
     let speed = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
     let n_rps = of.model.revolutions_rps.filter(|n_rps| *n_rps > 0.0)?;
@@ -61,6 +63,8 @@ pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
     add("loading", Quantity::new(working.loading, working.source));
     add("advance", Quantity::new(working.advance, working.source));
     add("backing", Quantity::new(BALANCE.backing, CHOSEN));
+    // A law that takes revolutions holds for ratios of revolutions to speed; another one for the
+    // revolutions of the trials.
     let range = revolutions(of.trials, n_rps);
     let takes_them = of.law.inputs.contains_key("n");
     let seen = if takes_them { by_speed(of.trials, [speed, n_rps]) } else { [range[1], range[2]] };
@@ -75,8 +79,8 @@ pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
     Some(Propulsion { parameters })
 }
 
-/// Whether trials alone say what the propeller does: a law takes no revolutions, or coefficients
-/// multiply them.
+/// Returns true if only the trials determine the effect of the propeller: the law takes no
+/// revolutions, or coefficients multiply them.
 pub fn needs_balance(law: &Law) -> bool {
     law.factors.contains_key("n") || !law.inputs.contains_key("n")
 }
@@ -88,11 +92,13 @@ fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Range
     }
 }
 
-/// The propeller of an estimate where thrust and resistance balance.
+/// The self-propulsion point of an estimate, where thrust and resistance balance; `None` if a
+/// quantity is missing.
 fn working(estimate: &Model) -> Option<Working> {
     let parameter = |name: &str| estimate.parameters.get(name).map(|quantity| quantity.value);
     let diameter_m = particulars::value(&estimate.particulars, "propeller_diameter_m")?;
     let inflow = (1.0 - parameter("w_P0")?) * estimate.speed_m_s?;
+    // Advance ratio `J = u_P / (n D)` at the estimate's approach.
     let ratio = inflow / (estimate.revolutions_rps? * diameter_m);
     let [k_0, k_1, k_2] = [parameter("k_0")?, parameter("k_1")?, parameter("k_2")?];
     // The smaller positive root of k_0 + k_1 J + k_2 J^2, which falls from k_0 above zero.
@@ -115,9 +121,11 @@ fn resistance(of: &Evidence<'_>, working: Working, at: [f64; 2]) -> Quantity {
     let factor = 2.0 + loading / (1.0 - loading) - square / (1.0 + square);
     let of_slope = slope(of.model, of.law, at).map(|slope| {
         let (mean, by) = (-slope.mean * at[0] / factor, at[0] / factor);
+        // The formula itself is uncertain by a share of the resistance, besides the posterior.
         let own = BALANCE.slope_deviation * mean.abs().max(known.mean);
         Figure { mean, deviation: (slope.deviation * by).hypot(own) }
     });
+    // A resistance that is not positive is an error of the fit: the prior knowledge alone is used.
     let Some(fitted) = of_slope.filter(|figure| figure.mean > 0.0) else {
         return quantity(known, format!("{source}; the trials do not tell it"));
     };
@@ -128,13 +136,13 @@ fn quantity(figure: Figure, source: String) -> Quantity {
     Quantity { standard_error: Some(figure.deviation), ..Quantity::new(figure.mean, source) }
 }
 
-/// The mean of two figures by their precisions.
+/// The mean of two figures, weighted by their precisions.
 fn weighed(a: Figure, b: Figure) -> Figure {
     let [p, q] = [a, b].map(|figure| figure.deviation.powi(-2));
     Figure { mean: (p * a.mean + q * b.mean) / (p + q), deviation: (p + q).powf(-0.5) }
 }
 
-/// What is known of the resistance before any trial, N.
+/// Prior knowledge of the resistance, N.
 fn beforehand(of: &Evidence<'_>, speed_m_s: f64) -> Figure {
     let [particulars, estimate] =
         [Some(&of.model.particulars), of.estimate.map(|estimate| &estimate.particulars)];
@@ -142,6 +150,7 @@ fn beforehand(of: &Evidence<'_>, speed_m_s: f64) -> Figure {
         let of = [particulars, estimate].into_iter().flatten();
         of.filter_map(|own| particulars::value(own, name)).next()
     };
+    // Particulars of the model have priority over those of the estimate.
     let density = value("water_density_kg_m3").unwrap_or(1025.0);
     let length_m = value("lpp_m").unwrap_or(0.0);
     let draught_m = value("draught_m").unwrap_or(0.05 * length_m);
@@ -150,6 +159,7 @@ fn beforehand(of: &Evidence<'_>, speed_m_s: f64) -> Figure {
     match estimated.filter(|x_0| x_0.value < 0.0) {
         Some(x_0) => {
             let mean = -x_0.value * unit;
+            // The stated error of the regression, at least the usual one of estimates.
             let stated = x_0.standard_error.unwrap_or(0.0) * unit;
             Figure { mean, deviation: stated.max(BALANCE.estimate_deviation * mean) }
         }

@@ -1,4 +1,4 @@
-//! What a ship must do when her propeller is stopped or reversed, straight ahead and from a turn.
+//! Checks of a ship with its propeller stopped or reversed, straight ahead and from a turn.
 
 use sistership_simulation::Ship;
 use sistership_simulation::envelope::Stopped;
@@ -9,13 +9,13 @@ use sistership_simulation::state::{StateVector, Trajectory, at, straight};
 
 use crate::thresholds::CHECK;
 
-/// Why a ship does not do it.
+/// The error type for a check that is not passed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PropulsionFault {
-    /// It takes no revolutions, or nobody knows those of the approach.
+    /// The law takes no revolutions, or those of the approach are not known.
     #[error("takes no propeller revolutions that could be changed")]
     NoRevolutions,
-    /// It does not slow down as a body in water does.
+    /// The ship does not slow down as a body in water does.
     #[error(
         "with the propeller stopped its speed changes by {rate:.2} of itself in the time in which \
          it sails its length, which should lie between -{fastest} and -{slowest:.3}"
@@ -28,43 +28,43 @@ pub enum PropulsionFault {
         /// Bounds.
         slowest: f64,
     },
-    /// It speeds up where it should slow down.
+    /// The ship speeds up where it should slow down.
     #[error("{motion}: speeds up again, to {share:.2} of the approach speed")]
     Rises {
-        /// What was ordered.
+        /// Order.
         motion: &'static str,
-        /// The speed by that of the approach.
+        /// Speed relative to that of the approach.
         share: f64,
     },
-    /// It has not arrived after a time.
+    /// The ship has not reached the end of the check after a time.
     #[error("{motion}: still at {share:.2} of the approach speed after {t_s:.0} s")]
     Late {
-        /// What was ordered.
+        /// Order.
         motion: &'static str,
-        /// The speed by that of the approach.
+        /// Speed relative to that of the approach.
         share: f64,
-        /// When, s.
+        /// Duration, s.
         t_s: f64,
     },
-    /// It left the physical range.
+    /// The ship left the physical range.
     #[error("{motion}: {stopped}")]
     Stopped {
-        /// What was ordered.
+        /// Order.
         motion: &'static str,
-        /// When and why.
+        /// Time and reason.
         stopped: Stopped,
     },
 }
 
-/// Something that is ordered, and where it must end.
+/// An order, and the speed at which its check ends.
 struct Motion {
     name: &'static str,
-    /// Speed at the beginning, and revolutions, by those of the approach.
+    /// Speed at the beginning, and revolutions, relative to those of the approach.
     start: f64,
     revolutions: f64,
-    /// Whether it begins in a turn.
+    /// True if it begins in a turn.
     turning: bool,
-    /// Whether a speed, by that of the approach, is where it should end.
+    /// Returns true if a speed, relative to that of the approach, ends the check.
     arrived: fn(f64) -> bool,
 }
 
@@ -117,10 +117,10 @@ const TURNING: [Motion; 2] = [
 ];
 
 /// Checks that a ship comes to rest with the propeller stopped, stops and goes astern with it
-/// reversed, and gathers way from rest, all straight ahead.
+/// reversed, and accelerates from rest, all straight ahead.
 ///
 /// # Errors
-/// The first motion that ends otherwise.
+/// Returns the fault of the first order that ends otherwise.
 pub fn check(ship: &Ship) -> Result<(), PropulsionFault> {
     check_motions(ship, &STRAIGHT)
 }
@@ -128,7 +128,7 @@ pub fn check(ship: &Ship) -> Result<(), PropulsionFault> {
 /// Checks that a ship comes to rest and stops out of a turn as well.
 ///
 /// # Errors
-/// The first motion that ends otherwise.
+/// Returns the fault of the first order that ends otherwise.
 pub fn check_turning(ship: &Ship) -> Result<(), PropulsionFault> {
     check_motions(ship, &TURNING)
 }
@@ -138,15 +138,18 @@ fn check_motions(ship: &Ship, motions: &[Motion]) -> Result<(), PropulsionFault>
     if !ship.has_propeller() || ship.revolutions_at(speed) <= 0.0 {
         return Err(PropulsionFault::NoRevolutions);
     }
+    // The ship's own deceleration sets the time scale of all orders.
     let longest_s = CHECK.patience * stopping_time_s(ship)?;
     motions.iter().try_for_each(|motion| sailed(ship, motion, longest_s))
 }
 
-/// The speed over the deceleration with the propeller stopped, s.
+/// The speed divided by the deceleration with the propeller stopped, s; an error if that is
+/// implausible.
 fn stopping_time_s(ship: &Ship) -> Result<f64, PropulsionFault> {
     let speed = ship.approach_speed_m_s();
     let surge = ship.rate_at(&straight(speed), 0.0, 0.0, &mut Work::default())[at::U];
     let length_s = ship.lpp_m() / speed;
+    // Relative deceleration in the time of a ship length, dimensionless.
     let rate = surge / speed * length_s;
     let [least, most] = CHECK.stopping;
     let (fastest, slowest) = (1.0 / least, 1.0 / most);
@@ -156,16 +159,18 @@ fn stopping_time_s(ship: &Ship) -> Result<f64, PropulsionFault> {
     Err(PropulsionFault::Deceleration { rate, fastest, slowest })
 }
 
-/// What was seen of a motion so far.
+/// Speeds of a motion so far.
 struct Watch {
-    /// The least speed, by that of the approach.
+    /// Least speed relative to that of the approach.
     least: f64,
-    /// The last one.
+    /// Last speed.
     last: f64,
     rises: bool,
     arrived: bool,
 }
 
+/// Simulates one order, after a turn if it has one, until the ship arrives, speeds up or takes too
+/// long.
 fn sailed(ship: &Ship, motion: &Motion, longest_s: f64) -> Result<(), PropulsionFault> {
     let name = motion.name;
     let (speed, length_s) = (ship.approach_speed_m_s(), ship.lpp_m() / ship.approach_speed_m_s());
@@ -185,11 +190,13 @@ fn sailed(ship: &Ship, motion: &Motion, longest_s: f64) -> Result<(), Propulsion
         if t_s < turn_s {
             return Some(turn);
         }
+        // The watch begins only after the turn; `None` ends the simulation.
         watch.see(state[at::U] / speed, motion);
         (!watch.rises && !watch.arrived).then_some(ordered)
     };
     let went = ship.sail(run, &mut Trajectory::default(), order);
     went.map_err(|stopped| PropulsionFault::Stopped { motion: name, stopped })?;
+    // A rise counts first, also if the ship arrived in the same step.
     match (watch.rises, watch.arrived) {
         (true, _) => Err(PropulsionFault::Rises { motion: name, share: watch.last }),
         (_, true) => Ok(()),
@@ -198,10 +205,11 @@ fn sailed(ship: &Ship, motion: &Motion, longest_s: f64) -> Result<(), Propulsion
 }
 
 impl Watch {
-    /// Takes note of a speed. Out of a turn a ship may gain speed at first.
+    /// Records a speed. Out of a turn a ship may gain speed at first.
     fn see(&mut self, share: f64, motion: &Motion) {
         let should_fall = motion.revolutions <= 0.0 && !motion.turning;
         let too_fast = share > CHECK.ahead[1];
+        // A small rise is tolerated, as of a decaying drift.
         self.rises = too_fast || should_fall && share > self.least + CHECK.rise;
         (self.least, self.last) = (self.least.min(share), share);
         self.arrived = (motion.arrived)(share);

@@ -1,4 +1,4 @@
-//! The propulsion of a model that was fitted: its law's own, or a surge balance.
+//! The propulsion of a fitted model: its law's own propeller, or a surge balance.
 
 use sistership_model::propulsion::Propulsion;
 use sistership_model::{Law, Model, Trial};
@@ -8,21 +8,21 @@ use sistership_simulation::validity::covered;
 use crate::balance::{Evidence, balance, needs_balance};
 use crate::check::{PropulsionFault, check};
 
-/// What is known when a model's propulsion is chosen.
+/// Inputs for the choice of a model's propulsion.
 #[derive(Debug)]
 pub struct Context<'a> {
     /// The law.
     pub law: &'a Law,
-    /// The trials that the model was fitted to.
+    /// Trials on which the model was fitted.
     pub trials: &'a [&'a Trial],
-    /// The estimate of the ship from its particulars, of the law `mmg`.
+    /// Estimate of the ship from its particulars, of the law `mmg`.
     pub estimate: Option<Model>,
 }
 
 impl Context<'_> {
-    /// The model as it is where its trials stopped or reversed the propeller, or its law has a
-    /// propeller of its own that passes the check; otherwise with a surge balance, where its
-    /// revolutions are known. Both with the range of the trials.
+    /// Returns the model as it is if its trials stopped or reversed the propeller, or if its law
+    /// has a propeller that passes the check; otherwise with a surge balance, if its revolutions
+    /// are known. Both have the range of the trials.
     pub fn with_propulsion(&self, model: Model) -> Model {
         let model = self.with_range(model);
         // What was measured with the propeller stopped stays as it was fitted: a balance about a
@@ -34,18 +34,19 @@ impl Context<'_> {
             return model;
         }
         let balanced = self.with_balance(model.clone());
-        // A propeller of the law's own is kept where a balance would not mend it.
+        // The law's own propeller is kept if a balance would not correct the fault.
         let keeps = has_propeller && self.fault(&balanced).is_some();
         if keeps || balanced.propulsion.is_none() { model } else { balanced }
     }
 
-    /// The model with its surge balance, if it has one, by its posterior.
+    /// Returns the model with its surge balance, if it has one, recomputed with its posterior.
     pub fn with_posterior(&self, model: Model) -> Model {
         if model.propulsion.is_some() { self.with_balance(model) } else { model }
     }
 
-    /// The model with a surge balance; as it is where its revolutions are not known.
+    /// The model with a surge balance; unchanged if its revolutions are not known.
     fn with_balance(&self, mut model: Model) -> Model {
+        // A balance from before must not enter the evidence.
         model.propulsion = None;
         let own = self.estimate.as_ref().and_then(|estimate| estimate.revolutions_rps);
         model.revolutions_rps = model.revolutions_rps.or(own);
@@ -55,13 +56,13 @@ impl Context<'_> {
         self.with_range(model)
     }
 
-    /// What a model does wrong with the propeller stopped or reversed; a model that cannot be
+    /// Returns the fault of a model with the propeller stopped or reversed; a model that cannot be
     /// simulated at all is refused elsewhere.
     pub fn fault(&self, model: &Model) -> Option<PropulsionFault> {
         Ship::new(model, self.law).ok().and_then(|ship| check(&ship).err())
     }
 
-    /// The model with the range of its trials, of revolutions too where it takes them.
+    /// The model with the range of its trials, including revolutions if it takes them.
     fn with_range(&self, mut model: Model) -> Model {
         let own = self.law.with_effects(&model);
         model.validity = covered(self.trials, own.as_ref().unwrap_or(self.law));
@@ -69,7 +70,7 @@ impl Context<'_> {
     }
 }
 
-/// A balance in words.
+/// Returns a balance in words.
 pub fn words(propulsion: &Propulsion) -> String {
     let of = |name: &str| propulsion.value(name).unwrap_or(f64::NAN);
     let resistance = propulsion.parameters.get("resistance");

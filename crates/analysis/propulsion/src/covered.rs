@@ -5,20 +5,21 @@ use sistership_model::trial::Channel;
 
 use crate::thresholds::BALANCE;
 
-/// Where a law alone counts, and where it no longer does: none below, full from, full to, none
-/// above.
+/// Range in which a law alone counts, and where its weight falls to zero: none below, full from,
+/// full to, none above.
 pub(crate) type Range = [f64; 4];
 
-/// Revolutions; those of the approach where nobody recorded any.
+/// Returns the range of revolutions, 1/s; that of the approach if none were recorded.
 pub(crate) fn revolutions(trials: &[&Trial], approach_rps: f64) -> Range {
     let [least, greatest] = bulk(trials, Channel::N).unwrap_or([approach_rps; 2]);
     let width = BALANCE.revolutions * approach_rps;
     [least - width, least, greatest, greatest + width]
 }
 
-/// Least and greatest revolutions by the speed, times the speed of the approach; those of the
-/// approach where nobody recorded any. Samples near rest have no such ratio; what a law gives way
-/// over is added on either side, so that it sees every sample as it is.
+/// Returns the least and greatest ratio of revolutions to speed, times the speed of the approach;
+/// those of the approach if none were recorded. Samples near rest have no such ratio; the width
+/// over which a law's weight falls is added on either side, so that it has full weight at every
+/// sample.
 pub(crate) fn by_speed(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64; 2] {
     let least = BALANCE.rest * speed_m_s;
     let of = |trial: &&Trial| {
@@ -32,10 +33,12 @@ pub(crate) fn by_speed(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64;
     [least - width, greatest + width]
 }
 
-/// Speeds ahead.
+/// Returns the range of speeds ahead, m/s.
 pub(crate) fn speeds(trials: &[&Trial], approach_m_s: f64) -> Range {
     let [least, greatest] = bulk(trials, Channel::U).unwrap_or([approach_m_s; 2]);
     let near_rest = BALANCE.rest * approach_m_s;
+    // Trials that reach rest cover the speeds down to it, so that their range is not widened by a
+    // share of their least speed.
     let [from, none] = match least > 2.0 * near_rest {
         true => BALANCE.slow.map(|share| share * least),
         false => [least, least - near_rest],
@@ -44,7 +47,7 @@ pub(crate) fn speeds(trials: &[&Trial], approach_m_s: f64) -> Range {
     [none, from, to, none_above]
 }
 
-/// What all but the tails of the samples lie between; none where no trial has the channel.
+/// Range of all but the tails of the samples; `None` if no trial has the channel.
 fn bulk(trials: &[&Trial], channel: Channel) -> Option<[f64; 2]> {
     let samples = trials.iter().filter_map(|trial| trial.channel(channel)).flatten().copied();
     between_tails(samples.collect())
@@ -53,6 +56,7 @@ fn bulk(trials: &[&Trial], channel: Channel) -> Option<[f64; 2]> {
 fn between_tails(mut samples: Vec<f64>) -> Option<[f64; 2]> {
     samples.retain(|sample| sample.is_finite());
     samples.sort_by(f64::total_cmp);
+    // The same number of samples is cut from both ends.
     let tail = (BALANCE.tails * samples.len() as f64) as usize;
     Some([*samples.get(tail)?, *samples.get(samples.len().checked_sub(1 + tail)?)?])
 }

@@ -1,5 +1,5 @@
-//! Propulsion of a model where its trials do not reach: the surge balance that it is given, and
-//! what a ship must do when her propeller is stopped or reversed.
+//! Propulsion of a model outside the range of its trials: its surge balance, and the checks with a
+//! stopped or reversed propeller.
 
 mod balance;
 mod check;

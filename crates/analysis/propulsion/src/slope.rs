@@ -1,4 +1,4 @@
-//! The slope of a model's surge force by the speed, at its approach.
+//! The derivative of a model's surge force by the speed, at its approach.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,11 @@ pub(crate) struct Figure {
     pub deviation: f64,
 }
 
-/// Half of the speed's change over which the slope is taken, by the speed.
+/// Half of the change of speed over which the derivative is taken, as a share of the speed.
 const STEP: f64 = 0.05;
 
-/// Slope of the surge force by the speed, N s/m, by the model's posterior; none without one.
+/// Returns the derivative of the surge force by the speed, N s/m, with its deviation by the model's
+/// posterior; `None` without one.
 pub(crate) fn slope(model: &Model, law: &Law, [speed_m_s, n_rps]: [f64; 2]) -> Option<Figure> {
     let posterior = model.posterior()?;
     let slopes = slopes(model, law, [speed_m_s, n_rps]).ok()?;
@@ -24,6 +25,8 @@ pub(crate) fn slope(model: &Model, law: &Law, [speed_m_s, n_rps]: [f64; 2]) -> O
     let coefficients = model.coefficients.iter();
     let mean = slopes.rest + coefficients.map(|(name, c)| c.value * of(name)).sum::<f64>();
     let root = posterior.root().ok()?;
+    // With `L` the root of the covariance and `g` the derivatives by coefficient the variance is
+    // `|L' g|^2`.
     let along = |column: usize| {
         let rows = posterior.names.iter().zip(&root);
         rows.map(|(name, row)| of(name) * row.get(column).copied().unwrap_or(0.0)).sum::<f64>()
@@ -32,7 +35,7 @@ pub(crate) fn slope(model: &Model, law: &Law, [speed_m_s, n_rps]: [f64; 2]) -> O
     Some(Figure { mean, deviation: variance.sqrt() })
 }
 
-/// Slopes per unit of each coefficient, and of the rest.
+/// Derivatives per unit of each coefficient, and of the rest.
 struct Slopes {
     by_name: BTreeMap<String, f64>,
     rest: f64,
@@ -46,6 +49,7 @@ fn slopes(model: &Model, law: &Law, [speed, n_rps]: [f64; 2]) -> Result<Slopes, 
     for name in &coefficients {
         lowering.output(&equations.regressor(name)?)?;
     }
+    // The rest is the last output, after the regressors of the coefficients.
     lowering.output(&equations.law().axes[&Axis::X].rest)?;
     let tape = lowering.finish();
     let defaults: BTreeMap<String, Option<f64>> = equations.inputs().into_iter().collect();

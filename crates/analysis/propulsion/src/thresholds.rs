@@ -3,12 +3,12 @@
 /// The surge balance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BalanceThresholds {
-    /// `s`: advance ratio at the self-propulsion point by that of zero thrust where no estimate of
-    /// the ship gives it, dimensionless. Source: median of the estimates of the zoo,
+    /// `s`: ratio of the advance ratio at the self-propulsion point to that of zero thrust if no
+    /// estimate of the ship gives it, dimensionless. Source: median of the estimates of the zoo,
     /// docs/evidence/propulsion.md.
     pub loading: f64,
-    /// Range of the same that an estimate is held to, dimensionless. Source: derived: at 0.9 the
-    /// blades have a tenth of the thrust of rest left, at 0.3 the ship tows.
+    /// Range of the same to which an estimate is limited, dimensionless. Source: derived: at 0.9
+    /// the blades have a tenth of the thrust of rest left, at 0.3 the ship tows.
     pub loadings: [f64; 2],
     /// `J/(0.7 pi)` at the self-propulsion point without an estimate, dimensionless. Source: as
     /// `loading`.
@@ -19,16 +19,16 @@ pub(crate) struct BalanceThresholds {
     /// Relative deviation of the estimated resistance, dimensionless. Source: that of the friction
     /// line by the waves that it leaves out, models/regressions/ittc-1957.yaml.
     pub estimate_deviation: f64,
-    /// Relative deviation of the resistance that follows from the slope of surge by the speed,
-    /// beside what the posterior says, dimensionless. Source: chosen; docs/evidence/propulsion.md
-    /// has half and double.
+    /// Relative deviation of the resistance from the derivative of surge by the speed, besides that
+    /// of the posterior, dimensionless. Source: chosen; docs/evidence/propulsion.md has half and
+    /// double.
     pub slope_deviation: f64,
     /// Thrust of the reversed propeller at rest by that ahead, dimensionless. Source: chosen, as
     /// the blades' camber and trailing edges are the wrong way round; docs/evidence/propulsion.md
     /// has half and double of the loss.
     pub backing: f64,
-    /// Revolutions over which a law gives way, by those of the approach, dimensionless. Source:
-    /// chosen; docs/evidence/propulsion.md has half and double.
+    /// Range of revolutions over which a law's weight falls, as a share of those of the approach,
+    /// dimensionless. Source: chosen; docs/evidence/propulsion.md has half and double.
     pub revolutions: f64,
     /// Least speed from which a law alone counts, by the least of its trials, and that from which
     /// it counts at all, dimensionless. Source: chosen: turns at 35 deg after trials at 20 deg lose
@@ -39,8 +39,8 @@ pub(crate) struct BalanceThresholds {
     /// Speed by that of the approach below which trials reach rest, dimensionless. Source: derived:
     /// less than any turn leaves.
     pub rest: f64,
-    /// Share of the samples on either side that no range covers, dimensionless. Source: chosen:
-    /// dropouts of a tachometer are fewer.
+    /// Share of the samples on either side that is outside the range, dimensionless. Source:
+    /// chosen: dropouts of a tachometer are fewer.
     pub tails: f64,
 }
 
@@ -60,18 +60,18 @@ pub(crate) const BALANCE: BalanceThresholds = BalanceThresholds {
     tails: 0.01,
 };
 
-/// What a ship must do.
+/// Constants of the checks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CheckThresholds {
     /// Speed that counts as rest, and astern, by that of the approach, dimensionless. Source:
     /// chosen.
     pub rest: f64,
-    /// `T`: how long it may take, by the speed over the deceleration with the propeller stopped,
-    /// dimensionless. Source: derived: a resistance that goes with the square of the speed leaves a
-    /// tenth after nine times that; twice as much is allowed.
+    /// `T`: longest duration, in units of the speed over the deceleration with the propeller
+    /// stopped, dimensionless. Source: derived: a resistance that goes with the square of the speed
+    /// leaves a tenth after nine times that; twice as much is allowed.
     pub patience: f64,
-    /// By how much the speed may rise meanwhile, by that of the approach, dimensionless. Source:
-    /// chosen, as of a trace of drift that dies down.
+    /// Rise of the speed that is tolerated meanwhile, relative to that of the approach,
+    /// dimensionless. Source: chosen, as of a trace of drift that dies down.
     pub rise: f64,
     /// `U/|u'|` with the propeller stopped, by `L/U`, dimensionless. Source: derived: mass by
     /// `0.5 rho L^2 d` over resistance by `0.5 rho L d U^2`, from 0.1 to 0.35 over 0.006 to 0.1,
@@ -83,7 +83,8 @@ pub(crate) struct CheckThresholds {
     /// Rudder of the turn from which the propeller is stopped as well, deg. Source: that of common
     /// trials.
     pub turn_deg: f64,
-    /// How long it turns, by `L/U`, dimensionless. Source: derived: yaw is steady after less.
+    /// Duration of the turn, in units of `L/U`, dimensionless. Source: derived: yaw is steady after
+    /// less.
     pub turn: f64,
     /// Step, by `L/U`, dimensionless. Source: as of steady motions in `dynamics::manoeuvre`.
     pub step: f64,

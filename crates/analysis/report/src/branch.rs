@@ -1,4 +1,4 @@
-//! The report of a learned branch: what it is, and what it is worth on trials left out.
+//! Report of a learned correction: its recipe, and its errors on held-out trials.
 
 use askama::Template;
 use serde::Serialize;
@@ -9,19 +9,20 @@ use sistership_model::version::code_revision;
 use crate::numbers::significant;
 use crate::rendered::{Rendered, ReportError, VersionLabel};
 
-/// What a report is made of.
+/// Input of the report.
 #[derive(Debug, Clone, Serialize)]
 pub struct BranchInput<'a> {
-    /// The branch.
+    /// Learned correction.
     pub branch: &'a Branch,
-    /// What trials left out of its training said; none where there was only one.
+    /// Evaluation on held-out trials; `None` if there was only one trial.
     pub judgement: Option<&'a Judgement>,
-    /// The version that is its foundation.
+    /// Version of the foundation.
     pub of: VersionLabel,
-    /// The version with the branch.
+    /// Version with the correction.
     pub made: VersionLabel,
 }
 
+/// Page as the template takes it.
 #[derive(Template)]
 #[template(path = "report_branch.html")]
 struct BranchPage<'a> {
@@ -32,7 +33,7 @@ struct BranchPage<'a> {
     domain: Vec<(String, String)>,
 }
 
-/// A line of the table of trials.
+/// Row of the table of trials.
 struct BranchRow {
     name: String,
     foundation: String,
@@ -40,10 +41,10 @@ struct BranchRow {
     share: String,
 }
 
-/// Renders the report in both forms.
+/// Renders the report as a page and as JSON.
 ///
 /// # Errors
-/// It cannot be written.
+/// Returns an error if it cannot be written.
 pub fn render_branch(input: &BranchInput<'_>) -> Result<Rendered, ReportError> {
     let trials = input.judgement.iter().flat_map(|judgement| &judgement.trials);
     let row = |name: &str, foundation: f64, branch: f64, share: f64| BranchRow {
@@ -60,6 +61,7 @@ pub fn render_branch(input: &BranchInput<'_>) -> Result<Rendered, ReportError> {
                 row(&trial.name, errors.0, errors.1, trial.share)
             })
             .collect(),
+        // The last row of the table is the mean over the trials.
         mean: input.judgement.map(|all| row("mean", all.foundation, all.branch, all.share)),
         verdict: verdict(input.judgement),
         domain: domain(input.branch),
@@ -67,7 +69,7 @@ pub fn render_branch(input: &BranchInput<'_>) -> Result<Rendered, ReportError> {
     Ok(Rendered { json: serde_json::to_value(input)?, html: page.render()? })
 }
 
-/// What trials left out say, in a sentence.
+/// Result on held-out trials, as a sentence.
 fn verdict(judgement: Option<&Judgement>) -> String {
     let Some(judged) = judgement else {
         return "There was one trial only, so that none is left to judge the branch on.".to_owned();
@@ -85,7 +87,7 @@ fn verdict(judgement: Option<&Judgement>) -> String {
     )
 }
 
-/// The ranges of the domain, SI and radians.
+/// Ranges of the domain, SI units and radians.
 fn domain(branch: &Branch) -> Vec<(String, String)> {
     let range =
         |[low, high]: &[f64; 2]| format!("{} to {}", significant(*low, 3), significant(*high, 3));

@@ -1,4 +1,4 @@
-//! The page of a contributed ship, in Markdown.
+//! Page of a contributed ship, in Markdown.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use sistership_model::Vessel;
 
 use crate::numbers::hundredths;
 
-/// Particulars, models, published trials, findings and sources of a ship.
+/// Returns the particulars, models, published trials, findings and sources of a ship as Markdown.
 pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
     [
         format!("# {}\n\n{}\n\n", review.ship, review.title),
@@ -20,11 +20,13 @@ pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
     .concat()
 }
 
+/// Markdown table under a heading; empty without rows.
 fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
     if rows.is_empty() {
         return String::new();
     }
     let line = |cells: &[String]| {
+        // A bar inside a cell would start a new cell.
         let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
         format!("| {} |\n", cells.join(" | "))
     };
@@ -34,12 +36,14 @@ fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
     format!("## {head}\n\n{}{}{rows}\n", line(&names), line(&rules))
 }
 
+/// Findings of the review, the refusals first.
 fn findings(review: &Review) -> String {
     let verdict = if review.is_taken() { "It can be taken." } else { "It is refused." };
     let mut text = format!("{verdict}\n\n");
     for (severity, head) in
         [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
     {
+        // Findings are grouped by severity, in the order of the review.
         let of = review.findings.iter().filter(|finding| finding.severity == severity);
         let lines: String =
             of.map(|finding| format!("- `{}`: {}\n", finding.about, finding.message)).collect();
@@ -66,6 +70,7 @@ fn models(review: &Review) -> String {
 }
 
 fn model(model: &Appraisal) -> Vec<String> {
+    // The ship's name is in the title, so the model's own name is enough.
     let name = model.model.split_once('/').map_or(model.model.as_str(), |(_, name)| name);
     vec![
         format!("`{name}`"),

@@ -1,4 +1,4 @@
-//! Root mean square errors of one channel before and after, and what is said of them.
+//! Root mean squared errors of one channel before and after, and the words for their change.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,22 @@ use serde::Serialize;
 use crate::numbers::fixed;
 use crate::words::ShownChannel;
 
-/// Changes smaller than this share are no change.
+/// Relative changes below this are reported as unchanged.
 const SAME: f64 = 0.005;
 
-/// Root mean square error of one channel, in its shown unit.
+/// Root mean squared error of one channel, in its displayed unit.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct ErrorRow {
     #[serde(flatten)]
     pub quantity: ShownChannel,
     pub source: Option<f64>,
     pub refined: Option<f64>,
-    /// Source over refined: above one where the error fell.
+    /// Source error divided by refined error: above one if the error fell.
     pub factor: Option<f64>,
 }
 
 impl ErrorRow {
-    /// The error of a channel in both models.
+    /// Error of a channel in both models.
     pub fn of(
         quantity: ShownChannel,
         source: &BTreeMap<String, f64>,
@@ -30,11 +30,12 @@ impl ErrorRow {
     ) -> Self {
         let shown = |errors| error(errors, quantity.channel).map(|value| value * quantity.factor);
         let (source, refined) = (shown(source), shown(refined));
+        // A factor needs two positive errors.
         let factor = source.zip(refined).filter(|(s, r)| *s > 0.0 && *r > 0.0).map(|(s, r)| s / r);
         Self { quantity, source, refined, factor }
     }
 
-    /// `fell`, `rose` or `unchanged`, and by what factor.
+    /// Direction of the change, `fell`, `rose` or `unchanged`, and its factor.
     pub fn change(&self) -> (&'static str, f64) {
         match self.factor {
             None => ("unknown", 1.0),
@@ -44,7 +45,7 @@ impl ErrorRow {
         }
     }
 
-    /// The change in words: `4.2 times smaller`.
+    /// Change in words: `4.2 times smaller`.
     pub fn change_text(&self) -> String {
         match self.change() {
             ("fell", factor) => format!("{} times smaller", times(factor)),
@@ -54,16 +55,17 @@ impl ErrorRow {
     }
 }
 
-/// A factor with two digits that mean something, never rounded down to a bare one.
+/// Factor with two significant digits, never rounded to 1.
 pub(crate) fn times(factor: f64) -> String {
     let decimals = if factor < 1.95 { 2 } else { usize::from(factor < 9.95) };
     fixed(factor, decimals)
 }
 
-/// A recorded error; the distance in the plane is put together from north and east.
+/// Error of a channel; that of the horizontal position is combined from north and east.
 fn error(errors: &BTreeMap<String, f64>, channel: &str) -> Option<f64> {
     if channel == "position" {
         return Some(error(errors, "x")?.hypot(error(errors, "y")?));
     }
+    // Errors that are not finite, or near overflow, are unknown.
     errors.get(channel).copied().filter(|value| value.is_finite() && *value < 1e300)
 }

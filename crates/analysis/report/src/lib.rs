@@ -1,8 +1,8 @@
-//! The reports of a refinement ([`render_refinement`]), of a diagnosis ([`render_diagnosis`]), of a
-//! learned branch ([`render_branch`]) and of a validation ([`render_validation`]): one HTML page
-//! that a stranger can read and print, and the same content as JSON.
+//! Reports of a refinement ([`render_refinement`]), a diagnosis ([`render_diagnosis`]), a learned
+//! correction ([`render_branch`]) and a validation ([`render_validation`]): one self-contained HTML
+//! page to read and print, and the same content as JSON.
 //!
-//! Both are made of the same tables and plots. Nothing depends on the clock.
+//! Both have the same tables and plots. Nothing depends on the clock.
 
 mod branch;
 mod contributed_ship;
@@ -19,7 +19,7 @@ mod tile;
 mod validation;
 mod words;
 
-/// The style of reports, which other pages share.
+/// Style sheet of reports, which other pages share.
 pub const STYLE: &str = include_str!("../templates/report_style.css");
 
 pub use branch::{BranchInput, render_branch};

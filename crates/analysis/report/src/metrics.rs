@@ -1,11 +1,11 @@
-//! The figures of a manoeuvre: their names, their units, and how they are read.
+//! Figures of a manoeuvre: names, units and accessors.
 
 use sistership_simulation::metrics::{ManoeuvreMetrics, TurningMetrics, ZigzagMetrics};
 
-/// Takes one figure from the metrics of a manoeuvre.
+/// Accessor of one figure in the metrics of a manoeuvre.
 pub(crate) type ReadMetric<T> = fn(&T) -> Option<f64>;
 
-/// Of a turning circle, in metres.
+/// Figures of a turning circle, in metres.
 pub(crate) const TURN: [(&str, ReadMetric<TurningMetrics>); 4] = [
     ("advance", |turn| turn.advance_m),
     ("transfer", |turn| turn.transfer_m),
@@ -13,19 +13,20 @@ pub(crate) const TURN: [(&str, ReadMetric<TurningMetrics>); 4] = [
     ("steady radius", |turn| turn.steady_radius_m),
 ];
 
-/// Of a zigzag, with units.
+/// Figures of a zigzag, with units.
 pub(crate) const ZIGZAG: [(&str, &str, ReadMetric<ZigzagMetrics>); 3] = [
     ("first overshoot", "deg", |zigzag| zigzag.first_overshoot_deg),
     ("second overshoot", "deg", |zigzag| zigzag.second_overshoot_deg),
     ("period", "s", |zigzag| zigzag.period_s),
 ];
 
-/// Name, unit, value.
+/// Name, unit and value of a figure.
 pub(crate) type MetricValue = (&'static str, &'static str, Option<f64>);
 
-/// The figures of a manoeuvre.
+/// Returns the figures of a manoeuvre.
 pub(crate) fn read(metrics: &ManoeuvreMetrics) -> Vec<MetricValue> {
     match metrics {
+        // All figures of a turn are lengths.
         ManoeuvreMetrics::Turn(turn) => {
             TURN.iter().map(|(name, read)| (*name, "m", read(turn))).collect()
         }

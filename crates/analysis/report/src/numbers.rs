@@ -1,6 +1,6 @@
-//! Numbers as people read them: significant digits, a true minus sign, powers of ten.
+//! Formatting of numbers for readers: significant digits, a typographic minus sign, powers of ten.
 
-/// A value with so many significant digits; very small and very large ones as a power of ten.
+/// Value with `digits` significant digits; very small and very large ones as a power of ten.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
@@ -8,7 +8,9 @@ pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
     }
+    // The exponent after rounding: 9.996 with three digits is 10.0, not 9.99.
     let exponent = exponent(value, digits);
+    // Powers of ten start where the digits would be hidden among zeros.
     if exponent < -4 || exponent >= (digits as i32 + 2).min(6) {
         return power_of_ten(value, digits, exponent);
     }
@@ -16,12 +18,14 @@ pub fn significant(value: f64, digits: usize) -> String {
     fixed(value, decimals)
 }
 
-/// A stated value: as many digits as it was given with, at most so many.
+/// Value with at most `digits` significant digits, without trailing zeros.
 pub fn stated(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
+    // Trailing zeros are removed from the mantissa, not from the power of ten.
     let (number, power) = text
         .split_once('×')
         .map_or((text.as_str(), String::new()), |(number, power)| (number, format!("×{power}")));
+    // Zeros before a decimal point are significant and stay.
     let trimmed = if number.contains('.') {
         number.trim_end_matches('0').trim_end_matches('.')
     } else {
@@ -30,7 +34,7 @@ pub fn stated(value: f64, digits: usize) -> String {
     format!("{trimmed}{power}")
 }
 
-/// The decimal exponent of the value once rounded to so many digits.
+/// Decimal exponent of a value after rounding to `digits` significant digits.
 fn exponent(value: f64, digits: usize) -> i32 {
     let text = format!("{:.*e}", digits.saturating_sub(1), value);
     text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
@@ -41,7 +45,7 @@ fn power_of_ten(value: f64, digits: usize, exponent: i32) -> String {
     format!("{mantissa}×10{}", superscript(exponent))
 }
 
-/// A small integer as an exponent is written.
+/// Integer in superscript digits.
 pub(crate) fn superscript(number: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
@@ -52,36 +56,38 @@ pub(crate) fn superscript(number: i32) -> String {
     number.to_string().chars().map(raised).collect()
 }
 
-/// A value with so many decimals.
+/// Value with a fixed number of decimals; a dash if it is not finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
+        // A negative number that rounds to zero has no sign.
         Some(zero) if zero.chars().all(|c| c == '0' || c == '.') => zero.to_owned(),
         Some(positive) => format!("−{positive}"),
         None => text,
     }
 }
 
-/// The same with a plus sign on what is not negative.
+/// The same with a plus sign if the value is not negative.
 pub fn signed(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
+    // The second character is the dash of an unknown value, which has no sign.
     if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
 }
 
-/// A value that may be unknown.
+/// Value that may be unknown, which is a dash.
 pub fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "–".into(), format)
 }
 
-/// A value of two decimals that may be unknown.
+/// Value with two decimals that may be unknown.
 pub fn hundredths(value: Option<f64>) -> String {
     known(value, |value| fixed(value, 2))
 }
 
-/// Words as a list: `a, b and c`.
+/// Words joined to a list: `a, b and c`.
 pub(crate) fn list(words: &[String]) -> String {
     match words {
         [] => String::new(),

@@ -1,32 +1,32 @@
-//! A report in both forms, and why there is none.
+//! Rendered reports, and the errors of rendering.
 
 use serde::Serialize;
 use sistership_simulation::PlantError;
 
-/// A version by name and hash.
+/// Version by ship, number and hash.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct VersionLabel {
-    /// The ship.
+    /// Name of the ship.
     pub ship: String,
-    /// Its number.
+    /// Number of the version.
     pub number: i64,
-    /// The hash of its document, in hexadecimal.
+    /// Hash of its document, in hexadecimal.
     pub sha256: String,
 }
 
-/// A report in both forms.
+/// Report as a page and as JSON.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rendered {
-    /// The content as data.
+    /// Content as JSON.
     pub json: serde_json::Value,
-    /// A page that stands alone.
+    /// Self-contained HTML page.
     pub html: String,
 }
 
-/// Why there is no report.
+/// Error of rendering a report.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// A model does not simulate.
+    /// A model cannot be simulated.
     #[error(transparent)]
     Plant(#[from] PlantError),
     /// The page could not be written.

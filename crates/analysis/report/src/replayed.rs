@@ -1,4 +1,4 @@
-//! A trial that is plotted, with the simulations by two models.
+//! Plotted trials, with the simulations by two models.
 
 use std::collections::BTreeMap;
 
@@ -7,31 +7,31 @@ use serde::Serialize;
 use sistership_model::trial::Trial;
 use sistership_simulation::recorded::Replay;
 
-/// What the plots of one trial show.
+/// Summary of the plots of one trial.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct ReplaySummary<'a> {
     pub trial: &'a str,
     pub manoeuvre: Option<&'a str>,
     pub duration_s: f64,
-    /// Whether the refined model was fitted with this trial.
+    /// True if the refined model was fitted to this trial.
     pub fitted: bool,
-    /// Root mean square errors from start to end without a restart, SI.
+    /// Root mean squared errors of the source from start to end without restart, SI units.
     pub source: BTreeMap<String, f64>,
-    /// The same of the refined model.
+    /// The same for the refined model.
     pub refined: BTreeMap<String, f64>,
     pub source_stopped: Option<String>,
     pub refined_stopped: Option<String>,
 }
 
-/// A trial with both simulations.
+/// Trial with both simulations.
 #[derive(Debug)]
 pub(crate) struct ReplayedTrial<'a> {
     pub trial: &'a Trial,
     pub source: Replay,
     pub refined: Replay,
-    /// Whether roll is part of the simulation.
+    /// True if roll is simulated.
     pub rolls: bool,
-    /// The ship that sailed it, where length and beam are known.
+    /// Outline of the ship, if length and beam are known.
     pub hull: Option<Hull>,
     pub shown: ReplaySummary<'a>,
 }

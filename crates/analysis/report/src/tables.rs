@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use crate::numbers::{known, stated};
 
-/// A table.
+/// Table of a report.
 #[derive(Debug, Template)]
 #[template(path = "report_table.html")]
 pub(crate) struct Table {
@@ -13,7 +13,7 @@ pub(crate) struct Table {
     pub rows: Vec<Row>,
 }
 
-/// A column's heading.
+/// Heading of a column.
 #[derive(Debug)]
 pub(crate) struct Column {
     pub title: String,
@@ -22,23 +22,23 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// A column of words.
+    /// Creates a column of words.
     pub fn text(title: &str, unit: &str) -> Self {
         Self { title: title.into(), unit: unit.into(), class: "text" }
     }
 
-    /// A column of sentences, which may be broken into lines.
+    /// Creates a column of sentences, which may be broken into lines.
     pub fn prose(title: &str) -> Self {
         Self { title: title.into(), unit: String::new(), class: "prose" }
     }
 
-    /// A column of numbers, aligned at their ends.
+    /// Creates a column of numbers, aligned at their ends.
     pub fn number(title: &str, unit: &str) -> Self {
         Self { title: title.into(), unit: unit.into(), class: "num" }
     }
 }
 
-/// A row: a heading over the rows that follow, or cells.
+/// Row: a heading over the rows that follow, or cells.
 #[derive(Debug, Default)]
 pub(crate) struct Row {
     pub heading: String,
@@ -47,23 +47,23 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// A row of cells.
+    /// Creates a row of cells.
     pub fn of(cells: Vec<Cell>) -> Self {
         Self { cells, ..Self::default() }
     }
 
-    /// A heading.
+    /// Creates a heading.
     pub fn heading(text: impl Into<String>) -> Self {
         Self { heading: text.into(), ..Self::default() }
     }
 
-    /// The same row, set off from the others or not.
+    /// Returns the same row, highlighted or not.
     pub fn highlighted(self, highlighted: bool) -> Self {
         Self { highlighted, ..self }
     }
 }
 
-/// A cell: its text and a mark beside it.
+/// Cell: its text and a mark next to it.
 #[derive(Debug, Default)]
 pub(crate) struct Cell {
     pub text: String,
@@ -73,29 +73,31 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// A cell of text.
+    /// Creates a cell of text.
     pub fn new(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
     }
 
-    /// A cell with a name as the program spells it.
+    /// Creates a cell with an identifier.
     pub fn code(text: impl Into<String>) -> Self {
         Self { text: text.into(), code: true, ..Self::default() }
     }
 
-    /// The same cell with a mark; `kind` is its style: `good`, `bad`, `open`, `chosen`, `note`.
+    /// Returns the same cell with a mark; `kind` is its style: `good`, `bad`, `open`, `chosen`,
+    /// `note`.
     pub fn mark(self, mark: impl Into<String>, kind: &'static str) -> Self {
         Self { mark: mark.into(), kind, ..self }
     }
 }
 
-/// A setting as people read it.
+/// Formats the value of a setting for readers.
 pub(crate) fn setting(value: &Value) -> String {
     match value {
         Value::Null => "–".into(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),
         Value::Number(number) => known(number.as_f64(), |number| stated(number, 4)),
         Value::String(text) => text.clone(),
+        // An empty list is a setting, not an unknown value.
         Value::Array(values) if values.is_empty() => "none".into(),
         Value::Array(values) => values.iter().map(setting).collect::<Vec<_>>().join(", "),
         Value::Object(_) => value.to_string(),

@@ -1,26 +1,27 @@
-//! A headline figure: an error before and after, with bars.
+//! Headline figures: an error before and after, with bars.
 
 use crate::error_row::ErrorRow;
 use crate::numbers::{fixed, significant};
 
-/// A headline figure.
+/// Headline figure of one channel.
 pub(crate) struct Tile {
     pub name: &'static str,
     pub change: String,
     pub class: &'static str,
     pub before: String,
     pub after: String,
-    /// Lengths of the two bars, per cent of the longer.
+    /// Lengths of the two bars, per cent of the longer one.
     pub bars: (String, String),
 }
 
 impl Tile {
-    /// Of one channel.
+    /// Creates the figure of one channel.
     pub fn of(row: &ErrorRow) -> Self {
         let unit = row.quantity.unit;
         let text = |value: Option<f64>| {
             value.map_or_else(|| "–".into(), |value| format!("{} {unit}", significant(value, 3)))
         };
+        // Never zero, as it is a divisor.
         let most = row.source.unwrap_or(0.0).max(row.refined.unwrap_or(0.0)).max(1e-300);
         let bar = |value: Option<f64>| fixed(100.0 * value.unwrap_or(0.0) / most, 1);
         let class = match row.change().0 {

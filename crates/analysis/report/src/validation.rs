@@ -1,4 +1,4 @@
-//! The report of a validation by ITTC 7.5-02-06-03.
+//! Report of a validation by ITTC 7.5-02-06-03.
 
 use askama::Template;
 use sistership_assessment::validation::{ValidatedQuantity, Validation, Verdict};
@@ -8,6 +8,7 @@ use crate::numbers::{fixed, known, significant};
 use crate::rendered::{Rendered, ReportError};
 use crate::tables::{Cell, Column, Row, Table};
 
+/// Page as the template takes it.
 #[derive(Template)]
 #[template(path = "report_validation.html")]
 struct ValidationPage<'a> {
@@ -16,21 +17,22 @@ struct ValidationPage<'a> {
     quantities: Table,
 }
 
-/// Renders a validation in both forms.
+/// Renders a validation as a page and as JSON.
 ///
 /// # Errors
-/// It cannot be written.
+/// Returns an error if it cannot be written.
 pub fn render_validation(of: &Validation) -> Result<Rendered, ReportError> {
     let page = ValidationPage { of, verdict: verdict(of), quantities: table(&of.quantities) };
     Ok(Rendered { json: serde_json::to_value(of)?, html: page.render()? })
 }
 
-/// What came out, in a sentence.
+/// Result of the validation, as a sentence.
 fn verdict(of: &Validation) -> String {
     let all = of.quantities.len();
     if all == 0 {
         return "There is nothing to validate this model by.".to_owned();
     }
+    // Both verdicts leave the question open.
     let open = of.count(Verdict::Undecided) + of.count(Verdict::AboveWhatIsKnown);
     format!(
         "Of {all} quantities {} are validated at the level of their validation uncertainty, {} are \
@@ -65,6 +67,7 @@ fn row(one: &ValidatedQuantity) -> Row {
         Verdict::NotValidated => "bad",
         Verdict::AboveWhatIsKnown | Verdict::Undecided => "open",
     };
+    // Repeated records are reported with their number.
     let from = match one.records {
         Some(records) => format!("{records}: {}", one.data_from),
         None => one.data_from.clone(),

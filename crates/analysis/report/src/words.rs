@@ -1,26 +1,27 @@
-//! Names and units as a naval architect says them.
+//! Names and units in the terms of naval architecture.
 
 use serde::Serialize;
 use sistership_model::vessel::Status;
 
-/// A channel as it is shown: angles in degrees.
+/// Channel as it is displayed: angles in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct ShownChannel {
-    /// Its name in the data.
+    /// Name in the data.
     pub channel: &'static str,
-    /// Its name in words.
+    /// Name in words.
     pub name: &'static str,
-    /// Its symbol.
+    /// Symbol.
     pub symbol: &'static str,
-    /// The unit it is shown in.
+    /// Displayed unit.
     pub unit: &'static str,
-    /// Shown value over SI value.
+    /// Displayed value divided by the SI value.
     #[serde(skip)]
     pub factor: f64,
 }
 
 const DEG: f64 = 180.0 / std::f64::consts::PI;
 
+/// Creates a displayed channel.
 const fn quantity(
     channel: &'static str,
     name: &'static str,
@@ -31,7 +32,7 @@ const fn quantity(
     ShownChannel { channel, name, symbol, unit, factor }
 }
 
-/// The channels in which errors are given, in their order; `position` is the distance in the plane.
+/// Channels of errors, in their order; `position` is the horizontal distance.
 pub(crate) const CHANNELS: [ShownChannel; 9] = [
     quantity("u", "surge speed", "u", "m/s", 1.0),
     quantity("v", "sway speed", "v", "m/s", 1.0),
@@ -44,15 +45,16 @@ pub(crate) const CHANNELS: [ShownChannel; 9] = [
     quantity("p", "roll rate", "p", "deg/s", DEG),
 ];
 
-/// The rudder, which is given and not simulated.
+/// Rudder angle, which is an input and not simulated.
 pub(crate) const RUDDER: ShownChannel = quantity("delta", "rudder angle", "δ", "deg", DEG);
 
-/// A channel by its name in the data.
+/// Returns a channel by its name in the data.
 pub(crate) fn channel(name: &str) -> Option<ShownChannel> {
     CHANNELS.into_iter().find(|quantity| quantity.channel == name)
 }
 
-/// Endings of names that carry a unit.
+/// Endings of field names, and the units that they mean; longer endings come before shorter ones
+/// that they contain.
 const UNITS: [(&str, &str); 9] = [
     ("_kg_m3", "kg/m³"),
     ("_m_s", "m/s"),
@@ -65,7 +67,7 @@ const UNITS: [(&str, &str); 9] = [
     ("_s", "s"),
 ];
 
-/// A field such as `rudder_area_m2` in words and its unit.
+/// Name in words and unit of a field such as `rudder_area_m2`.
 pub(crate) fn field(name: &str) -> (String, &'static str) {
     let (stem, unit) = UNITS
         .into_iter()
@@ -81,7 +83,7 @@ pub(crate) fn field(name: &str) -> (String, &'static str) {
     (words, unit)
 }
 
-/// A status as it is shown.
+/// Status in words.
 pub(crate) fn status(status: Status) -> &'static str {
     match status {
         Status::Published => "published",
@@ -91,7 +93,7 @@ pub(crate) fn status(status: Status) -> &'static str {
     }
 }
 
-/// What a status means.
+/// Meaning of a status.
 pub(crate) fn status_meaning(status: Status) -> &'static str {
     match status {
         Status::Published => "figures as published from captive tests, computations or trials",
@@ -103,7 +105,7 @@ pub(crate) fn status_meaning(status: Status) -> &'static str {
     }
 }
 
-/// An estimator in words.
+/// Estimator in words.
 pub(crate) fn method(name: &str) -> &'static str {
     match name {
         "published" => {
@@ -118,7 +120,7 @@ pub(crate) fn method(name: &str) -> &'static str {
     }
 }
 
-/// An axis in words.
+/// Axis in words.
 pub(crate) fn axis(axis: &str) -> &'static str {
     match axis {
         "X" => "surge force X",
@@ -129,11 +131,12 @@ pub(crate) fn axis(axis: &str) -> &'static str {
     }
 }
 
-/// A recorded variable in words, the unit it is shown in, and how.
+/// Recorded variable in words, its displayed unit, and the conversion from SI.
 pub(crate) fn recorded(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
     let plain: fn(f64) -> f64 = |value| value;
     let degrees: fn(f64) -> f64 = |value| value.to_degrees();
     match name {
+        // Directions are shown from 0 to 360 degrees.
         "psi" => ("heading", "deg", |value| (value.to_degrees()).rem_euclid(360.0)),
         "wind_from" => {
             ("direction the wind comes from", "deg", |value| (value.to_degrees()).rem_euclid(360.0))
@@ -155,7 +158,7 @@ pub(crate) fn recorded(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
     }
 }
 
-/// The unit in which an acceleration is shown, and the factor to it from SI.
+/// Displayed unit of an acceleration, and the factor from SI.
 pub(crate) fn acceleration(channel: &str) -> (&'static str, f64) {
     match channel {
         "r" | "p" | "psi" | "phi" => ("deg/s²", 180.0 / std::f64::consts::PI),

@@ -1,13 +1,13 @@
-//! The trials that could be sailed.
+//! Candidate trials of a design.
 
 use sistership_simulation::manoeuvre::Manoeuvre;
 
 use crate::thresholds::THRESHOLDS;
 
-/// One of them.
+/// A candidate trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Candidate {
-    /// What the rudder does.
+    /// Manoeuvre by the rudder.
     pub manoeuvre: Manoeuvre,
     /// Approach speed by that of the model.
     pub speed: f64,
@@ -23,7 +23,7 @@ const TURNS_DEG: [f64; 5] = [10.0, 15.0, 20.0, 25.0, 35.0];
 const ZIGZAGS_DEG: [(f64, f64); 6] =
     [(5.0, 5.0), (10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (30.0, 30.0), (35.0, 20.0)];
 
-/// The manoeuvres of IMO MSC.137(76), in the order in which yards sail them.
+/// Manoeuvres of IMO MSC.137(76), in the usual order of sea trials.
 const STANDARD: [Manoeuvre; 6] = [
     Manoeuvre::Turn { rudder: 35.0 },
     Manoeuvre::Turn { rudder: -35.0 },
@@ -33,13 +33,15 @@ const STANDARD: [Manoeuvre; 6] = [
     Manoeuvre::Zigzag { rudder: -20.0, switch: 20.0 },
 ];
 
-/// Every manoeuvre to both sides, at every speed, and on several headings where something comes
-/// from outside.
+/// Returns all manoeuvres to both sides, at all speeds, and on several headings where an external
+/// influence is present.
 pub(crate) fn candidates(has_outside: bool) -> Vec<Candidate> {
     let turns = TURNS_DEG.into_iter().map(|rudder| Manoeuvre::Turn { rudder });
     let zigzag = |(rudder, switch): (f64, f64)| Manoeuvre::Zigzag { rudder, switch };
     let one_side = turns.chain(ZIGZAGS_DEG.map(zigzag));
+    // Both sides are candidates, as a ship need not be symmetric.
     let both = one_side.flat_map(|manoeuvre| [manoeuvre, mirrored(manoeuvre)]);
+    // Without an external influence all headings give the same information.
     let headings = &THRESHOLDS.headings_deg[..if has_outside { 3 } else { 1 }];
     let at = |manoeuvre: Manoeuvre| {
         let speeds = THRESHOLDS.speeds.into_iter();
@@ -57,7 +59,7 @@ fn mirrored(manoeuvre: Manoeuvre) -> Manoeuvre {
     }
 }
 
-/// Places among candidates of the IMO manoeuvres at full speed, on the first heading.
+/// Indices among candidates of the IMO manoeuvres at full speed, on the first heading.
 pub(crate) fn standard(candidates: &[Candidate]) -> Vec<usize> {
     let place = |manoeuvre: Manoeuvre| {
         candidates.iter().position(|one| one.manoeuvre == manoeuvre && one.speed == 1.0)

@@ -1,5 +1,5 @@
-//! A candidate sailed by the model: the track that would be recorded, and how long everything
-//! takes.
+//! Simulation of a candidate by the model: the track that would be recorded, and the time of all
+//! its phases.
 
 use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, sail_together};
 use sistership_simulation::state::{StateVector, Trajectory, at, speed};
@@ -8,19 +8,20 @@ use sistership_simulation::{Method, Order, Run, Ship};
 use crate::candidates::Candidate;
 use crate::thresholds::THRESHOLDS;
 
-/// A candidate that was sailed.
+/// A simulated candidate.
 #[derive(Debug, Clone)]
 pub(crate) struct Course {
     pub candidate: Candidate,
-    /// With the run before the rudder is executed.
+    /// Track, with the run before the rudder is executed.
     pub track: Trajectory,
-    /// From the execution of the rudder to the end, s.
+    /// Time from the execution of the rudder to the end, s.
     pub manoeuvre_s: f64,
-    /// With the approach, and until the ship is steady at its full speed again, s.
+    /// Time with the approach, and until the ship is steady at its full speed again, s.
     pub takes_s: f64,
 }
 
-/// Sails candidates at one speed in lockstep; why, where one leaves the physical range.
+/// Simulates candidates at one speed in lockstep; the error is the reason, where one leaves the
+/// physical range.
 pub(crate) fn courses(ship: &Ship, candidates: &[Candidate]) -> Vec<Result<Course, String>> {
     let Some(first) = candidates.first() else { return Vec::new() };
     let speed_m_s = first.speed * ship.approach_speed_m_s();
@@ -30,6 +31,7 @@ pub(crate) fn courses(ship: &Ship, candidates: &[Candidate]) -> Vec<Result<Cours
         run_in_s: THRESHOLDS.run_in * length_s,
         ..ManoeuvreSettings::default()
     };
+    // Turns need a limit of their duration; zigzags end by themselves.
     let (turns, zigzags): (Vec<Candidate>, Vec<Candidate>) =
         candidates.iter().partition(|one| matches!(one.manoeuvre, Manoeuvre::Turn { .. }));
     let longest = ManoeuvreSettings { duration_s: Some(THRESHOLDS.longest * length_s), ..settings };
@@ -64,6 +66,7 @@ fn course(
     let last = *track.last().ok_or_else(|| name("nothing was sailed".into()))?;
     let end_s = track.t_s.last().copied().unwrap_or_default();
     let full = ship.approach_speed_m_s();
+    // A slower approach also costs the time of slowing down from full speed.
     let slower = straight_at(full);
     let slowing_s =
         if candidate.speed == 1.0 { 0.0 } else { recovery_s(ship, slower, candidate.speed * full) };
@@ -75,7 +78,7 @@ fn straight_at(speed_m_s: f64) -> StateVector {
     sistership_simulation::state::straight(speed_m_s)
 }
 
-/// A track until the ship has turned so far as a turning circle is sailed.
+/// Cuts a track where the ship has turned by the heading change of a turning circle.
 fn cut(track: Trajectory) -> Trajectory {
     let most = THRESHOLDS.turned_deg.to_radians();
     let end = track.states.iter().position(|state| state[at::PSI].abs() >= most);
@@ -86,16 +89,19 @@ fn cut(track: Trajectory) -> Trajectory {
     kept
 }
 
-/// How long the ship needs, on whatever heading, until it is steady at a speed, s.
+/// Time until the ship is steady at a speed, on any heading, s.
 fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
     let length_s = ship.lpp_m() / speed_m_s;
     let given = THRESHOLDS;
     let (psi, n_rps) = (from[at::PSI], ship.revolutions_at(speed_m_s));
     let most = given.helm_deg.to_radians();
+    // Steady: speed and yaw rate are both near their values on a straight course.
     let is_steady = |state: &StateVector| {
         (speed(state) / speed_m_s - 1.0).abs() < given.steady_speed
             && state[at::R].abs() * length_s < given.steady_rate
     };
+    // Proportional and derivative steering to the heading at the end of the manoeuvre; ends when
+    // steady.
     let bridge = |_: f64, state: &StateVector| {
         let [by_heading, by_rate] = given.helm;
         let error = by_heading * (state[at::PSI] - psi) + by_rate * state[at::R] * length_s;
@@ -109,7 +115,7 @@ fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
         method: Method::Rk4,
     };
     let mut track = Trajectory::default();
-    // One that leaves the physical range while it steadies takes as long as is waited at most.
+    // A ship that leaves the physical range while it steadies takes the longest time allowed.
     match ship.sail(run, &mut track, bridge) {
         Ok(()) => track.t_s.last().copied().unwrap_or_default(),
         Err(_) => run.duration_s,

@@ -1,40 +1,40 @@
-//! Why there is no plan.
+//! Errors of a trial design.
 
 use sistership_identification::refine::RefineError;
 use sistership_model::triangle::TriangleError;
 use sistership_simulation::PlantError;
 
-/// Why there is no plan.
+/// Error of a trial design.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
-    /// The budget is no time.
+    /// The budget is zero, negative or too long.
     #[error("the budget must be above 0 and at most a day")]
     Budget,
     /// The budget is shorter than any trial.
     #[error("no trial fits into {budget_min:.0} min: the shortest takes {shortest_min:.0} min")]
     NoTrialFits {
-        /// What there is, min.
+        /// Budget, min.
         budget_min: f64,
-        /// What is needed, min.
+        /// Duration of the shortest trial, min.
         shortest_min: f64,
     },
     /// The library has no such effect.
     #[error("no effect `{name}`; there are {}", known.join(", "))]
     Effect {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// What there is.
+        /// Names in the library.
         known: Vec<String>,
     },
-    /// No manoeuvre can be sailed.
+    /// The ship cannot carry out any manoeuvre.
     #[error("{model} sails none of the manoeuvres that could be planned: {reason}")]
     SailsNone {
-        /// The model.
+        /// Name of the model.
         model: String,
-        /// Why the last of them failed.
+        /// Reason of a failure.
         reason: String,
     },
-    /// Nothing is uncertain.
+    /// No figure depends on the unknowns.
     #[error(
         "nothing is to be narrowed: no figure of the standard manoeuvres changes with the \
          coefficients of {0}"
@@ -43,13 +43,13 @@ pub enum PlanError {
     /// The law has no rudder.
     #[error("law `{0}` takes no rudder angle: there is nothing to steer")]
     NoRudder(String),
-    /// The model does not sail.
+    /// The model cannot be simulated.
     #[error(transparent)]
     Plant(#[from] PlantError),
-    /// Its posterior does not read.
+    /// The posterior cannot be read.
     #[error("posterior: {0}")]
     Posterior(#[from] TriangleError),
-    /// Nothing can be learned of it.
+    /// The information cannot be computed.
     #[error(transparent)]
     Information(#[from] RefineError),
 }

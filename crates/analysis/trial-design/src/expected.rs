@@ -1,4 +1,4 @@
-//! What the candidates are expected to tell.
+//! Expected information of the candidates.
 
 use nalgebra::DMatrix;
 use sistership_diagnosis::{ExpectedInformation, Unknowns as Asked, as_recorded};
@@ -13,10 +13,10 @@ use crate::targets::{Target, gradients};
 use crate::thresholds::THRESHOLDS;
 use crate::unknowns::Unknowns;
 
-/// The design of courses that are recorded like a trial.
+/// Returns the design of simulated candidates that are recorded like a trial.
 ///
 /// # Errors
-/// Says what the model or a trial lacks.
+/// Returns an error that names what the model or a trial lacks.
 pub(crate) fn design(
     request: &PlanRequest<'_>,
     bare: &Model,
@@ -49,8 +49,8 @@ pub(crate) fn design(
     })
 }
 
-/// Information on the deviations before any planned trial, with that of trials sailed since the
-/// model was fitted, and what the instruments scatter.
+/// Information on the deviations before any planned trial, with that of trials recorded since the
+/// model was fitted, and the noise of the instruments.
 fn known(
     request: &PlanRequest<'_>,
     model: &Model,
@@ -58,12 +58,14 @@ fn known(
     expected: &ExpectedInformation<'_>,
 ) -> Result<(DMatrix<f64>, Noise), PlanError> {
     let size = unknowns.root.nrows();
+    // The deviations are independent with unit variances: their information is the identity.
     let mut before = DMatrix::identity(size, size);
     if request.sailed.is_empty() {
         return Ok((before, request.instruments.noise()));
     }
     let (information, noise) = expected.sailed(request.sailed)?;
     let fitted = model.uncertainty.as_ref().map(|known| known.trials.as_slice());
+    // The information of trials on which the model was fitted is in its posterior already.
     let is_new = |trial: &Trial| !fitted.unwrap_or_default().contains(&trial.name);
     for (trial, information) in request.sailed.iter().zip(&information) {
         if is_new(trial) {

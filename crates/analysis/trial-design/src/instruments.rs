@@ -1,4 +1,4 @@
-//! The instruments by which planned trials are read.
+//! Instruments by which planned trials are recorded.
 
 use serde::{Deserialize, Serialize};
 use sistership_filtering::{Instrument, Noise};
@@ -18,20 +18,21 @@ pub struct Instruments {
 }
 
 impl Instruments {
-    /// Of a sea trial. Source: chosen; differential GNSS, gyro compass and rate gyro.
+    /// Instruments of a sea trial. Source: chosen; differential GNSS, gyro compass and rate gyro.
     pub const SEA_TRIAL: Self =
         Self { position_m: 0.5, velocity_m_s: 0.03, rate_rad_s: 3e-4, angle_rad: 1.5e-3 };
 
-    /// Of a free-running model. Source: chosen; optical or RTK positions and a fibre-optic gyro.
+    /// Instruments of a free-running model. Source: chosen; optical or RTK positions and a
+    /// fibre-optic gyro.
     pub const MODEL: Self =
         Self { position_m: 0.02, velocity_m_s: 0.012, rate_rad_s: 4e-3, angle_rad: 3e-3 };
 
-    /// Those of a ship of this length, m: below ten metres it is a model.
+    /// Default instruments of a ship of this length, m: below ten metres it is a model.
     pub fn of(lpp_m: f64) -> Self {
         if lpp_m < 10.0 { Self::MODEL } else { Self::SEA_TRIAL }
     }
 
-    /// By channel, of which nothing but the scatter is known.
+    /// Noise by channel, of which only the standard deviation is known.
     pub(crate) fn noise(&self) -> Noise {
         let all = [
             (Channel::X, self.position_m),

@@ -1,80 +1,80 @@
-//! What a plan says.
+//! Result of a trial design.
 
 use serde::{Deserialize, Serialize};
 
 use crate::instruments::Instruments;
 
-/// A plan.
+/// Result of a trial design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The model by which it was made.
+    /// Name of the model.
     pub model: String,
-    /// The time that there is, min.
+    /// Available time, min.
     pub budget_min: f64,
-    /// The time that it takes, min.
+    /// Required time, min.
     pub takes_min: f64,
-    /// The trials, in the order in which each gains most a minute.
+    /// Trials, most informative per minute first.
     pub trials: Vec<PlannedTrial>,
-    /// By what share the bands are expected to be narrower in the geometric mean.
+    /// Expected share by which the bands are narrower in the geometric mean.
     pub narrower: f64,
-    /// What is to be narrowed, with the bands that are expected.
+    /// Targets of the design, with their expected bands.
     pub bands: Vec<ExpectedBand>,
-    /// The manoeuvres of IMO in the same time.
+    /// Manoeuvres of IMO in the same time.
     pub standard: StandardProgramme,
-    /// What the trials are expected to be read by; absent where earlier trials say it.
+    /// Expected noise of the instruments; absent where earlier trials determine it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instruments: Option<Instruments>,
-    /// What was taken for granted.
+    /// Assumptions.
     pub remarks: Vec<String>,
 }
 
-/// A trial of a plan.
+/// A trial of a design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannedTrial {
-    /// The manoeuvre, such as `turn 35 deg` or `zigzag -10/10`.
+    /// Manoeuvre, such as `turn 35 deg` or `zigzag -10/10`.
     pub manoeuvre: String,
-    /// Rudder, deg, positive to starboard.
+    /// Rudder angle, deg, positive to starboard.
     pub rudder_deg: f64,
-    /// Change of heading at which it is reversed, deg; absent for a turn.
+    /// Change of heading at which the rudder is reversed, deg; absent for a turn.
     pub switch_deg: Option<f64>,
     /// Approach speed, m/s.
     pub speed_m_s: f64,
-    /// Heading of the approach, deg; absent where none is better than another.
+    /// Heading of the approach, deg; absent where all headings are equal.
     pub heading_deg: Option<f64>,
-    /// From the execution of the rudder to the end, min.
+    /// Time from the execution of the rudder to the end, min.
     pub manoeuvre_min: f64,
-    /// With the approach, and until the ship is steady at its full speed again, min.
+    /// Time with the approach, and until the ship is steady at its full speed again, min.
     pub takes_min: f64,
-    /// By what share the bands are narrower in the geometric mean with this trial and those before
+    /// Share by which the bands are narrower in the geometric mean with this trial and those before
     /// it.
     pub narrower: f64,
 }
 
-/// A figure or parameter with the bands that are expected, all half widths of 95 %.
+/// A figure or parameter with its expected bands, all half widths of 95 %.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExpectedBand {
-    /// The figure, such as `turn 35 deg: advance`, or `effect/form: parameter`.
+    /// Name of the figure, such as `turn 35 deg: advance`, or `effect/form: parameter`.
     pub figure: String,
-    /// Its unit; empty where the name says it.
+    /// Unit; empty where the name contains it.
     pub unit: String,
-    /// What the model says.
+    /// Value by the model.
     pub value: f64,
-    /// Now.
+    /// Half width at present.
     pub now: f64,
-    /// After the trials of the plan.
+    /// Half width after the trials of the design.
     pub after: f64,
-    /// After the manoeuvres of IMO in the same time.
+    /// Half width after the manoeuvres of IMO in the same time.
     pub after_standard: f64,
 }
 
-/// The manoeuvres of IMO MSC.137(76) in the same time: turns at 35 deg, zigzags 10/10 and 20/20 to
-/// both sides, again from the first where time is left.
+/// Manoeuvres of IMO MSC.137(76) in the same time: turns at 35 deg, zigzags 10/10 and 20/20 to both
+/// sides, repeated from the first where time is left.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StandardProgramme {
-    /// The manoeuvres.
+    /// Trials.
     pub trials: Vec<PlannedTrial>,
-    /// The time that they take, min.
+    /// Required time, min.
     pub takes_min: f64,
-    /// By what share the bands are narrower in the geometric mean.
+    /// Share by which the bands are narrower in the geometric mean.
     pub narrower: f64,
 }

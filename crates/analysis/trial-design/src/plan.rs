@@ -1,4 +1,4 @@
-//! From a request to a plan.
+//! Steps from a request to a trial design.
 
 use rayon::prelude::*;
 use sistership_model::Model;
@@ -18,11 +18,12 @@ use crate::targets::targets;
 use crate::thresholds::THRESHOLDS;
 use crate::unknowns::Unknowns;
 
-/// The trials that narrow the bands of the IMO criteria, and the effects that are to be told apart,
-/// most.
+/// Returns the trials that reduce the uncertainty bands of the IMO criteria, and of the effects to
+/// be distinguished, most.
 ///
 /// # Errors
-/// Says what the request, the model or its law lacks, or that nothing fits into the budget.
+/// Returns an error that names what the request, the model or its law lacks, or one if no trial
+/// fits into the budget.
 pub fn plan(request: &PlanRequest<'_>) -> Result<Plan, PlanError> {
     request.check()?;
     let Setting { bare, ship, like, effects, mut remarks } = Setting::new(request)?;
@@ -48,8 +49,9 @@ fn too_short(request: &PlanRequest<'_>, design: &Design) -> PlanError {
     PlanError::NoTrialFits { budget_min: request.budget_s / 60.0, shortest_min: shortest_s / 60.0 }
 }
 
-/// Every candidate that the ship sails.
+/// All candidates that the model can simulate.
 fn all_courses(ship: &Ship, model: &Model, has_outside: bool) -> Result<Vec<Course>, PlanError> {
+    // Candidates of one speed are simulated in lockstep.
     let mut by_speed: Vec<Vec<_>> = vec![Vec::new(); THRESHOLDS.speeds.len()];
     for candidate in candidates(has_outside) {
         let place = THRESHOLDS.speeds.iter().position(|speed| *speed == candidate.speed);
@@ -59,6 +61,7 @@ fn all_courses(ship: &Ship, model: &Model, has_outside: bool) -> Result<Vec<Cour
         by_speed.par_iter().flat_map_iter(|some| courses(ship, some)).collect();
     let reason = sailed.iter().find_map(|course| course.as_ref().err()).cloned();
     let all: Vec<Course> = sailed.into_iter().flatten().collect();
+    // Some candidates may fail, such as hard turns of an unstable model; an error only if all do.
     match reason.filter(|_| all.is_empty()) {
         Some(reason) => Err(PlanError::SailsNone { model: model.name.clone(), reason }),
         None => Ok(all),

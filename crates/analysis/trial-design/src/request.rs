@@ -1,4 +1,4 @@
-//! What is asked for.
+//! Request of a trial design.
 
 use std::sync::Arc;
 
@@ -9,31 +9,31 @@ use crate::error::PlanError;
 use crate::instruments::Instruments;
 use crate::thresholds::THRESHOLDS;
 
-/// What a plan is asked for.
+/// Inputs of a trial design.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanRequest<'a> {
-    /// The model as it is known so far.
+    /// Model, with its present uncertainty.
     pub model: &'a Model,
-    /// Its law, without effects.
+    /// Law of the model, without effects.
     pub law: &'a Law,
-    /// The library of effects.
+    /// Library of effects.
     pub library: &'a [Arc<Effect>],
     /// Time for all trials, with their approaches, s.
     pub budget_s: f64,
-    /// Effects that are to be told apart, by name.
+    /// Names of effects to be distinguished.
     pub apart: &'a [String],
-    /// Trials that were sailed already and that the model was not fitted on: new ones are recorded
-    /// as the first of these.
+    /// Trials that are recorded already and on which the model was not fitted: new ones are
+    /// recorded like the first of these.
     pub sailed: &'a [&'a Trial],
-    /// What will read them, where none was sailed.
+    /// Instruments of planned trials, where none is recorded yet.
     pub instruments: Instruments,
 }
 
 impl PlanRequest<'_> {
-    /// Refuses a budget that is no time, and effects that the library does not have.
+    /// Checks the budget and the names of the effects.
     ///
     /// # Errors
-    /// Says which.
+    /// Returns an error for a budget out of range, or an effect that the library does not have.
     pub fn check(&self) -> Result<(), PlanError> {
         if !(self.budget_s > 0.0 && self.budget_s <= THRESHOLDS.longest_budget_s) {
             return Err(PlanError::Budget);

@@ -1,4 +1,4 @@
-//! A design as a plan says it.
+//! Report of a design.
 
 use sistership_simulation::manoeuvre::Manoeuvre;
 use sistership_simulation::state::at;
@@ -14,8 +14,8 @@ use crate::thresholds::THRESHOLDS;
 /// Half the width of a band that holds 95 % of a normal distribution, by its deviation.
 const HALF_WIDTH: f64 = 1.96;
 
-/// The courses that were chosen, what they are expected to leave, and the IMO manoeuvres beside
-/// them.
+/// Reports the selected candidates, the bands that are expected after them, and the IMO manoeuvres
+/// for comparison.
 pub(crate) fn said(
     request: &PlanRequest<'_>,
     design: &Design,
@@ -37,13 +37,14 @@ pub(crate) fn said(
     }
 }
 
-/// Courses in an order.
+/// Planned trials of an order of candidates.
 fn trials(
     request: &PlanRequest<'_>,
     design: &Design,
     courses: &[Course],
     order: &[usize],
 ) -> Vec<PlannedTrial> {
+    // Without effects to be distinguished the heading has no influence.
     let by_heading = !request.apart.is_empty();
     let one = |(place, &which): (usize, &usize)| {
         let course = &courses[which];
@@ -65,7 +66,7 @@ fn trials(
     order.iter().enumerate().map(one).collect()
 }
 
-/// The IMO manoeuvres as far as the budget goes, and the bands after either.
+/// IMO manoeuvres within the budget, and the bands after the design and after these.
 fn beside_standard(
     request: &PlanRequest<'_>,
     design: &Design,
@@ -73,6 +74,7 @@ fn beside_standard(
     targets: &[Target],
 ) -> (StandardProgramme, Vec<ExpectedBand>) {
     let all: Vec<_> = courses.iter().map(|course| course.candidate).collect();
+    // The comparison uses the same budget.
     let sailed = as_far_as(design, &standard(&all), request.budget_s);
     let of = |places: &[usize]| design.deviations(design.with(places)).unwrap_or_default();
     let (now, after, after_standard) = (of(&[]), of(chosen), of(&sailed));
@@ -94,7 +96,7 @@ fn beside_standard(
     (programme, targets.iter().enumerate().map(band).collect())
 }
 
-/// Candidates one after the other, from the first again after the last, until one does not fit.
+/// Candidates in order, repeated from the first, until one does not fit.
 fn as_far_as(design: &Design, order: &[usize], budget_s: f64) -> Vec<usize> {
     let mut sailed = Vec::new();
     for &place in order.iter().cycle().take(THRESHOLDS.most_trials) {

@@ -1,24 +1,25 @@
-//! The search among designs: what gains most a minute is added, then places are exchanged (Fedorov
-//! 1972, Theory of optimal experiments, chapter 3) under the same budget.
+//! Search among designs: the candidate with the largest gain per minute is added, then candidates
+//! are exchanged (Fedorov 1972, Theory of optimal experiments, chapter 3) under the same budget.
 
 use rayon::prelude::*;
 
 use crate::design::Design;
 use crate::thresholds::THRESHOLDS;
 
-/// The best set that was found under a budget (s), in the order in which each gains most a minute.
+/// Best set that was found under a budget (s), most informative per minute first.
 pub(crate) fn best(design: &Design, budget_s: f64) -> Vec<usize> {
     let mut chosen = filled(design, budget_s, Vec::new());
     for _ in 0..THRESHOLDS.rounds {
         if !exchanged(design, budget_s, &mut chosen) {
             break;
         }
+        // An exchange for a shorter trial may leave time for a further one.
         chosen = filled(design, budget_s, chosen);
     }
     ordered(design, chosen)
 }
 
-/// Adds whatever gains most a minute until nothing fits.
+/// Adds the candidate with the largest gain per minute until none fits.
 fn filled(design: &Design, budget_s: f64, mut chosen: Vec<usize>) -> Vec<usize> {
     let all: Vec<usize> = (0..design.takes_s.len()).collect();
     while chosen.len() < THRESHOLDS.most_trials {
@@ -29,7 +30,8 @@ fn filled(design: &Design, budget_s: f64, mut chosen: Vec<usize>) -> Vec<usize> 
     chosen
 }
 
-/// The place among some candidates of the one that gains most a minute beside those chosen.
+/// Index, among some candidates, of the one with the largest gain per minute in addition to those
+/// selected.
 fn next(design: &Design, chosen: &[usize], among: &[usize], left_s: f64) -> Option<usize> {
     let now = design.with(chosen);
     let score = design.score(now.clone());
@@ -38,16 +40,19 @@ fn next(design: &Design, chosen: &[usize], among: &[usize], left_s: f64) -> Opti
         let gain = score - design.score(&now + &design.information[candidate]);
         (takes_s <= left_s && gain > 0.0).then_some((gain / takes_s, place))
     };
+    // Collected in order: ties are resolved in the same way on any number of threads.
     let rates: Vec<(f64, usize)> = among.par_iter().enumerate().filter_map(rate).collect();
     rates.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
 }
 
-/// Exchanges each place for the best that fits there; whether any was.
+/// Exchanges each selected candidate for the best that fits in its place; returns true if any was
+/// exchanged.
 fn exchanged(design: &Design, budget_s: f64, chosen: &mut [usize]) -> bool {
     let mut any = false;
     for place in 0..chosen.len() {
         let others: Vec<usize> =
             (0..chosen.len()).filter(|other| *other != place).map(|other| chosen[other]).collect();
+        // The time of the replaced trial is available again.
         let (beside, left_s) = (design.with(&others), budget_s - design.lasts_s(&others));
         let score = |candidate: usize| {
             let fits = design.takes_s[candidate] <= left_s;
@@ -72,7 +77,7 @@ fn ordered(design: &Design, mut rest: Vec<usize>) -> Vec<usize> {
     while let Some(place) = next(design, &order, &rest, f64::INFINITY) {
         order.push(rest.swap_remove(place));
     }
-    // What gains nothing any more beside the others keeps its place at the end.
+    // Trials without a further gain stay at the end.
     order.extend(rest);
     order
 }

@@ -1,5 +1,5 @@
-//! What a plan is made with: the ship, what its trials will record, and the effects that they are
-//! to tell apart.
+//! Context of a design: the ship, the channels of its trials, and the effects that they have to
+//! distinguish.
 
 use sistership_diagnosis::forms_of;
 use sistership_filtering::EffectCandidate;
@@ -12,27 +12,28 @@ use crate::error::PlanError;
 use crate::request::PlanRequest;
 use crate::thresholds::THRESHOLDS;
 
-/// All of it.
+/// Context of a design.
 pub(crate) struct Setting {
-    /// The model without the effects that are to be told apart.
+    /// Model without the effects to be distinguished.
     pub bare: Model,
-    /// The ship, without any effect: what comes from outside turns with the heading.
+    /// Ship without any effect: external influences turn with the heading.
     pub ship: Ship,
-    /// What planned trials are recorded like.
+    /// Trial whose channels and interval planned trials have.
     pub like: Trial,
-    /// The forms of the effects.
+    /// Forms of the effects.
     pub effects: Vec<EffectCandidate>,
-    /// What is said of those that such trials do not show.
+    /// Remarks on effects that such trials do not show.
     pub remarks: Vec<String>,
 }
 
 impl Setting {
-    /// What a request needs.
+    /// Prepares the context of a request.
     ///
     /// # Errors
-    /// The model does not sail, or its law has no rudder.
+    /// Returns an error if the model cannot be simulated, or if its law has no rudder.
     pub fn new(request: &PlanRequest<'_>) -> Result<Self, PlanError> {
         let mut bare = request.model.clone();
+        // Effects to be distinguished are unknown, so they are not part of the known model.
         bare.effects.retain(|own| !request.apart.contains(&own.name));
         let ship = ship(request)?;
         let like = like(request, &ship);
@@ -60,8 +61,8 @@ fn ship(request: &PlanRequest<'_>) -> Result<Ship, PlanError> {
     Ok(ship)
 }
 
-/// What planned trials are recorded like: the first that was sailed, or every motion of the ship,
-/// its rudder and revolutions.
+/// Trial whose channels and interval planned trials have: the first recorded one, or all motions of
+/// the ship, its rudder and revolutions.
 fn like(request: &PlanRequest<'_>, ship: &Ship) -> Trial {
     if let Some(first) = request.sailed.first() {
         return (*first).clone();
@@ -71,6 +72,7 @@ fn like(request: &PlanRequest<'_>, ship: &Ship) -> Trial {
     let moves =
         |channel: &Channel| ship.has_roll() || !matches!(channel, Channel::Phi | Channel::P);
     let channels = motions.filter(moves).chain([Channel::Delta, Channel::N]);
+    // Two samples suffice: only channels and interval are used.
     Trial {
         name: "planned".into(),
         t_s: vec![0.0, interval_s],

@@ -1,5 +1,5 @@
-//! What is to be narrowed: figures of the IMO criteria, and parameters of effects, by how they
-//! change with the deviations of the unknowns.
+//! Targets of a design: figures of the IMO criteria, and parameters of effects, with their changes
+//! by the deviations of the unknowns.
 
 use nalgebra::{DMatrix, DVector};
 use sistership_assessment::uncertainty::{Drawn, Sampling, figures};
@@ -9,7 +9,7 @@ use sistership_model::law::Law;
 use crate::thresholds::THRESHOLDS;
 use crate::unknowns::Unknowns;
 
-/// The figures that IMO MSC.137(76) judges, each to either side, and their units.
+/// Figures that IMO MSC.137(76) judges, each to either side, and their units.
 const FIGURES: [(&str, &str); 11] = [
     ("turn 35 deg: advance", "m"),
     ("turn -35 deg: advance", "m"),
@@ -24,26 +24,27 @@ const FIGURES: [(&str, &str); 11] = [
     ("zigzag -20/20: first overshoot", "deg"),
 ];
 
-/// One of them.
+/// A target of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Target {
-    /// A figure, or `effect: parameter`.
+    /// Figure, or `effect: parameter`.
     pub name: String,
-    /// Its unit; empty where the name says it.
+    /// Unit; empty where the name contains it.
     pub unit: &'static str,
-    /// What the model says.
+    /// Value by the model.
     pub value: f64,
-    /// Its change with each deviation.
+    /// Change with each deviation.
     pub gradient: DVector<f64>,
 }
 
-/// Everything that is to be narrowed, and the figures that the model does not reach.
+/// Targets of a design, and the figures that the model does not reach.
 pub(crate) fn targets(
     model: &Model,
     law: &Law,
     unknowns: &Unknowns,
 ) -> Option<(Vec<Target>, Vec<String>)> {
     let count = unknowns.coefficients.len();
+    // The estimate first, then one deviation to either side of each coefficient.
     let models: Vec<Model> = std::iter::once(unknowns.moved(model, 0, 0.0))
         .chain((0..count).flat_map(|j| [1.0, -1.0].map(|side| unknowns.moved(model, j, side))))
         .collect();
@@ -63,12 +64,13 @@ pub(crate) fn targets(
         FIGURES.iter().map(|(name, _)| *name).filter(|name| !estimate.contains_key(*name));
     let unreached = unreached.map(str::to_owned).collect();
     all.extend(of_effects(unknowns));
+    // A figure that does not depend on the unknowns cannot be improved.
     all.retain(|target| target.gradient.norm() > THRESHOLDS.least_scatter * target.value.abs());
     Some((all, unreached))
 }
 
-/// The change of a figure by a deviation: the secant over one to either side, so that a posterior
-/// as wide as a figure is curved is judged over its own width (as the sigma points of Julier and
+/// Change of a figure by a deviation: the secant over one to either side, so that a posterior as
+/// wide as a figure is curved is judged over its own width (as the sigma points of Julier and
 /// Uhlmann 2004, Proceedings of the IEEE 92, 401-422); over one side where the other does not reach
 /// it.
 fn secant(name: &str, value: f64, above: &Drawn, below: &Drawn) -> f64 {
@@ -88,6 +90,7 @@ fn of_effects(unknowns: &Unknowns) -> Vec<Target> {
     });
     let one = |(k, (effect, name, value)): (usize, (&_, &String, f64))| {
         let effect: &sistership_filtering::EffectCandidate = effect;
+        // A parameter of an effect is an unknown itself: its gradient is its own deviation.
         let mut gradient = DVector::zeros(size);
         gradient[first + k] = unknowns.root[(first + k, first + k)];
         Target { name: format!("{}: {name}", effect.key()), unit: "", value, gradient }
@@ -95,7 +98,7 @@ fn of_effects(unknowns: &Unknowns) -> Vec<Target> {
     parameters.enumerate().map(one).collect()
 }
 
-/// Their changes as one matrix, targets by deviations.
+/// Gradients of targets as one matrix, targets by deviations.
 pub(crate) fn gradients(targets: &[Target]) -> DMatrix<f64> {
     let rows: Vec<_> = targets.iter().map(|target| target.gradient.transpose()).collect();
     DMatrix::from_rows(&rows)

@@ -1,4 +1,4 @@
-//! What is not known: coefficients by the model's posterior, and parameters of effects by the
+//! Unknowns of a design: coefficients by the model's posterior, and parameters of effects by the
 //! library's priors, all in deviations that are independent before any new trial.
 
 use nalgebra::DMatrix;
@@ -8,7 +8,7 @@ use sistership_model::Model;
 use crate::error::PlanError;
 use crate::thresholds::THRESHOLDS;
 
-/// The unknowns `x = R z` about what the model states, `z` being independent with unit variances.
+/// Unknowns `x = R z` about the values of the model, `z` being independent with unit variances.
 pub(crate) struct Unknowns {
     /// Names of the coefficients.
     pub coefficients: Vec<String>,
@@ -16,15 +16,16 @@ pub(crate) struct Unknowns {
     pub effects: Vec<EffectCandidate>,
     /// `R`, unknowns by deviations, lower triangular.
     pub root: DMatrix<f64>,
-    /// What is said of it.
+    /// Remark on their origin.
     pub remark: Option<String>,
 }
 
 impl Unknowns {
-    /// By the posterior of a model; where it has none, each coefficient by itself within a share.
+    /// Creates the unknowns from the posterior of a model; without one, each coefficient is
+    /// independent within a share of its value.
     ///
     /// # Errors
-    /// The posterior does not read.
+    /// Returns an error if the posterior cannot be read.
     pub fn new(model: &Model, effects: Vec<EffectCandidate>) -> Result<Self, PlanError> {
         let (coefficients, rows, remark) = match model.posterior() {
             Some(posterior) => (posterior.names.clone(), posterior.root()?, None),
@@ -36,20 +37,22 @@ impl Unknowns {
         for (i, row) in rows.iter().enumerate() {
             row.iter().enumerate().for_each(|(j, value)| root[(i, j)] = *value);
         }
+        // Parameters of effects are independent, with the deviations of the library's priors.
         let deviations =
             effects.iter().flat_map(|e| e.form.parameters.values().map(|p| p.prior_deviation));
         deviations.enumerate().for_each(|(k, d)| root[(count + k, count + k)] = d);
         Ok(Self { coefficients, effects, root, remark })
     }
 
-    /// Information on the unknowns as information on the deviations.
+    /// Transforms information on the unknowns to information on the deviations: `R' F R`.
     pub fn on_deviations(&self, information: &DMatrix<f64>) -> DMatrix<f64> {
         self.root.transpose() * information * &self.root
     }
 
-    /// The model with its coefficients moved by so many deviations of one.
+    /// Model with its coefficients moved by `by` times one deviation.
     pub fn moved(&self, model: &Model, deviation: usize, by: f64) -> Model {
         let mut moved = Model { posterior: None, uncertainty: None, ..model.clone() };
+        // The moved model is no fit of trials: their validity range does not apply.
         moved.validity = None;
         for (place, name) in self.coefficients.iter().enumerate() {
             if let Some(quantity) = moved.coefficients.get_mut(name) {

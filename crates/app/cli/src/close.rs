@@ -1,20 +1,23 @@
-//! Names close to one that is not known.
+//! Suggestions for unknown names.
 
-/// Names that a slip of the fingers leads away from, or that contain what was written.
+/// Returns at most five known names that differ by a few letters, or that contain the given name or
+/// are contained in it.
 pub fn close_names<'a>(name: &str, known: &'a [String]) -> Vec<&'a str> {
     let name = name.to_lowercase();
     let near = |known: &&String| {
         let contains = name.len() >= 3 && (known.contains(&name) || name.contains(known.as_str()));
+        // One letter for each five may be wrong, and one in any case.
         contains || distance(&name, known) <= 1 + name.chars().count() / 5
     };
     known.iter().filter(near).map(String::as_str).take(5).collect()
 }
 
-/// Letters to insert, delete or exchange between two words.
+/// Levenshtein distance: the number of letters to insert, delete or exchange.
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, from) in a.chars().enumerate() {
+        // One row of the table is enough; `diagonal` is the cell above and to the left.
         let mut diagonal = std::mem::replace(&mut row[0], i + 1);
         for (j, to) in b.iter().enumerate() {
             let exchanged = diagonal + usize::from(from != *to);

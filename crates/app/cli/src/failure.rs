@@ -1,20 +1,20 @@
-//! Why a command ends without success, and the exit status that says so.
+//! Failures of commands, and their exit status.
 
 use sistership_model::FileError;
 
-/// Why a command ends without success.
+/// Failure of a command.
 #[derive(Debug, PartialEq)]
 pub enum Failure {
     /// The call is wrong: exit status 2.
     Call(String),
-    /// The data or the model says no: exit status 1.
+    /// The data or the model is refused: exit status 1.
     Refused(String),
-    /// The same, with the reason already printed.
+    /// Same as [`Failure::Refused`], with the reason already printed.
     Told,
 }
 
 impl Failure {
-    /// The exit status.
+    /// Returns the exit status.
     pub fn status(&self) -> u8 {
         match self {
             Self::Call(_) => 2,
@@ -22,7 +22,7 @@ impl Failure {
         }
     }
 
-    /// What is still to be said.
+    /// Returns the message that is still to be printed.
     pub fn message(&self) -> Option<&str> {
         match self {
             Self::Call(message) | Self::Refused(message) => Some(message),
@@ -30,7 +30,7 @@ impl Failure {
         }
     }
 
-    /// Both reasons, one after the other; a call that is wrong stays one.
+    /// Joins two failures; if one of them is a wrong call, the result is one.
     fn and(self, other: Self) -> Self {
         let lines: Vec<&str> = [&self, &other].into_iter().filter_map(Self::message).collect();
         match (lines.is_empty(), self.status().max(other.status())) {
@@ -41,7 +41,7 @@ impl Failure {
     }
 }
 
-/// Both of two, or every reason why not: a person mends all of a call at once.
+/// Returns both values, or all failures, so that a person can correct all faults of a call at once.
 pub fn both<A, B>(a: Result<A, Failure>, b: Result<B, Failure>) -> Result<(A, B), Failure> {
     match (a, b) {
         (Ok(a), Ok(b)) => Ok((a, b)),
@@ -50,10 +50,11 @@ pub fn both<A, B>(a: Result<A, Failure>, b: Result<B, Failure>) -> Result<(A, B)
     }
 }
 
-/// All of many, or every reason why not.
+/// Returns all values, or all failures.
 pub fn all<T>(each: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>, Failure> {
     let mut all = Ok(Vec::new());
     for one in each {
+        // Items are evaluated after a failure, too, to collect every reason.
         all = both(all, one).map(|(mut all, one)| {
             all.push(one);
             all
@@ -68,7 +69,7 @@ impl From<FileError> for Failure {
     }
 }
 
-/// A refusal that names a file.
+/// Creates a refusal that names a file.
 pub fn about_file(path: &std::path::Path, what: impl std::fmt::Display) -> Failure {
     Failure::Refused(format!("{}: {what}", path.display()))
 }

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Atomic output files: complete or absent.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use tempfile::NamedTempFile;
 
 use crate::failure::{Failure, about_file};
 
-/// A file to be written: the place is known to be writable before the work begins.
+/// Output file whose place was checked to be writable before the work.
 #[derive(Debug)]
 pub struct PromisedFile {
     path: PathBuf,
@@ -15,12 +15,13 @@ pub struct PromisedFile {
 }
 
 impl PromisedFile {
-    /// Makes sure that a file can be written, without touching what is there.
+    /// Checks that a file can be written, without changing an existing one.
     ///
     /// # Errors
-    /// Says why the file could not be written, or that it is one of `inputs`, which must not be
-    /// overwritten.
+    /// Returns an error with the reason if the file cannot be written, or if it is one of `inputs`,
+    /// which must not be overwritten.
     pub fn new(path: &Path, inputs: &[PathBuf]) -> Result<Self, Failure> {
+        // Symbolic links are followed, so that an input cannot be overwritten under another name.
         let place = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         if inputs.iter().filter_map(|input| input.canonicalize().ok()).any(|input| input == place) {
             return Err(about_file(
@@ -35,11 +36,12 @@ impl PromisedFile {
         Ok(Self { path: place, file })
     }
 
-    /// Writes the file and puts it into its place.
+    /// Writes the file and moves it to its place.
     ///
     /// # Errors
-    /// Says why it could not be written; what was there before is kept.
+    /// Returns an error with the reason if it could not be written; the old file is kept.
     pub fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
+        // Synchronised before the rename: after a crash the place has the old file or the new one.
         let written = self.file.write_all(bytes).and_then(|()| self.file.as_file().sync_all());
         let kept = written
             .and_then(|()| self.file.persist(&self.path).map(|_| ()).map_err(|error| error.error));
@@ -56,7 +58,8 @@ fn unwritable(place: &Path, error: &std::io::Error) -> String {
     }
 }
 
-/// A temporary file in the folder of another, with the permissions that a new file gets.
+/// Creates a temporary file in the folder of another, with the permissions of a new file. In the
+/// same folder a rename is atomic.
 fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
     let folder =
         path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -1,23 +1,23 @@
-//! A folder of result files, one for each trial.
+//! Output folder with one file for each trial.
 
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, about_file};
 use crate::files;
 
-/// A file of the folder.
+/// File of the folder.
 #[derive(Debug)]
 pub struct PromisedTrack {
     /// The file.
     pub file: files::PromisedFile,
-    /// Its path as people are told.
+    /// Its path in messages.
     pub shown: String,
 }
 
-/// Promises one CSV file for each trial; the folder is made where it does not exist.
+/// Prepares one CSV file for each trial; the folder is created if it does not exist.
 ///
 /// # Errors
-/// The folder cannot be written, or a file of it is among the inputs.
+/// Returns an error if the folder cannot be written, or if a file of it is among the inputs.
 pub fn promise(
     folder: &Path,
     trials: &[&str],
@@ -35,7 +35,7 @@ pub fn promise(
     file_names(trials).into_iter().map(one).collect()
 }
 
-/// The trial's own file name; with its folder where two have the same.
+/// Returns the file name of each trial, with its folder if two have the same name.
 fn file_names(trials: &[&str]) -> Vec<String> {
     let stem =
         |name: &str| Path::new(name).with_extension("").to_string_lossy().replace(['/', '\\'], "-");
@@ -45,6 +45,8 @@ fn file_names(trials: &[&str]) -> Vec<String> {
     for (index, trial) in trials.iter().enumerate() {
         let alone = lasts.iter().filter(|other| **other == lasts[index]).count() == 1;
         let name = if alone { lasts[index].clone() } else { stem(trial) };
+        // Two paths may give the same name after separators are replaced; the number makes it
+        // unique.
         let taken = names.contains(&format!("{name}.csv"));
         names.push(if taken { format!("{name}-{}.csv", index + 1) } else { format!("{name}.csv") });
     }

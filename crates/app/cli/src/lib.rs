@@ -1,8 +1,8 @@
-//! The command line of Sistership: the work of the server, on files.
+//! Command line of Sistership: the functions of the server, on files.
 //!
-//! Exit status: 0 done, 1 the data or the model says no (with the reason), 2 the call is wrong.
-//! With `--json` one JSON document goes to standard output and nothing else; progress, warnings and
-//! errors go to standard error.
+//! Exit status: 0 success, 1 the data or the model was refused (with the reason), 2 the call is
+//! wrong. With `--json` one JSON document goes to standard output and nothing else; progress,
+//! warnings and errors go to standard error.
 
 mod allocator;
 mod arguments;
@@ -30,8 +30,9 @@ use clap::Parser;
 use crate::arguments::{Arguments, Command};
 use crate::failure::Failure;
 
-/// Runs what the process' arguments ask for.
+/// Runs the command of the process' arguments.
 pub fn run() -> ExitCode {
+    // First of all, before any thread is started.
     allocator::give_back();
     let arguments = Arguments::parse();
     match dispatch(&arguments) {

@@ -1,4 +1,4 @@
-//! What `SHIP` and `MODEL` name: an entry of the zoo, or a YAML file.
+//! Resolution of `SHIP` and `MODEL`: an entry of the zoo, or a YAML file.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,10 +11,10 @@ use crate::output::note;
 use crate::weights;
 use crate::zoo::text_of;
 
-/// The vessel that `SHIP` names.
+/// Returns the vessel that `SHIP` names.
 ///
 /// # Errors
-/// It is neither a ship of the zoo nor a vessel file that reads.
+/// Returns an error if it is neither a ship of the zoo nor a valid vessel file.
 pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
     if let Some(vessel) = zoo.vessel(name) {
         return Ok(Arc::clone(vessel));
@@ -23,6 +23,7 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
     if path.is_file() {
         return vessel_file(zoo, path);
     }
+    // A model's name where a ship is needed: the message names the ship.
     if let Some((ship, _)) = name.split_once('/').filter(|(ship, _)| zoo.vessel(ship).is_some()) {
         return Err(Failure::Refused(format!(
             "`{name}` is a model; a ship is asked for here: `{ship}`"
@@ -31,10 +32,10 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
     Err(unknown(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
 }
 
-/// The vessel of a file.
+/// Reads the vessel of a file.
 ///
 /// # Errors
-/// It is no vessel file, or does not read.
+/// Returns an error if it is no vessel file, or cannot be parsed.
 pub fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
     let text = text_of(path)?;
     match kind_of(&text) {
@@ -54,17 +55,19 @@ pub fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
 fn read_vessel(zoo: &Zoo, path: &Path, text: &str) -> Result<Vessel, FileError> {
     let shown = path.display().to_string();
     let vessel = Vessel::parse(&shown, text)?;
+    // The zoo checks the models against its laws, but does not know the path of the file.
     zoo.check_models(&vessel).map_err(|error| FileError { file: shown, ..error })?;
     Ok(vessel)
 }
 
-/// The model that `MODEL` names, and its law.
+/// Returns the model that `MODEL` names, and its law.
 ///
 /// # Errors
-/// It is neither a model of the zoo nor a file that holds one.
+/// Returns an error if it is neither a model of the zoo nor a file with one.
 pub fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     let ship = name.split_once('/').map_or(name, |(ship, _)| ship);
     let path = Path::new(name);
+    // Names of the zoo have precedence over files, as for ships.
     let model = if zoo.vessel(ship).is_some() {
         zoo.model(name)?
     } else if path.is_file() {
@@ -76,11 +79,11 @@ pub fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     Ok((model, law))
 }
 
-/// The model that `MODEL` names without what was learned beside its law, and its law; it says so
-/// where that is less than the model.
+/// Returns the model that `MODEL` names without its learned correction, and its law; notes if a
+/// correction was removed.
 ///
 /// # Errors
-/// As [`model`].
+/// Returns an error if it is neither a model of the zoo nor a file with one.
 pub fn foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     let (model, law) = model(zoo, name)?;
     if model.branch.is_some() {
@@ -89,10 +92,10 @@ pub fn foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     Ok((model.foundation(), law))
 }
 
-/// The law of a model.
+/// Returns the law of a model.
 ///
 /// # Errors
-/// The zoo does not have it.
+/// Returns an error if the zoo does not have it.
 pub fn law_of(zoo: &Zoo, model: &Model) -> Result<Arc<Law>, Failure> {
     let missing = || Failure::Refused(format!("{}: there is no law `{}`", model.name, model.law));
     zoo.law(&model.law).cloned().ok_or_else(missing)
@@ -114,16 +117,17 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
         _ => {
             let law_of = |law: &str| zoo.law(law).map(|law| (**law).clone());
             let mut model = Model::parse(&shown, &text, &law_of)?;
+            // Weights are looked for next to the model file.
             weights::attach(path, &mut model)?;
             Ok(model)
         }
     }
 }
 
-/// Refuses a file of another kind; `what` is what one of this kind is called.
+/// Checks the kind of a file; `what` is a noun for that kind, with article.
 ///
 /// # Errors
-/// The file says that it is something else, or nothing.
+/// Returns an error if the file has another kind or none.
 pub fn must_be(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Failure> {
     match kind_of(text) {
         DocumentKind::Named(found) if found != kind => {
@@ -137,17 +141,17 @@ pub fn must_be(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Fa
     }
 }
 
-/// A noun without its article.
+/// Removes the article of a noun.
 fn bare(what: &str) -> &str {
     what.split_once(' ').map_or(what, |(_, noun)| noun)
 }
 
-/// What a document says it is.
+/// Kind of a document.
 enum DocumentKind {
     Named(String),
-    /// It says nothing.
+    /// It has no `kind`.
     None,
-    /// It is no YAML; reading it for good tells the line.
+    /// It is no YAML; parsing it as the wanted kind reports the line.
     Broken,
 }
 
@@ -161,7 +165,7 @@ fn kind_of(text: &str) -> DocumentKind {
     }
 }
 
-/// Ships that have a model, or `ship/model` for each of them.
+/// Lists the ships with a model, or `ship/model` for each model.
 fn model_names(zoo: &Zoo, full: bool) -> Vec<String> {
     let of_ship = |vessel: &Arc<Vessel>| -> Vec<String> {
         let ship = vessel.name();
@@ -176,6 +180,7 @@ fn model_names(zoo: &Zoo, full: bool) -> Vec<String> {
 }
 
 fn unknown(name: &str, known: Vec<String>) -> Failure {
+    // Suggestions first; the whole list only if there are none.
     let close: Vec<String> =
         close_names(name, &known).into_iter().map(|known| format!("`{known}`")).collect();
     let hint = if close.is_empty() {

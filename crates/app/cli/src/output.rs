@@ -1,4 +1,4 @@
-//! Standard output for results, standard error for everything else.
+//! Output: results on standard output, everything else on standard error.
 
 use std::io::{ErrorKind, Write};
 
@@ -9,7 +9,8 @@ use crate::failure::Failure;
 /// Prints a result: one JSON document, or text.
 ///
 /// # Errors
-/// Standard output cannot be written. A reader that stopped reading (`| head`) is no error.
+/// Returns an error if standard output cannot be written. A reader that stopped reading (`| head`)
+/// is no error.
 pub fn print(
     json: bool,
     document: &impl Serialize,
@@ -32,7 +33,7 @@ pub fn print(
     }
 }
 
-/// Tells something on standard error; where nobody listens nothing is lost that counts.
+/// Prints a line on standard error. A failure is ignored: notes are no results.
 pub fn note(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
@@ -42,7 +43,7 @@ pub fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-/// A message none of whose lines is endless, as one that quotes a file may be.
+/// Shortens long lines of a message, which may quote a file.
 pub fn shortened(message: &str) -> String {
     const MOST: usize = 1000;
     let short = |line: &str| match line.char_indices().nth(MOST) {

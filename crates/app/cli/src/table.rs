@@ -2,19 +2,19 @@
 
 use std::fmt;
 
-/// A table: columns of numbers are set to the right, of words to the left.
+/// Table: columns of numbers are aligned right, others left.
 #[derive(Debug, Default)]
 pub struct TextTable {
     rows: Vec<Vec<String>>,
 }
 
 impl TextTable {
-    /// A table with a header.
+    /// Creates a table with a header.
     pub fn new<const N: usize>(header: [&str; N]) -> Self {
         Self { rows: vec![header.map(str::to_owned).to_vec()] }
     }
 
-    /// A table with a header of as many columns as there are.
+    /// Creates a table with a header of any number of columns.
     pub fn of<'a>(header: impl Iterator<Item = &'a str>) -> Self {
         Self { rows: vec![header.map(str::to_owned).collect()] }
     }
@@ -33,7 +33,7 @@ impl TextTable {
             .unwrap_or(0)
     }
 
-    /// Whether every cell below the header is a number or says that there is none.
+    /// True if every cell below the header is a number, `-` or empty.
     fn is_numeric(&self, column: usize) -> bool {
         let numeric = |cell: &String| {
             cell.trim_end_matches([' ', '%']).parse::<f64>().is_ok()
@@ -45,6 +45,7 @@ impl TextTable {
 
 impl fmt::Display for TextTable {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Rows may have fewer cells than the header; missing cells at the end are not printed.
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let layout: Vec<(usize, bool)> =
             (0..columns).map(|column| (self.width(column), self.is_numeric(column))).collect();
@@ -59,7 +60,7 @@ impl fmt::Display for TextTable {
     }
 }
 
-/// A number with four significant digits.
+/// Formats a number with four significant digits.
 pub fn number(value: f64) -> String {
     if !value.is_finite() || value == f64::MAX {
         return "-".to_owned();
@@ -71,11 +72,12 @@ pub fn number(value: f64) -> String {
     if !(1e-3..1e6).contains(&size) {
         return format!("{value:.3e}");
     }
+    // Four significant digits: 3 - floor(log10 |x|) decimals.
     let decimals = (3.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.decimals$}")
 }
 
-/// A number that may be unknown.
+/// Formats a number that may be unknown.
 pub fn optional(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), number)
 }

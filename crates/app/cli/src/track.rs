@@ -1,4 +1,4 @@
-//! Simulated states as a CSV file with canonical columns.
+//! CSV files of simulated states, with canonical columns.
 
 use sistership_model::Law;
 use sistership_model::trial::{Channel, Trial};
@@ -8,7 +8,7 @@ use sistership_trials::samples::to_csv;
 
 use crate::failure::Failure;
 
-/// The channels of every track, in the order of their columns.
+/// Channels of every track, in the order of the columns.
 const CHANNELS: [(Channel, usize); 9] = [
     (Channel::X, at::X),
     (Channel::Y, at::Y),
@@ -21,10 +21,10 @@ const CHANNELS: [(Channel, usize); 9] = [
     (Channel::Delta, at::DELTA),
 ];
 
-/// The file's bytes; roll only where the law has it, revolutions where asked for.
+/// Returns the bytes of the file; roll only if the law has it, revolutions on request.
 ///
 /// # Errors
-/// The samples cannot be written.
+/// Returns an error if the samples cannot be written.
 pub fn csv(track: &Trajectory, law: &Law, with_n: bool) -> Result<Vec<u8>, Failure> {
     let mut trial = Trial { t_s: track.t_s.clone(), ..Trial::default() };
     let is_told =

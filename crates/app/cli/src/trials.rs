@@ -1,4 +1,4 @@
-//! The trials that a command reads: every file or none, each under a name of its own.
+//! Trials that a command reads: all files or none, each under a unique name.
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,10 @@ use sistership_trials::{Loaded, load_path};
 use crate::failure::Failure;
 use crate::output::{count, note};
 
-/// Warnings of one file that are told before the rest is only counted.
+/// Number of warnings of a file that are printed; the rest is counted.
 const TOLD: usize = 3;
 
-/// A trial and where it came from.
+/// Trial with its origin.
 #[derive(Debug)]
 pub struct ReadTrial {
     /// The trial.
@@ -20,7 +20,7 @@ pub struct ReadTrial {
     pub file: String,
     /// The file's path.
     pub path: PathBuf,
-    /// Whether it is a stretch of its file.
+    /// True if it is a segment of its file.
     pub is_stretch: bool,
     /// The ship that the manifest names.
     pub ship: Option<String>,
@@ -29,7 +29,7 @@ pub struct ReadTrial {
 /// Reads every file; warnings go to standard error.
 ///
 /// # Errors
-/// All refusals together, with row and column.
+/// Returns an error with all refusals, by row and column.
 pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
     let (mut read, mut refused) = (Vec::new(), Vec::new());
     for path in paths {
@@ -40,6 +40,7 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
                 continue;
             }
         };
+        // Every file is read, so that all faults are reported in one run.
         let files = files_of(path, &loaded);
         let named = |ship: &String| !ship.is_empty();
         let ship = loaded.manifest.map(|manifest| manifest.ship).filter(named);
@@ -72,7 +73,7 @@ fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf, bool)> {
     }
 }
 
-/// The first warnings of each file; what several files have in common is told once.
+/// Prints the first warnings of each file; a warning that several files share is printed once.
 fn tell_warnings(read: &[ReadTrial]) {
     let mut told: Vec<(String, &str, usize)> = Vec::new();
     for read in read {
@@ -94,7 +95,7 @@ fn tell_warnings(read: &[ReadTrial]) {
     }
 }
 
-/// A finding with its row and column.
+/// Formats a finding with its row and column.
 pub fn place(finding: &Finding) -> String {
     let row = finding.row.map_or(String::new(), |row| format!("row {row}: "));
     let column =
@@ -102,14 +103,14 @@ pub fn place(finding: &Finding) -> String {
     format!("{row}{column}{}", finding.message)
 }
 
-/// Trials of the same file name are told apart by their folder's; the same file twice would count
-/// twice.
+/// Makes names unique by the folder of the file; refuses a file that is given twice, because its
+/// data would count twice.
 fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
     for index in 1..read.len() {
         let (earlier, rest) = read.split_at_mut(index);
         let this = &mut rest[0];
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-        // Of stretches of one file the reader has seen that they do not overlap.
+        // The reader has checked that segments of one file do not overlap.
         let is_apart = |other: &ReadTrial| {
             other.is_stretch && this.is_stretch && other.trial.name != this.trial.name
         };
@@ -140,17 +141,17 @@ fn with_folder(path: &Path, name: &str) -> String {
     folder.map_or_else(|| name.to_owned(), |folder| format!("{folder}/{name}"))
 }
 
-/// References to the trials alone.
+/// Returns references to the trials.
 pub fn trials(read: &[ReadTrial]) -> Vec<&Trial> {
     read.iter().map(|read| &read.trial).collect()
 }
 
-/// Everything that was read, so that nothing of it is overwritten.
+/// Returns the paths of everything that was read, which must not be overwritten.
 pub fn inputs(read: &[ReadTrial], paths: &[PathBuf]) -> Vec<PathBuf> {
     read.iter().map(|read| read.path.clone()).chain(paths.iter().cloned()).collect()
 }
 
-/// Remarks where a manifest names another ship than the command does.
+/// Prints a warning if a manifest names another ship than the command.
 pub fn remark_other_ship(read: &[ReadTrial], ship: &str) {
     let mut others: Vec<&str> = read
         .iter()

@@ -1,4 +1,4 @@
-//! How values of the command line are read.
+//! Parsers of values of the command line.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use sistership_identification::refine::{Method, Prior};
 use sistership_priors::similarity::Definition;
 use sistership_simulation::Method as Integrator;
 
-/// Why a value does not read.
+/// Error of a value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ValueError {
     /// No number at all.
@@ -33,19 +33,19 @@ pub enum ValueError {
     /// One figure where a zigzag has two.
     #[error("write rudder angle and change of heading as `20/20`")]
     NoZigzag,
-    /// What is wrong with the rudder angle of a zigzag.
+    /// Error of the rudder angle of a zigzag.
     #[error("rudder: {0}")]
     Rudder(Box<ValueError>),
-    /// What is wrong with the change of heading of a zigzag.
+    /// Error of the change of heading of a zigzag.
     #[error("change of heading: {0}")]
     ChangeOfHeading(Box<ValueError>),
     /// More than half a turn, deg.
     #[error("must be at most 180 deg, not {0}")]
     BeyondHalfATurn(f64),
-    /// No name of those that there are.
+    /// A name that is not among the known ones.
     #[error("there are {known}")]
     UnknownName {
-        /// The names, in words.
+        /// The known names.
         known: String,
     },
     /// No name with a number.
@@ -60,12 +60,12 @@ pub enum ValueError {
     /// No number of hours.
     #[error("`{0}` is not a number of hours")]
     NotHours(String),
-    /// More hours than anybody waits, or less than none, h.
+    /// More than a million hours, or less than none, h.
     #[error("must be from 0 to 1000000 h, not {0}")]
     HoursOutOfRange(f64),
 }
 
-/// Integration methods by the names they are called by.
+/// Integration methods.
 #[derive(Debug, Clone, Copy, Default, ValueEnum)]
 pub enum Integration {
     /// Classical Runge-Kutta of fourth order.
@@ -84,7 +84,7 @@ impl From<Integration> for Integrator {
     }
 }
 
-/// A finite number above zero.
+/// Parses a finite number above zero.
 pub fn positive(text: &str) -> Result<f64, ValueError> {
     match number(text)? {
         value if value > 0.0 => Ok(value),
@@ -92,7 +92,7 @@ pub fn positive(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// A finite number, zero or above.
+/// Parses a finite number, zero or above.
 pub fn not_negative(text: &str) -> Result<f64, ValueError> {
     match number(text)? {
         value if value >= 0.0 => Ok(value),
@@ -100,13 +100,13 @@ pub fn not_negative(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// An effect and the odds that trials have it: `wind=2`.
+/// Parses an effect and its prior odds: `wind=2`.
 pub fn odds(text: &str) -> Result<(String, f64), ValueError> {
     let (name, odds) = text.split_once('=').ok_or(ValueError::NoOdds)?;
     Ok((name.to_owned(), positive(odds)?))
 }
 
-/// A rudder angle in degrees that is no zero.
+/// Parses a rudder angle in degrees other than zero.
 pub fn rudder_deg(text: &str) -> Result<f64, ValueError> {
     match number(text)? {
         value if value != 0.0 && value.abs() <= 90.0 => Ok(value),
@@ -114,8 +114,9 @@ pub fn rudder_deg(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// `DEG/DEG`: rudder angle and change of heading.
+/// Parses `DEG/DEG`: rudder angle and change of heading.
 pub fn zigzag_deg(text: &str) -> Result<(f64, f64), ValueError> {
+    // The sign of the rudder angle gives the side of the first execute.
     let (rudder, switch) = text.split_once('/').ok_or(ValueError::NoZigzag)?;
     let switch =
         change_of_heading(switch).map_err(|error| ValueError::ChangeOfHeading(error.into()))?;
@@ -129,31 +130,31 @@ fn change_of_heading(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 pub fn number(text: &str) -> Result<f64, ValueError> {
     let value: f64 = text.trim().parse().map_err(|_| ValueError::NotANumber(text.to_owned()))?;
     if value.is_finite() { Ok(value) } else { Err(ValueError::NotFinite(text.to_owned())) }
 }
 
-/// An estimator by its name.
+/// Returns the estimator with this name.
 pub fn method(name: &str) -> Result<Method, ValueError> {
     let known = || Method::ALL.map(|method| format!("`{}`", method.name())).join(", ");
     Method::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known() })
 }
 
-/// A prior by its name.
+/// Returns the prior with this name.
 pub fn prior(name: &str) -> Result<Prior, ValueError> {
     let known = Prior::ALL.map(|prior| format!("`{}`", prior.name())).join(", ");
     Prior::by_name(name).ok_or(ValueError::UnknownName { known })
 }
 
-/// A definition of the characteristic vector by its name.
+/// Returns the definition of the characteristic vector with this name.
 pub fn definition(name: &str) -> Result<Definition, ValueError> {
     let known: Vec<&str> = Definition::ALL.into_iter().map(Definition::name).collect();
     Definition::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known.join(" and ") })
 }
 
-/// What a model or a ship is exported as.
+/// Format of an export.
 #[derive(Debug, Clone, Copy)]
 pub enum ExportFormat {
     /// A model for another tool.
@@ -162,8 +163,9 @@ pub enum ExportFormat {
     Bundle,
 }
 
-/// A format of exports by its name.
+/// Returns the format of an export with this name.
 pub fn export_format(name: &str) -> Result<ExportFormat, ValueError> {
+    // A bundle is no format of a model, but is requested by the same flag.
     let known = || FORMATS.map(|format| format!("`{}`, ", format.name())).concat() + "`bundle`";
     match (name, by_name(name)) {
         ("bundle", _) => Ok(ExportFormat::Bundle),
@@ -172,20 +174,21 @@ pub fn export_format(name: &str) -> Result<ExportFormat, ValueError> {
     }
 }
 
-/// `SHIP/NUMBER`: a version of a ship's model.
+/// Parses `SHIP/NUMBER`: a version of a ship's model.
 pub fn version(text: &str) -> Result<(String, i64), ValueError> {
+    // From the right: names of ships may contain no `/`, but the number is always last.
     let parts = text
         .rsplit_once('/')
         .and_then(|(ship, number)| Some((ship.to_owned(), number.parse().ok()?)));
     parts.filter(|(ship, number)| !ship.is_empty() && *number > 0).ok_or(ValueError::NoVersion)
 }
 
-/// Where to listen.
+/// Parses the address to listen on.
 pub fn address(text: &str) -> Result<SocketAddr, ValueError> {
     text.parse().map_err(|_| ValueError::NoAddress)
 }
 
-/// A number of hours.
+/// Parses a number of hours.
 pub fn hours(text: &str) -> Result<Duration, ValueError> {
     let hours: f64 = text.parse().map_err(|_| ValueError::NotHours(text.to_owned()))?;
     match (0.0..=1e6).contains(&hours) {

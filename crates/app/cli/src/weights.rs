@@ -1,4 +1,4 @@
-//! The weights of a learned branch beside the file of its model.
+//! Weights of a learned correction, in a file next to that of its model.
 
 use std::path::{Path, PathBuf};
 
@@ -9,24 +9,26 @@ use sistership_model::branch::Branch;
 use crate::failure::{Failure, about_file};
 use crate::table::number;
 
-/// Where the weights of a model file are: `model.weights.json` for `model.yaml`.
+/// Returns the path of the weights of a model file: `model.weights.json` for `model.yaml`.
 pub fn beside(model: &Path) -> PathBuf {
     model.with_extension("weights.json")
 }
 
-/// Attaches the weights beside a model's file, where the model has a learned branch.
+/// Attaches the weights next to a model's file, if the model has a learned correction.
 ///
 /// # Errors
-/// Names the file that is missing, or is not what the model names.
+/// Returns an error that names the file if it is missing, or if its content is not what the model
+/// names.
 pub fn attach(file: &Path, model: &mut Model) -> Result<(), Failure> {
     let Some(bytes) = read_beside(file, model)? else { return Ok(()) };
+    // The hash of the weights is checked against the one that the model names.
     sistership_learned::attach(model, &bytes).map_err(|error| about_file(file, error))
 }
 
-/// The weights beside a model's file; none where the model has no learned correction.
+/// Reads the weights next to a model's file; `None` if the model has no learned correction.
 ///
 /// # Errors
-/// Names the file that cannot be read.
+/// Returns an error that names the file that cannot be read.
 pub fn read_beside(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failure> {
     if model.branch.is_none() {
         return Ok(None);
@@ -44,22 +46,22 @@ pub fn read_beside(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failur
     std::fs::read(&weights).map(Some).map_err(unread)
 }
 
-/// What a learned branch is, as documents name it.
+/// Description of a learned correction in documents.
 #[derive(Debug, Serialize)]
 pub struct BranchWords<'a> {
-    /// What learned.
+    /// Kind of the learner.
     pub kind: &'a str,
-    /// How it is joined to the law.
+    /// Combination with the law.
     pub mode: &'a str,
 }
 
 impl<'a> BranchWords<'a> {
-    /// Of a branch.
+    /// Describes a learned correction.
     pub fn of(branch: &'a Branch) -> Self {
         Self { kind: branch.recipe.learner.name(), mode: branch.mode.name() }
     }
 
-    /// A line on it, with what it counted for in a simulation where that is known.
+    /// Formats a line, with its share in a simulation if that is known.
     pub fn line(&self, share: Option<f64>) -> String {
         let counted = share.map_or(String::new(), |share| {
             format!("; it counted for {} % of the simulated time", number(100.0 * share))

@@ -1,4 +1,4 @@
-//! The zoo of a run: what the program carries, and the folders that were named.
+//! Zoo of a run: the embedded one, with the given folders.
 
 use std::path::{Path, PathBuf};
 
@@ -6,13 +6,14 @@ use sistership_model::Zoo;
 
 use crate::failure::{Failure, about_file};
 
-/// Folders of further laws, effects and vessels, separated as in `PATH`.
+/// Environment variable with folders of further laws, effects and vessels, separated as in `PATH`.
 const VARIABLE: &str = "SISTERSHIP_ZOO";
 
-/// The embedded zoo with the folders of the environment and of the command line, in this order.
+/// Loads the embedded zoo with the folders of the environment and of the command line, in this
+/// order.
 ///
 /// # Errors
-/// Names the file that does not read.
+/// Returns an error that names the file that cannot be parsed.
 pub fn load(folders: &[PathBuf]) -> Result<Zoo, Failure> {
     let mut zoo = Zoo::embedded()?;
     let named = std::env::var_os(VARIABLE).unwrap_or_default();
@@ -32,6 +33,7 @@ fn extend(zoo: &mut Zoo, folder: &Path) -> Result<(), Failure> {
             "is no zoo: it holds neither laws/*.yaml nor effects/*.yaml nor vessels/*.yaml",
         ));
     }
+    // Laws first: models of vessels refer to them.
     for path in laws {
         zoo.add_law(&path.display().to_string(), &text_of(&path)?)?;
     }
@@ -44,7 +46,7 @@ fn extend(zoo: &mut Zoo, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The YAML files of a folder by name; none where there is no such folder.
+/// Lists the YAML files of a folder, sorted by name; empty if there is no such folder.
 fn yaml_files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !folder.is_dir() {
         return Ok(Vec::new());
@@ -62,10 +64,10 @@ fn is_yaml(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml")
 }
 
-/// The text of a file.
+/// Reads the text of a file.
 ///
 /// # Errors
-/// It cannot be read or is no text.
+/// Returns an error if it cannot be read or is no UTF-8 text.
 pub fn text_of(path: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(path)
         .map_err(|error| about_file(path, format!("cannot be read: {error}")))

@@ -1,5 +1,5 @@
-//! The one binary: see `sistership --help`. It is a package of its own, since the level at which it
-//! is built is that of the link-time optimiser for all the others (docs/evidence/size.md).
+//! Sistership's only binary: see `sistership --help`. It is a separate package, because its
+//! optimisation level is that of the link-time optimiser for all others (docs/evidence/size.md).
 
 use std::process::ExitCode;
 

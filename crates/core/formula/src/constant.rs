@@ -1,12 +1,12 @@
-//! Formulas of numbers alone.
+//! Formulas without names.
 
 use crate::error::FormulaError;
 use crate::parse::parse;
 
-/// The value of a formula without names, such as `0.605/304.8`.
+/// Evaluates a formula without names, such as `0.605/304.8`.
 ///
 /// # Errors
-/// Says what is wrong with the formula, or which name it should not mention.
+/// Returns the fault of the formula, or the name that it should not use.
 pub fn constant(text: &str) -> Result<f64, FormulaError> {
     let expr = parse(text)?;
     let value = expr.value(&|_| None);

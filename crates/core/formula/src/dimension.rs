@@ -1,13 +1,13 @@
-//! The dimension of a formula, or what is wrong with it.
+//! Dimension of a formula.
 
 use crate::error::FormulaError;
 use crate::syntax::{Expr, Function};
 use crate::units::Dimension;
 
-/// The dimension of `expr` when `lookup` knows that of every name.
+/// Returns the dimension of `expr`, where `lookup` returns that of every name.
 ///
 /// # Errors
-/// Names the unknown name, or the two sides that do not go together.
+/// Returns an error that names an unknown name, or the two sides that do not agree.
 pub fn dimension_of(
     expr: &Expr,
     lookup: &dyn Fn(&str) -> Option<Dimension>,
@@ -23,6 +23,7 @@ pub fn dimension_of(
         Expr::Power(a, b) => power(of(a)?, b, of(b)?),
         Expr::Call(function, arguments) => call(*function, arguments, lookup),
         Expr::If(_, parts) => {
+            // The compared sides must agree, and so must the alternatives.
             same(&parts[0], of(&parts[0])?, &parts[1], of(&parts[1])?)?;
             same(&parts[2], of(&parts[2])?, &parts[3], of(&parts[3])?)
         }
@@ -37,6 +38,7 @@ fn power(
     if of_exponent != Dimension::NONE {
         return Err(FormulaError::Exponent(of_exponent));
     }
+    // Only a constant exponent gives a base with a dimension a known power.
     match exponent.value(&|_| None) {
         Some(number) => Ok(base.pow(number)),
         None if base == Dimension::NONE => Ok(base),
@@ -64,7 +66,8 @@ fn call(
     }
 }
 
-/// Both sides of a sum or comparison must agree; a literal zero goes with anything.
+/// Returns the dimension of two sides of a sum or comparison, which must agree; a literal zero
+/// agrees with any.
 fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimension, FormulaError> {
     let zero = |e: &Expr| matches!(e, Expr::Number(number) if *number == 0.0);
     if of_a == of_b || zero(b) {

@@ -1,82 +1,82 @@
-//! What is wrong with a formula.
+//! Errors of formulas.
 
 use crate::syntax::Function;
 use crate::units::Dimension;
 
-/// What is wrong with a formula.
+/// Error of a formula.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FormulaError {
-    /// It is too long to be parsed.
+    /// The formula is too long to be parsed.
     #[error("a formula of {length} characters; {most} are the most: write parts of it as values")]
     Long {
-        /// Its bytes.
+        /// Length, bytes.
         length: usize,
-        /// Most bytes.
+        /// Largest length, bytes.
         most: usize,
     },
-    /// It nests too deep to be parsed.
+    /// The formula nests too deep to be parsed.
     #[error(
         "formula `{head}...` nests {found} parentheses, signs and powers; {most} are the most: \
          write parts of it as values"
     )]
     Nested {
-        /// How it begins.
+        /// Beginning of the formula.
         head: String,
-        /// How deep it nests.
+        /// Nesting depth.
         found: usize,
-        /// How deep it may.
+        /// Largest nesting depth.
         most: usize,
     },
-    /// It has too many operators.
+    /// The formula has too many operators.
     #[error(
         "formula `{head}...` has {found} operators; {most} are the most: write parts of it as \
          values"
     )]
     Operators {
-        /// How it begins.
+        /// Beginning of the formula.
         head: String,
-        /// How many it has.
+        /// Number of operators.
         found: usize,
-        /// How many it may have.
+        /// Largest number of operators.
         most: usize,
     },
-    /// It stops making sense at a place.
+    /// The formula cannot be read from some place on.
     #[error("formula `{formula}` cannot be read from {place}{expected}")]
     Syntax {
         /// The formula.
         formula: String,
         /// The place.
         place: String,
-        /// What was expected there, where that can be told.
+        /// The expected input at that place, if known.
         expected: String,
     },
-    /// It is no condition.
+    /// The text is not a condition.
     #[error("condition `{0}` cannot be read: write `u < 0`")]
     Condition(String),
-    /// A condition compares nothing.
+    /// A condition without a comparison.
     #[error("condition `{0}` lacks a comparison: write `u < 0`")]
     Comparison(String),
-    /// It mentions what it may not.
+    /// An unknown name.
     #[error("unknown name `{0}`")]
     Name(String),
     /// An exponent has a dimension.
     #[error("an exponent must be a pure number, not {0}")]
     Exponent(Dimension),
-    /// What has a dimension is raised to what is not known.
+    /// A quantity with a dimension is raised to an exponent that is not a number.
     #[error("{0} can only be raised to a number, not to a formula")]
     Power(Dimension),
-    /// A function is given what has a dimension.
+    /// A function has an argument with a dimension.
     #[error("{function:?} needs a pure number or an angle, not {found}")]
     Argument {
         /// The function.
         function: Function,
-        /// What it is given.
+        /// Dimension of the argument.
         found: Dimension,
     },
-    /// The two sides of a sum or a comparison do not go together.
+    /// The two sides of a sum or a comparison do not agree.
     #[error("adds or compares {0} with {1}")]
     Sides(Dimension, Dimension),
-    /// What should be a number mentions a name.
+    /// A formula that should be a number uses a name.
     #[error("`{formula}` should be a number but mentions `{name}`")]
     NotConstant {
         /// The formula.
@@ -84,7 +84,7 @@ pub enum FormulaError {
         /// The name.
         name: String,
     },
-    /// It has no value.
+    /// The formula has no finite value.
     #[error("`{0}` has no finite value")]
     NotFinite(String),
 }

@@ -1,6 +1,6 @@
-//! Formulas of laws and effects: parsed once, checked for units, lowered later by the dynamics.
+//! Formulas of laws and effects: parsed once, checked for units, and lowered by the simulation.
 //!
-//! No ship and no file: text goes in, an expression or a refusal comes out.
+//! No ships and no files: text goes in, an expression or an error comes out.
 
 mod constant;
 mod dimension;

@@ -1,22 +1,22 @@
-//! How long and how deep a formula may be: whatever walks one must not run out of stack, nor out of
-//! time.
+//! Limits of the length and depth of a formula, so that no walk over it runs out of stack or time.
 //!
-//! Parsing recurses where a formula nests, so that the text is measured before it is parsed; every
-//! walk over the tree that comes out recurses at most as deep as there are operators. The largest
-//! formula of the zoo has 22 operators, and none nests more than 5 deep.
+//! Parsing recurses with the nesting of a formula, so that the text is measured before it is
+//! parsed; every walk over the resulting tree recurses at most as deep as there are operators. The
+//! largest formula of the zoo has 22 operators, and none nests more than 5 deep.
 
 use crate::error::FormulaError;
 
-/// Bytes of one formula.
+/// Largest length of one formula, bytes.
 pub const MAX_LENGTH: usize = 8192;
 
-/// Operators, commas and opening parentheses of one formula: what its tree can be deep, too.
+/// Largest number of operators, commas and opening parentheses of one formula, which also bounds
+/// the depth of its tree.
 pub const MAX_OPERATORS: usize = 256;
 
-/// Parentheses, signs and powers within each other.
+/// Largest nesting depth of parentheses, signs and powers.
 pub const MAX_NESTING: usize = 48;
 
-/// Levels of operators from a formula down through the values that it mentions.
+/// Largest depth of operators from a formula down through the values that it mentions.
 pub const MAX_DEPTH: usize = 512;
 
 /// Refuses a formula that is too long or too deep to be parsed.
@@ -38,7 +38,7 @@ pub fn check(text: &str) -> Result<(), FormulaError> {
     Ok(())
 }
 
-/// The beginning of a long text, for a message.
+/// Returns the beginning of a long text, for a message.
 pub fn head(text: &str) -> String {
     text.chars().take(24).collect()
 }
@@ -52,14 +52,15 @@ struct Measure {
 impl Measure {
     fn of(text: &[u8]) -> Self {
         let mut found = Self::default();
-        // By open parenthesis, the signs and powers that are still waiting for their operand;
-        // together, how deep it is here.
+        // For each open parenthesis, the number of signs and powers that wait for their operand;
+        // their sum and the open parentheses are the current depth.
         let (mut waiting, mut depth) = (vec![0_usize], 0_usize);
         let mut before = None;
         for (at, &byte) in text.iter().enumerate().filter(|(_, byte)| !byte.is_ascii_whitespace()) {
             let is_operand = before
                 .is_some_and(|b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.' | b')'));
             match byte {
+                // A sign after an operand is a binary operator, otherwise a prefix, which nests.
                 b'(' => {
                     waiting.push(0);
                     depth += 1;
@@ -67,6 +68,7 @@ impl Measure {
                 b')' => {
                     let closed = waiting.pop().unwrap_or(0);
                     depth = depth.saturating_sub(closed + 1);
+                    // An unmatched parenthesis; the parser refuses it later.
                     if waiting.is_empty() {
                         waiting.push(0);
                     }
@@ -74,6 +76,7 @@ impl Measure {
                 b'+' | b'-' if in_number(text, at) => {}
                 b'^' => wait(&mut waiting, &mut depth),
                 b'+' | b'-' if !is_operand => wait(&mut waiting, &mut depth),
+                // A binary operator completes the operands that signs and powers waited for.
                 b'+' | b'-' | b'*' | b'/' | b',' | b'<' | b'>' => {
                     let done = waiting.last_mut().map_or(0, std::mem::take);
                     depth = depth.saturating_sub(done);
@@ -95,7 +98,7 @@ fn wait(waiting: &mut [usize], depth: &mut usize) {
     }
 }
 
-/// Whether the sign at a place may be that of a number's exponent, as in `1e-3`.
+/// Returns true if the sign at a position may belong to a number's exponent, as in `1e-3`.
 fn in_number(text: &[u8], at: usize) -> bool {
     let before = |back: usize| at.checked_sub(back).map(|place| text[place]);
     matches!(before(1), Some(b'e' | b'E'))
@@ -108,7 +111,7 @@ mod tests {
     use super::*;
     use crate::parse;
 
-    /// What it is called, how to write it so many times, and the most of it.
+    /// Name of a kind of nesting, text with so many levels, and the limit.
     type Way = (&'static str, fn(usize) -> String, usize);
 
     /// Each way of making a formula deep or long, and how many of it are just allowed.

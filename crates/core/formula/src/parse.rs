@@ -1,4 +1,4 @@
-//! Text to syntax tree, with winnow's expression combinator.
+//! Parser from text to the syntax tree, with winnow's expression combinator.
 
 use winnow::ascii::{float, multispace0};
 use winnow::combinator::{
@@ -17,13 +17,13 @@ type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 /// Parses one formula.
 ///
 /// # Errors
-/// Says at which character the formula stops making sense, and what was expected there; or that it
-/// is longer or deeper than [`crate::MAX_LENGTH`], [`crate::MAX_NESTING`] and
-/// [`crate::MAX_OPERATORS`] allow.
+/// Returns an error with the position of the first fault and the expected input; or an error for a
+/// formula that exceeds [`crate::MAX_LENGTH`], [`crate::MAX_NESTING`] or [`crate::MAX_OPERATORS`].
 pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
     crate::limits::check(text)?;
     let parsed = delimited(multispace0, sum, multispace0).parse(text);
     parsed.map_err(|error| {
+        // The error has a byte offset; the message shows the next characters.
         let rest: String =
             text.chars().skip(text[..error.offset()].chars().count()).take(12).collect();
         let place = if rest.is_empty() { "its end".into() } else { format!("`{rest}`") };
@@ -33,11 +33,11 @@ pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
     })
 }
 
-/// Parses a comparison such as `u < 0` to a formula that is 1 where it holds and 0 elsewhere. Its
+/// Parses a comparison such as `u < 0` to a formula that is 1 if it holds and 0 otherwise. Its
 /// derivative is zero.
 ///
 /// # Errors
-/// As [`parse`]; also where there is no comparison.
+/// Returns the errors of [`parse`], and an error for a text without a comparison.
 pub fn parse_condition(text: &str) -> std::result::Result<Expr, FormulaError> {
     match text.find(['<', '>']) {
         Some(_) => {
@@ -53,8 +53,8 @@ fn boxed(a: Expr, b: Expr, make: fn(Box<Expr>, Box<Expr>) -> Expr) -> Expr {
     make(Box::new(a), Box::new(b))
 }
 
-/// Binding powers: sums 1, products 3, unary minus 5, powers 7 (to the right), so `-u^2` is
-/// `-(u^2)`.
+/// Parses an expression. Binding powers: sums 1, products 3, unary minus 5, powers 7 (right
+/// associative), so that `-u^2` is `-(u^2)`.
 fn sum(input: &mut &str) -> Result<Expr> {
     expression(delimited(multispace0, operand, multispace0))
         .prefix(preceded(
@@ -91,8 +91,8 @@ fn expected(what: &'static str) -> StrContext {
 }
 
 fn number(input: &mut &str) -> Result<Expr> {
-    // `float` would also take a sign, `inf` and `nan`: a sign is an operator here, the others are
-    // names.
+    // `float` would also accept a sign, `inf` and `nan`: here a sign is an operator, and the others
+    // are names.
     preceded(peek(one_of(('0'..='9', '.'))), float).map(Expr::Number).parse_next(input)
 }
 
@@ -104,12 +104,14 @@ fn identifier<'a>(input: &mut &'a str) -> Result<&'a str> {
 
 fn name_or_call(input: &mut &str) -> Result<Expr> {
     let name = identifier.parse_next(input)?;
+    // A name is a call only if a parenthesis follows.
     if peek((multispace0::<_, ErrMode<ContextError>>, '(')).parse_next(input).is_err() {
         return Ok(Expr::Name(name.to_owned()));
     }
     if name == "if" {
         return cut_err(condition).parse_next(input);
     }
+    // After an opening parenthesis no other alternative can match: `cut_err` keeps this error.
     let Some((function, count)) = Function::by_name(name) else {
         return cut_err(fail.context(expected("a known function"))).parse_next(input);
     };
@@ -122,7 +124,7 @@ fn name_or_call(input: &mut &str) -> Result<Expr> {
     Ok(Expr::Call(function, arguments))
 }
 
-/// `(a < b, c, d)`
+/// Parses the arguments of `if`: `(a < b, c, d)`.
 fn condition(input: &mut &str) -> Result<Expr> {
     let compare = alt((
         "<=".value(Comparison::LessOrEqual),

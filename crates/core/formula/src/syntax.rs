@@ -1,10 +1,10 @@
-//! The syntax tree of a formula.
+//! Syntax tree of a formula.
 
 use std::collections::BTreeSet;
 
 use crate::units::Dimension;
 
-/// One expression.
+/// Expression.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expr {
     /// A number.
@@ -29,7 +29,7 @@ pub enum Expr {
     If(Comparison, Box<[Expr; 4]>),
 }
 
-/// The functions that a formula may call.
+/// Functions that a formula may call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Function {
     /// Sine of an angle in radians.
@@ -61,7 +61,7 @@ pub enum Function {
 }
 
 impl Function {
-    /// The function of that name, with the number of its arguments.
+    /// Returns the function with a name, and its number of arguments.
     pub fn by_name(name: &str) -> Option<(Self, usize)> {
         Some(match name {
             "sin" => (Self::Sin, 1),
@@ -81,7 +81,7 @@ impl Function {
         })
     }
 
-    /// Its value; functions of one argument ignore the second.
+    /// Value of the function; functions of one argument ignore the second.
     pub fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Sin => a.sin(),
@@ -102,7 +102,7 @@ impl Function {
     }
 }
 
-/// How `if` compares.
+/// Comparison operator of `if`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Comparison {
     /// `<`
@@ -116,7 +116,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// Whether it holds.
+    /// Returns true if the comparison holds.
     pub fn holds(self, a: f64, b: f64) -> bool {
         match self {
             Self::Less => a < b,
@@ -128,7 +128,7 @@ impl Comparison {
 }
 
 impl Expr {
-    /// The expressions directly inside this one.
+    /// Operands of the expression.
     pub fn children(&self) -> Vec<&Expr> {
         match self {
             Self::Number(_) | Self::Name(_) => Vec::new(),
@@ -145,7 +145,7 @@ impl Expr {
         }
     }
 
-    /// Every name the expression mentions.
+    /// Returns every name in the expression.
     pub fn names(&self) -> BTreeSet<&str> {
         match self {
             Self::Name(name) => BTreeSet::from([name.as_str()]),
@@ -153,7 +153,7 @@ impl Expr {
         }
     }
 
-    /// The same expression with some names replaced.
+    /// Returns the expression with some names replaced by expressions.
     pub fn renamed(&self, by: &dyn Fn(&str) -> Option<Expr>) -> Expr {
         let of = |e: &Expr| Box::new(e.renamed(by));
         match self {
@@ -174,8 +174,8 @@ impl Expr {
         }
     }
 
-    /// The operand on the left, leaving a number in its place; none where there are no operands
-    /// further down.
+    /// Takes the left operand and leaves a number in its place; `None` if that operand has no
+    /// operands itself.
     fn take_left(&mut self) -> Option<Expr> {
         let left = match self {
             Self::Number(_) | Self::Name(_) | Self::Call(..) | Self::If(..) => return None,
@@ -188,17 +188,18 @@ impl Expr {
         };
         match **left {
             Self::Number(_) | Self::Name(_) => None,
+            // Names and numbers have no operands, so that their drop does not recurse.
             _ => Some(std::mem::replace(&mut **left, Self::Number(0.0))),
         }
     }
 
-    /// How many numbers, names and operators it has.
+    /// Number of numbers, names and operators.
     pub fn size(&self) -> usize {
         1 + self.children().into_iter().map(Expr::size).sum::<usize>()
     }
 
-    /// How many operators are within each other, where `of_name` says how many a name stands for;
-    /// none where there are more than `most`, which is told without going further down.
+    /// Returns the depth of operators, where `of_name` returns that of a name; `None` if it exceeds
+    /// `most`, in which case the search stops at that depth.
     pub fn depth(
         &self,
         most: usize,
@@ -217,16 +218,17 @@ impl Expr {
         }
     }
 
-    /// The product of two expressions.
+    /// Product of two expressions.
     pub fn times(self, other: Expr) -> Expr {
         Self::Multiply(Box::new(self), Box::new(other))
     }
 
-    /// The value for given names; `None` where a name is unknown.
+    /// Value for given names; `None` if a name is unknown.
     pub fn value(&self, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         let of = |e: &Expr| e.value(lookup);
         Some(match self {
             Self::Number(number) => *number,
+            // A lookup has precedence over the built-in constants.
             Self::Name(name) => lookup(name).or_else(|| Some(builtin(name)?.0))?,
             Self::Negate(a) => -of(a)?,
             Self::Add(a, b) => of(a)? + of(b)?,
@@ -249,8 +251,8 @@ impl Expr {
     }
 }
 
-/// A sum of thousands of terms, as the force of an axis, leans to the left: it is taken apart in a
-/// loop, not by recursion.
+/// The sum of the thousands of terms of an axis is nested to the left: it is dropped in a loop,
+/// since recursion could exhaust the stack.
 impl Drop for Expr {
     fn drop(&mut self) {
         let mut left = self.take_left();
@@ -260,7 +262,8 @@ impl Drop for Expr {
     }
 }
 
-/// The names that every formula knows: `pi`, and `g`, the standard acceleration of gravity in m/s2.
+/// Returns a built-in constant with its dimension: `pi`, and `g`, the standard acceleration of
+/// gravity in m/s2.
 pub fn builtin(name: &str) -> Option<(f64, Dimension)> {
     match name {
         "pi" => Some((std::f64::consts::PI, Dimension::NONE)),
@@ -269,8 +272,8 @@ pub fn builtin(name: &str) -> Option<(f64, Dimension)> {
     }
 }
 
-/// `a ^ b`, by repeated multiplication where the exponent is whole, as every other evaluator here
-/// does.
+/// Evaluates `a ^ b`, by repeated multiplication for a whole exponent, as every other evaluator of
+/// formulas does.
 fn power(a: f64, b: f64) -> f64 {
     if b.fract() == 0.0 && b.abs() <= 16.0 { a.powi(b as i32) } else { a.powf(b) }
 }

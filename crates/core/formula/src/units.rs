@@ -1,12 +1,12 @@
-//! Physical dimensions and the units that files may name.
+//! Physical dimensions and the units that files may use.
 //!
-//! Angles count as dimensionless: a radian is a ratio of lengths, and the prime system treats it
-//! so.
+//! Angles are dimensionless: a radian is a ratio of lengths, and the prime system treats it as
+//! such.
 
 use std::fmt;
 use std::ops::{Add, Sub};
 
-/// Exponents of kilogram, metre and second. Halves are allowed: `sqrt(m)` has a dimension too.
+/// Exponents of kilogram, metre and second. Halves are permitted, as in the dimension of `sqrt(m)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Dimension {
     /// Exponent of the kilogram.
@@ -33,12 +33,12 @@ impl Dimension {
     /// Newton metre.
     pub const MOMENT: Self = Self::new(1.0, 2.0, -2.0);
 
-    /// `kg^mass m^length s^time`.
+    /// Creates the dimension `kg^mass m^length s^time`.
     pub const fn new(mass: f64, length: f64, time: f64) -> Self {
         Self { mass, length, time }
     }
 
-    /// This dimension raised to a power.
+    /// Returns the dimension raised to a power.
     pub fn pow(self, exponent: f64) -> Self {
         Self::new(self.mass * exponent, self.length * exponent, self.time * exponent)
     }
@@ -46,7 +46,7 @@ impl Dimension {
 
 impl Add for Dimension {
     type Output = Self;
-    /// The dimension of a product.
+    /// Dimension of a product.
     fn add(self, other: Self) -> Self {
         Self::new(self.mass + other.mass, self.length + other.length, self.time + other.time)
     }
@@ -54,7 +54,7 @@ impl Add for Dimension {
 
 impl Sub for Dimension {
     type Output = Self;
-    /// The dimension of a quotient.
+    /// Dimension of a quotient.
     fn sub(self, other: Self) -> Self {
         Self::new(self.mass - other.mass, self.length - other.length, self.time - other.time)
     }
@@ -75,10 +75,10 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// A unit: its dimension and the factor that takes a value in it to SI and radians.
+/// Unit: its dimension and the factor that converts a value to SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// What it measures.
+    /// Dimension of the unit.
     pub dimension: Dimension,
     /// `value in SI = factor * value in this unit`.
     pub to_si: f64,
@@ -87,7 +87,7 @@ pub struct Unit {
 const DEG: f64 = std::f64::consts::PI / 180.0;
 const KNOT: f64 = 1852.0 / 3600.0;
 
-/// Every unit name that a file may use; a revolution counts as one, as propeller coefficients do.
+/// Every unit that a file may use; a revolution counts as one, as in propeller coefficients.
 const UNITS: &[(&str, Dimension, f64)] = &[
     ("1", Dimension::NONE, 1.0),
     ("rad", Dimension::NONE, 1.0),
@@ -120,7 +120,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("N m", Dimension::MOMENT, 1.0),
 ];
 
-/// A unit that no file may use.
+/// Error of an unknown unit.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown unit `{0}`; known units: {known}", known = known_units())]
 pub struct UnknownUnit(pub String);
@@ -130,11 +130,12 @@ fn known_units() -> String {
 }
 
 impl Unit {
-    /// Looks a unit up by the name a file gives it.
+    /// Returns the unit with a name.
     ///
     /// # Errors
-    /// Names the unknown unit and lists those that are known.
+    /// Returns an error that names the unknown unit and lists the known ones.
     pub fn parse(name: &str) -> Result<Self, UnknownUnit> {
+        // White space around the name is ignored.
         let found = UNITS.iter().find(|(known, _, _)| *known == name.trim());
         let unit = found.map(|&(_, dimension, to_si)| Self { dimension, to_si });
         unit.ok_or_else(|| UnknownUnit(name.to_owned()))

@@ -1,6 +1,5 @@
-//! A learned branch: what a model has learned beside its law of motion, in the modes of Kanazawa
-//! 2023, Sec. 2.1. The document names its weights by hash; `sistership-learned` has the weights,
-//! trains them and evaluates them.
+//! Learned correction of a law of motion, in the modes of Kanazawa 2023, Sec. 2.1. The document
+//! names its weights by hash; `sistership-learned` stores, trains and evaluates the weights.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,67 +8,68 @@ use crate::coefficient::Axis;
 use crate::learned::Attached;
 use crate::validity::{RangeError, Region};
 
-/// A learned branch of a model.
+/// Learned correction of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Branch {
-    /// How it is joined to the law of motion, its foundation.
+    /// Combination with the law of motion, the foundation.
     pub mode: BranchMode,
     /// The accelerations that it changes, each once.
     pub outputs: Vec<BranchOutput>,
-    /// The SHA-256 of its weights.
+    /// SHA-256 of the weights.
     pub weights_sha256: String,
     /// The motion that its training covered.
     pub domain: Region,
-    /// How far beyond the domain its share has faded to nothing, by half the range covered.
+    /// Distance beyond the domain at which its share has faded to zero, in half ranges of the
+    /// domain.
     pub fade: f64,
-    /// How it was trained.
+    /// Settings of its training.
     pub recipe: BranchRecipe,
-    /// Its weights, where they have been attached; not part of the document.
+    /// The weights, if they have been attached; not part of the document.
     #[serde(skip)]
     #[schemars(skip)]
     pub learned: Attached,
 }
 
-/// How a branch is joined to its foundation.
+/// Combination of a learned correction with its foundation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BranchMode {
-    /// It gives the accelerations, and knows nothing of the foundation: Eq. 2.5.
+    /// It gives the accelerations, without inputs from the foundation: Eq. 2.5.
     Convert,
-    /// It gives the accelerations, and takes the foundation's among its inputs: Eq. 2.6.
+    /// It gives the accelerations, with those of the foundation among its inputs: Eq. 2.6.
     Serial,
-    /// It gives what is to be added to the foundation's accelerations: Eq. 2.8.
+    /// It gives an addition to the foundation's accelerations: Eq. 2.8.
     Parallel,
 }
 
-/// An acceleration that a branch changes.
+/// An acceleration that a learned correction changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BranchOutput {
     /// The axis: X, Y or N.
     pub axis: Axis,
-    /// What it is told from, in the order of the weights.
+    /// The inputs from which it is calculated, in the order of the weights.
     pub inputs: Vec<BranchInput>,
-    /// What one of the weights' answer stands for, m/s2 (rad/s2).
+    /// Acceleration for an output of the weights of one, m/s2 (rad/s2).
     pub scale: f64,
-    /// Least and greatest value that its training held, m/s2 (rad/s2): it never gives another.
+    /// Least and greatest value in its training, m/s2 (rad/s2); outputs are limited to this range.
     pub range: [f64; 2],
 }
 
-/// An input of a branch: `(value - centre) / scale` is what the weights take.
+/// An input of a learned correction: the weights take `(value - centre) / scale`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BranchInput {
-    /// What it is.
+    /// The signal.
     pub signal: Signal,
-    /// Its mean over the training, SI and radians.
+    /// Mean over the training, SI and radians.
     pub centre: f64,
-    /// Its deviation over the training, SI and radians.
+    /// Standard deviation over the training, SI and radians.
     pub scale: f64,
 }
 
-/// What a branch can be told from.
+/// Signals that may be inputs of a learned correction.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
@@ -96,53 +96,53 @@ pub enum Signal {
 }
 
 impl Signal {
-    /// Whether it is of the foundation.
+    /// Returns true if the signal is an acceleration of the foundation.
     pub fn is_of_foundation(self) -> bool {
         matches!(self, Self::UDot | Self::VDot | Self::RDot)
     }
 }
 
-/// How a branch was trained: with the foundation and the trials' samples, everything that its bytes
-/// depend on.
+/// Settings of the training of a learned correction; with the foundation and the samples of the
+/// trials they determine its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BranchRecipe {
-    /// What learns, with its settings.
+    /// The learning algorithm with its settings.
     pub learner: Learner,
-    /// Of every random number drawn.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Time over which accelerations are taken, s.
+    /// Time over which accelerations are measured, s.
     pub window_s: f64,
-    /// From one sample of the training to the next, s.
+    /// Interval between samples of the training, s.
     pub hop_s: f64,
     /// Names of the trials.
     pub trials: Vec<String>,
 }
 
-/// What learns.
+/// Learning algorithm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Learner {
     /// The mean of trees grown on bootstrapped samples (Breiman 2001; Mei 2019, Table 1).
     RandomForest {
-        /// How many trees.
+        /// Number of trees.
         trees: usize,
-        /// How many inputs are tried at each split.
+        /// Number of inputs that are considered at each split.
         tried: usize,
         /// Fewest samples in a leaf.
         leaf: usize,
         /// Most splits from root to leaf.
         depth: usize,
     },
-    /// The sum of small trees, each grown on what those before it leave (Friedman 2002).
+    /// The sum of small trees, each grown on the residual of those before it (Friedman 2002).
     BoostedTrees {
-        /// How many trees.
+        /// Number of trees.
         trees: usize,
         /// Fewest samples in a leaf.
         leaf: usize,
         /// Most splits from root to leaf.
         depth: usize,
-        /// What a tree counts for.
+        /// Learning rate: the factor of each tree.
         rate: f64,
         /// Share of the samples, drawn without replacement, on which a tree grows.
         sampled: f64,
@@ -150,22 +150,22 @@ pub enum Learner {
     /// Ridge regression on rational quadratic kernels about some of the samples: the mean of a
     /// Gaussian process by a subset of regressors (Rasmussen and Williams 2006, Eqs. 4.19, 8.14).
     KernelRidge {
-        /// How many samples.
+        /// Number of samples at which kernels are centred.
         centres: usize,
-        /// Length scale, in deviations of the inputs.
+        /// Length scale, in standard deviations of the inputs.
         length: f64,
-        /// Variance of the noise by that of the process.
+        /// Variance of the noise relative to that of the process.
         ridge: f64,
     },
     /// A multilayer perceptron, trained by Adam (Kingma and Ba 2015) on squared errors.
     Perceptron {
         /// Neurons of each hidden layer.
         hidden: Vec<usize>,
-        /// How often every sample is seen.
+        /// Number of passes over the samples.
         epochs: usize,
-        /// Samples to a step.
+        /// Samples in each step.
         batch: usize,
-        /// Length of the first steps; it falls linearly to nothing.
+        /// Initial step size; it falls linearly to zero.
         rate: f64,
         /// Decay of the weights.
         decay: f64,
@@ -173,7 +173,7 @@ pub enum Learner {
 }
 
 impl Learner {
-    /// What it is called.
+    /// Name of the algorithm.
     pub fn name(&self) -> &'static str {
         match self {
             Self::RandomForest { .. } => "random forest",
@@ -188,7 +188,7 @@ impl BranchMode {
     /// Every mode.
     pub const ALL: [Self; 3] = [Self::Convert, Self::Serial, Self::Parallel];
 
-    /// What it is called.
+    /// Name of the mode.
     pub fn name(self) -> &'static str {
         match self {
             Self::Convert => "convert",
@@ -199,60 +199,60 @@ impl BranchMode {
 }
 
 impl Branch {
-    /// What it is, in words: `random forest, parallel`.
+    /// Description in words: `random forest, parallel`.
     pub fn words(&self) -> String {
         format!("{}, {}", self.recipe.learner.name(), self.mode.name())
     }
 }
 
-/// Why a branch cannot be used.
+/// Reason for which a learned correction cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BranchError {
     /// The outputs are not one to three different axes among X, Y and N.
     #[error("outputs: give each of the axes X, Y and N at most once, and one at least")]
     Outputs,
-    /// An input cannot be used so.
+    /// An input is not permitted.
     #[error("outputs.{axis}.inputs: {reason}")]
     Input {
         /// The output's axis.
         axis: Axis,
-        /// What is wrong.
+        /// Description of the error.
         reason: &'static str,
     },
-    /// A scale or range is not what it should be.
+    /// A scale or range is not valid.
     #[error("outputs.{0}: scale should be above 0, and range from a number to one not less")]
     Scale(Axis),
-    /// The hash is none.
+    /// The hash is not one of SHA-256.
     #[error("weights_sha256: should be 64 hexadecimal digits")]
     Hash,
-    /// It does not fade.
+    /// The fade distance is not valid.
     #[error("fade: {0} should be above 0 and at most {MOST_FADE}")]
     Fade(f64),
-    /// The domain bounds too little.
+    /// The domain lacks ranges of velocities.
     #[error("domain: should have ranges of u, v and r")]
     Domain,
-    /// The domain's bounds are not in order.
+    /// The bounds of the domain are not in order.
     #[error("domain.{0}")]
     Range(#[from] RangeError),
-    /// A setting of the training.
+    /// A setting of the training is out of range.
     #[error("recipe.{field}: {reason}")]
     Recipe {
         /// The setting.
         field: &'static str,
-        /// What it should be.
+        /// The permitted range.
         reason: &'static str,
     },
 }
 
-/// Most half ranges over which a branch may fade; what bounds it in a simulation is that the faded
-/// region lies in the physical range (`sistership-learned`).
+/// Largest fade distance, in half ranges; `sistership-learned` also requires that the faded region
+/// lies within the physical range of simulations.
 pub const MOST_FADE: f64 = 3.0;
 
 impl Branch {
-    /// Checks that its parts go together.
+    /// Checks that the parts of the document are consistent.
     ///
     /// # Errors
-    /// Names the field at fault.
+    /// Returns an error that names the field at fault.
     pub fn check(&self) -> Result<(), BranchError> {
         let axes = [Axis::X, Axis::Y, Axis::N];
         let of = |axis: Axis| self.outputs.iter().filter(|output| output.axis == axis).count();
@@ -289,6 +289,7 @@ impl BranchOutput {
         if self.inputs.iter().any(|input| !input.centre.is_finite() || !positive(input.scale)) {
             return refuse("centre should be a number and scale above 0");
         }
+        // Accelerations of the foundation are inputs of the serial mode by definition (Eq. 2.6).
         let of_foundation = |input: &BranchInput| input.signal.is_of_foundation();
         if mode == BranchMode::Convert && self.inputs.iter().any(of_foundation) {
             return refuse("in mode `convert` none may be of the foundation");
@@ -308,7 +309,7 @@ impl BranchRecipe {
     /// Checks the settings.
     ///
     /// # Errors
-    /// Names the first that is out of range.
+    /// Returns an error that names the first setting that is out of range.
     pub fn check(&self) -> Result<(), BranchError> {
         let refuse = |field, reason| Err(BranchError::Recipe { field, reason });
         if !(self.window_s > 0.0 && self.window_s.is_finite()) {
@@ -322,7 +323,7 @@ impl BranchRecipe {
 }
 
 impl Learner {
-    /// The setting that is out of range, and what it should be.
+    /// Returns the first setting that is out of range, with the permitted range.
     fn check(&self) -> Option<(&'static str, &'static str)> {
         let few = |n: usize, most: usize| (1..=most).contains(&n);
         let share = |x: f64| x > 0.0 && x <= 1.0;
@@ -343,6 +344,7 @@ impl Learner {
                 (few(*centres, 2000), "learner.centres", "should be from 1 to 2000"),
                 (*length > 0.0 && length.is_finite(), "learner.length", "should be above 0"),
                 (*ridge > 0.0 && ridge.is_finite(), "learner.ridge", "should be above 0"),
+                // Fills the array to the length of the others.
                 (true, "", ""),
             ],
             Self::Perceptron { hidden, epochs, batch, rate, decay } => [

@@ -1,4 +1,4 @@
-//! Which categories of ships are compared with each other: data of the zoo.
+//! Categories of ships that are compared with each other, from the data of the zoo.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -8,6 +8,7 @@ use serde::Deserialize;
 const TEXT: &str = include_str!("../../../../models/categories.yaml");
 
 static GROUPS: LazyLock<Vec<CategoryGroup>> = LazyLock::new(|| {
+    // The file is embedded; if it could not be read, there would be no groups.
     serde_yaml::from_str::<CategoriesFile>(TEXT).map(|file| file.groups).unwrap_or_default()
 });
 
@@ -29,23 +30,23 @@ enum CategoriesKind {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CategoryGroup {
-    /// What they have in common.
+    /// Name of what they have in common.
     pub name: String,
     /// The categories.
     pub categories: BTreeSet<String>,
 }
 
-/// The group of a category; none where it stands in no group.
+/// Returns the group of a category; `None` for a category without a group.
 pub fn group_of(category: &str) -> Option<&'static CategoryGroup> {
     GROUPS.iter().find(|group| group.categories.contains(category))
 }
 
-/// Whether ships of two categories are compared.
+/// Returns true if ships of two categories are compared with each other.
 pub fn comparable(one: &str, other: &str) -> bool {
     one == other || group_of(one).is_some_and(|group| group.categories.contains(other))
 }
 
-/// Every category that stands in a group.
+/// Returns every category that belongs to a group.
 pub fn known_categories() -> Vec<&'static str> {
     GROUPS.iter().flat_map(|group| &group.categories).map(String::as_str).collect()
 }

@@ -1,9 +1,9 @@
-//! The names of coefficients: `Axis_factors`, spelled one way.
+//! Names of coefficients: `Axis_factors`, with one spelling for each.
 //!
-//! Factors stand in the order u, v, r, phi, p, delta, n, then those a law adds; a factor to a power
-//! is repeated, an absolute value is written `|v|` and follows the plain factor: `X_uu`, `Y_vvr`,
-//! `N_v|v|`, `X_udeltadelta`, `Y_0`. What a coefficient deviates by under a submodel's conditions
-//! is named after it: `X_uu@astern`.
+//! Factors are in the order u, v, r, phi, p, delta, n, then those that a law adds; a factor to a
+//! power is repeated, an absolute value is written `|v|` and follows the plain factor: `X_uu`,
+//! `Y_vvr`, `N_v|v|`, `X_udeltadelta`, `Y_0`. The deviation of a coefficient under a submodel's
+//! conditions is named after it: `X_uu@astern`.
 
 use std::fmt;
 
@@ -38,7 +38,7 @@ impl Axis {
     /// Every axis, in the order in which mass matrices list them.
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::K, Self::N];
 
-    /// The velocity that this axis accelerates.
+    /// Velocity that the axis accelerates.
     pub fn velocity(self) -> &'static str {
         match self {
             Self::X => "u",
@@ -48,7 +48,7 @@ impl Axis {
         }
     }
 
-    /// Whether the force changes sign when the ship is mirrored port to starboard.
+    /// Returns true if the force changes sign when the ship is mirrored port to starboard.
     pub fn is_odd(self) -> bool {
         self != Self::X
     }
@@ -60,82 +60,81 @@ impl fmt::Display for Axis {
     }
 }
 
-/// The factors every law knows, in their order.
+/// Factors of every law, in order.
 pub const STANDARD_FACTORS: [&str; 7] = ["u", "v", "r", "phi", "p", "delta", "n"];
 
 /// One factor of a name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Factor {
-    /// Place in the law's order of factors.
+    /// Index in the law's order of factors.
     rank: usize,
-    /// Whether it is written `|x|`.
+    /// True for an absolute value, `|x|`.
     pub absolute: bool,
     /// Its symbol.
     pub symbol: String,
 }
 
-/// A coefficient's name, taken apart.
+/// Name of a coefficient, parsed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CoefficientName {
     /// The axis on which it acts.
     pub axis: Axis,
-    /// The factors that multiply it, in canonical order; none for a constant such as `Y_0`.
+    /// Factors that multiply it, in canonical order; empty for a constant such as `Y_0`.
     pub factors: Vec<Factor>,
-    /// The submodel under whose conditions it is added to the coefficient of the same factors, if
-    /// any.
+    /// Submodel under whose conditions it is added to the coefficient of the same factors, if any.
     pub submodel: Option<String>,
 }
 
-/// Why a name is not one of a coefficient.
+/// Reason for which a name is not one of a coefficient.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NameError {
-    /// It is too long.
+    /// The name is too long.
     #[error("`{head}...`: a name of {length} characters; {most} are the most", most = MAX_NAME)]
     Long {
-        /// How it begins.
+        /// The beginning of the name.
         head: String,
-        /// Its bytes.
+        /// Its length, bytes.
         length: usize,
     },
-    /// It has no underscore.
+    /// The name has no underscore.
     #[error("`{0}`: {help}", help = HELP)]
     Form(String),
-    /// Its axis is none.
+    /// The axis is unknown.
     #[error("`{0}`: the axis must be X, Y, K or N; {help}", help = HELP)]
     Axis(String),
-    /// It is not made of factors.
+    /// The factors cannot be read.
     #[error("`{name}`: {fault}; {help}", help = HELP)]
     Factors {
         /// The name.
         name: String,
-        /// What is wrong with them.
+        /// Description of the error.
         fault: FactorsError,
     },
-    /// Its factors stand in another order.
+    /// The factors are in another order.
     #[error("`{name}` is spelled `{canonical}` here")]
     Spelling {
         /// The name.
         name: String,
-        /// How it is spelled.
+        /// The canonical spelling.
         canonical: CoefficientName,
     },
 }
 
 const HELP: &str = "a coefficient is written Axis_factors, such as X_uu, Y_vvr, N_v|v| or Y_0";
 
-/// Why the end of a name is not a product of factors.
+/// Reason for which the end of a name is not a product of factors.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FactorsError {
-    /// None of them begins there.
+    /// An unknown factor.
     #[error("no factor starts at `{0}`")]
     Unknown(String),
     /// A bar is not closed.
     #[error("`|{0}` lacks its closing bar")]
     OpenBar(String),
-    /// There are too many.
+    /// There are too many factors.
     #[error("it has more than {most} factors", most = MAX_FACTORS)]
     Many,
-    /// There are none.
+    /// There are no factors.
     #[error("it has no factors")]
     None,
 }
@@ -146,17 +145,18 @@ pub const MAX_NAME: usize = 512;
 /// Most factors of one name.
 pub const MAX_FACTORS: usize = 16;
 
-/// A name's shared part and its submodel: `X_uu@astern` is `X_uu` and `astern`.
+/// Splits a name into its shared part and its submodel: `X_uu@astern` into `X_uu` and `astern`.
 pub fn split_submodel(name: &str) -> (&str, Option<&str>) {
     name.split_once('@').map_or((name, None), |(shared, submodel)| (shared, Some(submodel)))
 }
 
 impl CoefficientName {
-    /// Reads a name; `extra` are the factors that the law adds to the standard ones, in its order.
+    /// Parses a name; `extra` are the factors that the law adds to the standard ones, in order.
     ///
     /// # Errors
-    /// Says what is wrong and, where it can tell, how the name is spelled here.
+    /// Returns an error with the reason and, if known, the canonical spelling of the name.
     pub fn parse(name: &str, extra: &[&str]) -> Result<Self, NameError> {
+        // The message quotes only the beginning of a long name.
         if name.len() > MAX_NAME {
             return Err(NameError::Long {
                 head: sistership_formula::head(name),
@@ -169,9 +169,12 @@ impl CoefficientName {
         let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
         let axis = axis.ok_or_else(|| NameError::Axis(name.to_owned()))?;
         let wrong = |fault| NameError::Factors { name: name.to_owned(), fault };
+        // `0` means no factors, as in `Y_0`.
         let mut factors =
             if rest == "0" { Vec::new() } else { split(rest, extra).map_err(wrong)? };
         let as_written = factors.clone();
+        // Comparison with the sorted factors accepts one spelling only, so that equal terms have
+        // equal names.
         factors.sort();
         let canonical = Self { axis, factors, submodel: submodel.map(str::to_owned) };
         if canonical.factors != as_written {
@@ -180,7 +183,7 @@ impl CoefficientName {
         Ok(canonical)
     }
 
-    /// Whether the term changes sign with that symbol.
+    /// Returns true if the term changes sign with the symbol.
     pub fn is_odd_in(&self, symbol: &str) -> bool {
         self.factors.iter().filter(|f| !f.absolute && f.symbol == symbol).count() % 2 == 1
     }
@@ -219,7 +222,7 @@ fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, FactorsError> {
     if factors.is_empty() { Err(FactorsError::None) } else { Ok(factors) }
 }
 
-/// The longest known symbol that `text` starts with, so that `phi` is not read as `p`.
+/// Returns the longest known symbol that `text` starts with, so that `phi` is not read as `p`.
 fn longest_symbol<'a>(text: &str, extra: &[&'a str]) -> Option<(usize, &'a str)>
 where
     'static: 'a,

@@ -1,4 +1,4 @@
-//! Wind, current and depth of a prediction beside those that a model's trials covered.
+//! Wind, current and depth of a prediction in comparison with those that a model's trials covered.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 use crate::model::Model;
 use crate::validity::Region;
 
-/// The depth that a trial without one counts as, m: below the deepest sea (10,935 m).
+/// Depth of a trial without a recorded one, m: below the deepest sea (10,935 m).
 pub const DEEP_M: f64 = 12_000.0;
 
-/// What is no difference between a value and the range of the trials, by the value: an anemometer's
-/// last digit.
+/// Tolerance between a value and the range of the trials, relative to the value: the last digit of
+/// an anemometer.
 const SLACK: f64 = 0.01;
 
-/// The surroundings that a prediction is asked for; absent where calm or deep.
+/// Environment of a prediction; absent values mean calm air, no current and deep water.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Environment {
     /// True wind speed, m/s.
@@ -24,29 +24,29 @@ pub struct Environment {
     pub depth_m: Option<f64>,
 }
 
-/// An input of a prediction of which the model's trials tell nothing.
+/// An input of a prediction that the model's trials did not cover.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UncoveredInput {
     /// Its name with the unit.
     pub input: String,
     /// Its value.
     pub value: f64,
-    /// Least and greatest value that the trials recorded; absent where they recorded none.
+    /// Least and greatest value that the trials recorded; absent if they recorded none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covered: Option<[f64; 2]>,
-    /// What that means for the prediction.
+    /// Consequence for the prediction.
     pub message: String,
 }
 
-/// An input, with the effect of the library by which it acts.
+/// Input, with the effect of the library by which it acts.
 struct EnvironmentInput {
     name: &'static str,
     words: &'static str,
     unit: &'static str,
-    /// Names of [`Region::environment`] that count as it.
+    /// Names of [`Region::environment`] that record it.
     recorded: &'static [&'static str],
     effect: &'static str,
-    /// What the prediction rests on instead of trials.
+    /// Basis of the prediction in the absence of trials.
     basis: &'static str,
 }
 
@@ -76,9 +76,10 @@ const DEPTH: EnvironmentInput = EnvironmentInput {
 };
 
 impl Environment {
-    /// The inputs that the model's trials did not cover. Still air, still and deep water are no
-    /// inputs; neither is what acts by an effect that was found in trials.
+    /// Returns the inputs that the model's trials did not cover. Still air and still or deep water
+    /// do not count; neither does an input of an effect that was found in trials.
     pub fn uncovered(&self, model: &Model) -> Vec<UncoveredInput> {
+        // Zero wind or current is no input of the prediction.
         let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
         let asked = [
             (WIND, positive(self.wind_speed_m_s)),
@@ -96,6 +97,7 @@ impl EnvironmentInput {
         let is_inside = covered.is_some_and(|[low, high]| {
             (low - SLACK * value.abs()..=high + SLACK * value.abs()).contains(&value)
         });
+        // Without a recorded range, an effect that was found in trials counts as coverage.
         let carries = model.effects.iter().any(|effect| effect.name == self.effect);
         if is_inside || (covered.is_none() && carries) {
             return None;

@@ -1,4 +1,4 @@
-//! What is wrong with a file, and where.
+//! Errors of model files, with their place.
 
 use std::fmt;
 
@@ -7,18 +7,18 @@ use serde::de::DeserializeOwned;
 
 use crate::yaml::MOST_FAULTS;
 
-/// A refusal of a model file: which file, line and field, and why.
+/// Error of a model file: file, line and field, and the reason.
 #[derive(Debug, Clone, Default, PartialEq, Eq, thiserror::Error)]
 pub struct FileError {
-    /// Name of the file, or of what was sent instead of one.
+    /// Name of the file, or of the text that was sent.
     pub file: String,
-    /// Line, counted from 1, where it could be told.
+    /// Line, counted from 1, if known.
     pub line: Option<usize>,
-    /// Dotted path of the field; empty where the file as a whole is at fault.
+    /// Dotted path of the field; empty if the error concerns the whole file.
     pub field: String,
-    /// What is wrong and what would be right.
+    /// The fault and its remedy.
     pub message: String,
-    /// What else is wrong with it.
+    /// Further faults of the file.
     pub further: Vec<FileError>,
 }
 
@@ -38,7 +38,7 @@ impl fmt::Display for FileError {
 }
 
 impl FileError {
-    /// What is wrong with a file as YAML.
+    /// Converts an error of the YAML reader.
     pub fn of_yaml(file: &str, error: crate::yaml::YamlError) -> Self {
         Self {
             file: file.to_owned(),
@@ -49,7 +49,7 @@ impl FileError {
         }
     }
 
-    /// Several refusals as one, the first [`MOST_FAULTS`] of them; none of none.
+    /// Combines several errors into one, at most [`MOST_FAULTS`] of them; `None` if there are none.
     pub fn of_all(all: impl Iterator<Item = Self>) -> Option<Self> {
         let mut all = all.take(MOST_FAULTS);
         let first = all.next()?;
@@ -57,7 +57,7 @@ impl FileError {
     }
 }
 
-/// Turns messages about fields into errors that know file and line.
+/// Context that turns messages about fields into errors with file and line.
 pub(crate) struct Blame<'a> {
     file: &'a str,
     text: &'a str,
@@ -68,8 +68,8 @@ impl<'a> Blame<'a> {
         Self { file, text }
     }
 
-    /// Deserialises the text. Where its shape is wrong everything is named that the schema tells;
-    /// otherwise the parser's own line and column survive.
+    /// Deserialises the text. If its shape is wrong, the error lists all faults that the schema
+    /// finds, otherwise the fault of the parser with its line and column.
     pub(crate) fn read<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, FileError> {
         crate::yaml::read(self.text).map_err(|error| {
             let of_parser = FileError::of_yaml(self.file, error);
@@ -79,8 +79,8 @@ impl<'a> Blame<'a> {
         })
     }
 
-    /// An error at a dotted field; the line is that of the path's keys, each looked for below the
-    /// one before.
+    /// Creates an error at a dotted field; the line is that of the path's keys, each searched below
+    /// the one before.
     pub(crate) fn at(&self, field: &str, message: impl ToString) -> FileError {
         FileError {
             file: self.file.to_owned(),
@@ -94,7 +94,7 @@ impl<'a> Blame<'a> {
     fn line_of(&self, field: &str) -> Option<usize> {
         let mut found = None;
         for key in field.split('.') {
-            // A key may stand on the line of the one before, in braces.
+            // A key may be on the line of the one before, in braces.
             let start = found.map_or(0, |line: usize| line - 1);
             match self.text.lines().enumerate().skip(start).find(|(_, line)| names_key(line, key)) {
                 Some((index, _)) => found = Some(index + 1),
@@ -105,8 +105,8 @@ impl<'a> Blame<'a> {
     }
 }
 
-/// Whether the line has `key:` as a whole word (quoted or not), or lists it as `- key` or in
-/// brackets.
+/// Returns true if the line has `key:` as a whole word (quoted or not), or lists it as `- key` or
+/// in brackets.
 fn names_key(line: &str, key: &str) -> bool {
     line.match_indices(key).any(|(at, _)| {
         let before = line[..at].chars().next_back();

@@ -1,41 +1,41 @@
-//! Particulars of a model that its ship does not state: named, with a band and where they come from.
+//! Estimated particulars of a model, which its ship does not state, with band and source.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::particulars::{Particulars, range};
 
-/// Beginning of the source of a particular by a regression, whose name follows.
+/// Beginning of the source of a particular from a regression, whose name follows.
 pub const ESTIMATED: &str = "estimated: ";
-/// Beginning of the source of a particular that is another ship's, scaled by Froude's law.
+/// Beginning of the source of a particular that is scaled from another ship by Froude's law.
 pub const SCALED: &str = "scaled from ";
 
-/// The normal's quantile of 97.5 %.
+/// Quantile of the normal distribution for 97.5 %.
 const NORMAL: f64 = 1.96;
 
-/// A particular that is not stated by the ship.
+/// A particular that the ship does not state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EstimatedParticular {
     /// Its name, with the unit.
     pub name: String,
-    /// What is used.
+    /// The value in use.
     pub value: f64,
-    /// 95 % band; absent where no scatter is known.
+    /// 95 % band; absent if no scatter is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band: Option<[f64; 2]>,
-    /// The regression, or the ship it is scaled from.
+    /// The regression, or the ship from which it is scaled.
     pub source: String,
 }
 
 impl EstimatedParticular {
-    /// In words, `x_g_m -2.32 (95 % -6.7 to 2.1; estimated: zoo-medians)`.
+    /// Description, such as `x_g_m -2.32 (95 % -6.7 to 2.1; estimated: zoo-medians)`.
     pub fn words(&self) -> String {
         let band = self.band.map(|[low, high]| format!("95 % {low:.4} to {high:.4}; "));
         format!("{} {:.4} ({}{})", self.name, self.value, band.unwrap_or_default(), self.source)
     }
 }
 
-/// Those of a model, in the order of their names.
+/// Returns the estimated particulars of a model, in the order of their names.
 pub fn estimated_particulars(particulars: &Particulars) -> Vec<EstimatedParticular> {
     let is_estimated = |source: &str| source.starts_with(ESTIMATED) || source.starts_with(SCALED);
     let estimates = particulars.iter().filter(|(_, quantity)| is_estimated(&quantity.source));
@@ -48,7 +48,7 @@ pub fn estimated_particulars(particulars: &Particulars) -> Vec<EstimatedParticul
     estimates.map(one).collect()
 }
 
-/// A sentence that names them; none where every particular is stated.
+/// Returns a sentence that names the estimated particulars; `None` if every particular is stated.
 pub fn estimated_words(particulars: &Particulars) -> Option<String> {
     let all = estimated_particulars(particulars);
     let words: Vec<String> = all.iter().map(EstimatedParticular::words).collect();
@@ -60,7 +60,7 @@ pub fn estimated_words(particulars: &Particulars) -> Option<String> {
     (!words.is_empty()).then_some(sentence)
 }
 
-/// A band of an estimate, within what is believed of the particular.
+/// Band of an estimate, within the plausible range of the particular.
 fn band(name: &str, value: f64, error: f64) -> [f64; 2] {
     let (low, high) = range(name).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     [(value - NORMAL * error).max(low), (value + NORMAL * error).min(high)]

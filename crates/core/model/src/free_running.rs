@@ -1,4 +1,4 @@
-//! Free-running trials of a ship as published: the figures that speak for or against its models.
+//! Published free-running trials of a ship: the figures against which its models are validated.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 pub struct FreeRunning {
     /// Key of the source.
     pub source: String,
-    /// What sailed.
+    /// Sea trial or model test.
     pub kind: FreeRunningKind,
-    /// Approach speed at the scale of this file, m/s; the model's own where the source has none.
+    /// Approach speed at the scale of this file, m/s; default: that of the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_m_s: Option<f64>,
     /// A remark.
@@ -26,7 +26,7 @@ pub struct FreeRunning {
     pub zigzags: Vec<PublishedZigzag>,
 }
 
-/// What sailed a free-running trial.
+/// Kind of a free-running trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FreeRunningKind {
@@ -37,7 +37,7 @@ pub enum FreeRunningKind {
 }
 
 impl FreeRunningKind {
-    /// The words for people.
+    /// Name of the kind for readers.
     pub fn words(self) -> &'static str {
         match self {
             Self::SeaTrial => "sea trial",
@@ -50,7 +50,7 @@ impl FreeRunningKind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PublishedTurn {
-    /// Rudder, deg, positive turns to starboard.
+    /// Rudder angle, deg, positive turns to starboard.
     pub rudder_deg: f64,
     /// The figures are the mean of both sides.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -75,7 +75,7 @@ pub struct PublishedTurn {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PublishedZigzag {
-    /// Rudder, deg, positive where the first execution is to starboard.
+    /// Rudder angle, deg, positive if the first execution is to starboard.
     pub rudder_deg: f64,
     /// Change of heading at which the rudder is reversed, deg.
     pub switch_deg: f64,
@@ -92,16 +92,16 @@ pub struct PublishedZigzag {
     pub second_overshoot_deg: Option<f64>,
 }
 
-/// The largest rudder angle that a trial may have, deg.
+/// Largest rudder angle of a trial, deg.
 const MOST_RUDDER_DEG: f64 = 90.0;
-/// The longest figure of a turn that is believed, ship lengths.
+/// Largest plausible figure of a turn, ship lengths.
 const MOST_LENGTHS: f64 = 50.0;
 
 impl FreeRunning {
-    /// Checks that its source is listed and that its figures can be.
+    /// Checks that its source is listed and that its figures are plausible.
     ///
     /// # Errors
-    /// The field at fault, and what would be right.
+    /// Returns the field at fault and its remedy.
     pub fn check(&self, sources: &[&str]) -> Result<(), (String, String)> {
         let wrong = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
         if !sources.contains(&self.source.as_str()) {
@@ -143,7 +143,7 @@ fn check_uncertainty(field: &str, value: f64) -> Result<(), (String, String)> {
 }
 
 impl PublishedTurn {
-    /// Its figures by name, ship lengths.
+    /// Figures by name, ship lengths.
     pub fn figures(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("advance", self.advance),
@@ -164,7 +164,7 @@ impl PublishedTurn {
 }
 
 impl PublishedZigzag {
-    /// Its figures by name, deg.
+    /// Figures by name, deg.
     pub fn figures(&self) -> [(&'static str, Option<f64>); 2] {
         [
             ("first overshoot", self.first_overshoot_deg),

@@ -1,11 +1,11 @@
-//! What is learned beside a law of motion, as a simulation takes it, and how it comes to a model.
+//! Interface of learned corrections for simulations, and their attachment to models.
 
 use std::fmt;
 use std::sync::Arc;
 
 use sistership_formula::Expr;
 
-/// What a learned branch sees of an instant.
+/// Inputs of a learned correction at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instant {
     /// u, v, r: m/s, m/s, rad/s.
@@ -14,71 +14,72 @@ pub struct Instant {
     pub delta_rad: f64,
     /// Propeller revolutions, 1/s; 0 for a law without them.
     pub n_rps: f64,
-    /// The rates of u, v, r that the law gives, its foundation: m/s2, m/s2, rad/s2.
+    /// Rates of u, v, r by the law, the foundation: m/s2, m/s2, rad/s2.
     pub accelerations: [f64; 3],
 }
 
-/// Derivatives of what a learned correction adds to the rates of u, v, r; a row for each of them.
+/// Derivatives of the additions to the rates of u, v, r; one row for each of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AdditionGradient {
-    /// With u, v, r.
+    /// With respect to u, v, r.
     pub by_velocity: [[f64; 3]; 3],
-    /// With the rudder angle.
+    /// With respect to the rudder angle.
     pub by_delta: [f64; 3],
-    /// With the propeller revolutions.
+    /// With respect to the propeller revolutions.
     pub by_n: [f64; 3],
-    /// With the rates of u, v, r that the law gives.
+    /// With respect to the rates of u, v, r by the law.
     pub by_acceleration: [[f64; 3]; 3],
 }
 
 /// Names of the law's own rates of u, v, r in formulas of a learned correction.
 pub const LAW_RATES: [&str; 3] = ["law.u_dot", "law.v_dot", "law.r_dot"];
 
-/// What a learned correction adds as formulas over `u`, `v`, `r`, `delta`, `n` and [`LAW_RATES`].
+/// Additions of a learned correction as formulas of `u`, `v`, `r`, `delta`, `n` and [`LAW_RATES`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct AdditionFormulas {
-    /// Intermediate values by name, each of names before it.
+    /// Intermediate values by name, each of earlier names.
     pub values: Vec<(String, Expr)>,
-    /// What is added to the rates of u, v, r; none where nothing is.
+    /// Additions to the rates of u, v, r; `None` where nothing is added.
     pub added: [Option<Expr>; 3],
 }
 
-/// Something learned that changes the accelerations of a ship in surge, sway and yaw.
+/// Learned correction of the accelerations of a ship in surge, sway and yaw.
 ///
-/// It must keep its additions bounded, and give none outside what it was trained on.
+/// An implementation must keep its additions bounded, and return zero outside the range of its
+/// training.
 pub trait LearnedBranch: fmt::Debug + Send + Sync {
-    /// What is added to the rates of u, v, r: m/s2, m/s2, rad/s2.
+    /// Returns the additions to the rates of u, v, r: m/s2, m/s2, rad/s2.
     fn addition(&self, instant: &Instant) -> [f64; 3];
 
-    /// Derivatives of [`LearnedBranch::addition`].
+    /// Returns the derivatives of [`LearnedBranch::addition`].
     fn gradient(&self, instant: &Instant) -> AdditionGradient;
 
-    /// [`LearnedBranch::addition`] as formulas.
+    /// Returns [`LearnedBranch::addition`] as formulas.
     fn formulas(&self) -> AdditionFormulas;
 
-    /// What it counts for, from 0 (the foundation acts alone) to 1.
+    /// Returns the share of the correction, from 0 (the foundation acts alone) to 1.
     fn share(&self, instant: &Instant) -> f64;
 }
 
-/// The weights of a branch, checked against its document and ready to be asked; none in a document
-/// just read. `sistership-learned` attaches them. A model with a branch and without weights does
-/// not sail.
+/// Weights of a learned correction, checked against its document and ready for evaluation; empty in
+/// a document that was just read. `sistership-learned` attaches them. A model with a learned
+/// correction but without its weights cannot be simulated.
 #[derive(Clone, Default)]
 pub struct Attached(Option<Arc<dyn LearnedBranch>>);
 
 impl Attached {
-    /// Of weights that suit the document.
+    /// Attaches weights that match the document.
     pub fn new(learned: Arc<dyn LearnedBranch>) -> Self {
         Self(Some(learned))
     }
 
-    /// The weights, where they are there.
+    /// The weights, if they have been attached.
     pub fn get(&self) -> Option<&Arc<dyn LearnedBranch>> {
         self.0.as_ref()
     }
 }
 
-/// Documents are compared: which weights belong to one, it says by their hash.
+/// All are equal, because documents are compared by the hash of their weights.
 impl PartialEq for Attached {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -86,7 +87,7 @@ impl PartialEq for Attached {
 }
 
 impl fmt::Debug for Attached {
-    /// Whether there are weights: they are many numbers.
+    /// Writes only the presence of weights, which are many numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Attached").field(&self.0.is_some()).finish()
     }

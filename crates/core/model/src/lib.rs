@@ -1,7 +1,7 @@
-//! The vocabulary: ships, particulars, laws, coefficients, trials, versions.
+//! Vocabulary of the domain: ships, particulars, laws, coefficients, trials, versions.
 //!
-//! No I/O and no async: text goes in, checked values come out, and every refusal names file, line
-//! and field.
+//! No I/O and no async: text goes in, checked values come out, and every error names file, line and
+//! field.
 
 pub mod branch;
 pub mod categories;

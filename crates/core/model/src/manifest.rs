@@ -1,4 +1,4 @@
-//! The manifest that maps a file to trials: columns, units, signs and frames.
+//! Manifest that maps files to trials: columns, units, signs and frames.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub struct Manifest {
     /// Always `trials`.
     pub kind: TrialsKind,
-    /// The ship that was tried; it may be left open, as `refine --ship` names it.
+    /// The ship of the trials; may be absent, since `refine --ship` also names it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub ship: String,
     /// Signs and frames of the files.
@@ -35,7 +35,7 @@ pub enum TrialsKind {
     Trials,
 }
 
-/// Where a channel stands in a file.
+/// The column of a channel in a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ColumnMapping {
@@ -43,14 +43,14 @@ pub struct ColumnMapping {
     pub column: String,
     /// Its unit.
     pub unit: String,
-    /// Whether it counts the other way than the channel: heading anticlockwise, `v` to port. Of
-    /// rudders `rudder_positive` says so for all files.
+    /// True if it has the opposite sign of the channel: heading anticlockwise, `v` to port. For
+    /// rudders, `rudder_positive` declares the sign for all files.
     #[serde(default, skip_serializing_if = "is_false")]
     pub reversed: bool,
 }
 
 impl ColumnMapping {
-    /// A column that counts as the channel does.
+    /// Creates a mapping for a column with the sign of the channel.
     pub fn new(column: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { column: column.into(), unit: unit.into(), reversed: false }
     }
@@ -60,32 +60,32 @@ fn is_false(value: &bool) -> bool {
     !value
 }
 
-/// One file of a manifest, or a stretch of one.
+/// One file of a manifest, or a segment of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ManifestTrial {
     /// Path, relative to the manifest.
     pub file: String,
-    /// Where the stretch begins that is read; absent for the file's first row.
+    /// Start of the segment to read; default: the file's first row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<FileTime>,
-    /// Where it ends; absent for the last row.
+    /// End of the segment; default: the last row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<FileTime>,
-    /// What was sailed.
+    /// The manoeuvre, such as `zigzag 10/10`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub manoeuvre: Option<String>,
     /// Water depth, m; absent for deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_m: Option<f64>,
-    /// The file's own columns, in place of those of the manifest.
+    /// Columns of this file, in place of those of the manifest.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, ColumnMapping>")]
     pub columns: IndexMap<String, ColumnMapping>,
 }
 
 impl ManifestTrial {
-    /// A file by its name alone.
+    /// Creates an entry for a whole file.
     pub fn of(file: impl Into<String>) -> Self {
         Self {
             file: file.into(),
@@ -97,12 +97,12 @@ impl ManifestTrial {
         }
     }
 
-    /// Whether only a part of the file is read.
+    /// Returns true if only a part of the file is read.
     pub fn is_stretch(&self) -> bool {
         self.from.is_some() || self.to.is_some()
     }
 
-    /// What the trial is called: its file, with the times of a stretch as media fragments have them
+    /// Name of the trial: its file, with the times of a segment in the notation of media fragments
     /// (W3C 2012), `log.csv#t=3600,5400`.
     pub fn label(&self) -> String {
         let text = |time: &Option<FileTime>| time.as_ref().map_or(String::new(), |t| t.to_string());
@@ -117,9 +117,9 @@ impl ManifestTrial {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum FileTime {
-    /// As in its column of seconds; where that has dates or times of day, s since its first row.
+    /// As in its column of seconds; for a column of dates or times of day, s since its first row.
     Seconds(f64),
-    /// As a clock says it, such as `2024-05-01T09:30:00Z` or `09:30:00`.
+    /// Clock time, such as `2024-05-01T09:30:00Z` or `09:30:00`.
     Clock(String),
 }
 
@@ -136,24 +136,24 @@ impl fmt::Display for FileTime {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrialConventions {
-    /// Which way positive rudder turns the ship.
+    /// Direction in which positive rudder turns the ship.
     pub rudder_positive: RudderSign,
-    /// What columns of `u` and `v` are speeds over or through; those of `u_water` and `v_water`
-    /// are through the water always.
+    /// Frame of the velocities in columns of `u` and `v`; those of `u_water` and `v_water` are
+    /// always through the water.
     pub velocity: VelocityFrame,
-    /// How wind is given.
+    /// Convention of the wind.
     pub wind: WindConvention,
-    /// What to do with rows in which a mapped value is missing or not a number.
+    /// Treatment of rows in which a mapped value is missing or not a number.
     pub missing: Missing,
     /// Longest gap that `missing: bridge` fills, s; 4 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bridge_s: Option<f64>,
-    /// Smooth the recorded channels at the door.
+    /// Smoothing of the recorded channels on input.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<Smoothing>,
 }
 
-/// Which way positive rudder turns the ship.
+/// Direction in which positive rudder turns the ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RudderSign {
@@ -164,7 +164,7 @@ pub enum RudderSign {
     PortTurn,
 }
 
-/// What `u` and `v` are components of.
+/// Frame of the velocities `u` and `v`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum VelocityFrame {
@@ -175,13 +175,13 @@ pub enum VelocityFrame {
     Water,
 }
 
-/// How wind is given.
+/// Convention of the wind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WindConvention {
     /// True or apparent.
     pub kind: WindKind,
-    /// Where it comes from or goes to.
+    /// Meaning of the direction.
     pub direction: WindDirection,
 }
 
@@ -192,32 +192,32 @@ pub enum WindKind {
     /// Over the ground, clockwise from north.
     #[default]
     True,
-    /// As felt aboard, clockwise from the bow.
+    /// As measured aboard, clockwise from the bow.
     Apparent,
 }
 
-/// What a wind direction points at.
+/// Meaning of a wind direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WindDirection {
-    /// Where the wind comes from.
+    /// The wind comes from there.
     #[default]
     From,
-    /// Where it blows to.
+    /// The wind blows to there.
     To,
 }
 
-/// What to do with rows in which a value is missing or not a number.
+/// Treatment of rows in which a value is missing or not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Missing {
     /// Refuse the file and name the row.
     #[default]
     Refuse,
-    /// Leave the row out; the gap is kept as a warning and nothing is interpolated over it.
+    /// Leave the row out; the gap is reported as a warning, and nothing is interpolated over it.
     Drop,
-    /// Fill a channel's gap of at most `bridge_s` along the straight line between its ends, and
-    /// leave the rows of longer gaps out; both are told.
+    /// Fill a channel's gap of at most `bridge_s` by linear interpolation, and leave the rows of
+    /// longer gaps out; both are reported.
     Bridge,
 }
 

@@ -1,5 +1,5 @@
-//! A model: a law with coefficients for one ship, in canonical signs, as it is stored, exchanged
-//! and simulated.
+//! Model: a law with coefficients for one ship, in canonical signs, as it is stored, exchanged and
+//! simulated.
 
 use std::collections::BTreeMap;
 
@@ -30,11 +30,11 @@ pub struct Model {
     pub kind: ModelKind,
     /// Its name, `ship/model`.
     pub name: String,
-    /// The ship it is of.
+    /// The ship of the model.
     pub ship: String,
     /// The law of motion.
     pub law: String,
-    /// How far its figures can be trusted.
+    /// Origin of its figures.
     pub status: Status,
     /// A remark.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -42,7 +42,7 @@ pub struct Model {
     /// Publications by key.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sources: BTreeMap<String, Source>,
-    /// The approach speed it belongs to, m/s.
+    /// The approach speed to which it belongs, m/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_m_s: Option<f64>,
     /// The propeller revolutions at that speed, 1/s.
@@ -60,19 +60,20 @@ pub struct Model {
     /// Effects that change the law from outside.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<AppliedEffect>,
-    /// What the trials it was fitted on leave open.
+    /// Information of the coefficients and remaining discrepancy of the fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<Uncertainty>,
-    /// How far the coefficients may be from the truth.
+    /// Joint uncertainty of the coefficients.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub posterior: Option<Posterior>,
     /// The motion that its trials covered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validity: Option<Region>,
-    /// Resistance and thrust where its trials do not reach.
+    /// Resistance and thrust outside the range covered by its trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub propulsion: Option<Propulsion>,
-    /// What was learned beside the law; its weights are kept apart, under the hash that it names.
+    /// Learned correction of the law; its weights are stored separately, under the hash that it
+    /// names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub branch: Option<Branch>,
 }
@@ -85,14 +86,14 @@ pub enum ModelKind {
     Model,
 }
 
-/// The source key of what follows from particulars by the law's own formula.
+/// Source key of parameters that follow from particulars by the law's own formula.
 pub const DERIVED: &str = "derived-from-particulars";
 
 impl Model {
     /// Reads and checks a model document against its law.
     ///
     /// # Errors
-    /// Names file, line and field of the first thing that is wrong.
+    /// Returns an error with file, line and field of the first fault.
     pub fn parse(
         file: &str,
         text: &str,
@@ -108,12 +109,13 @@ impl Model {
         Ok(model)
     }
 
-    /// A published model of a vessel, converted to canonical signs; the first one where no name is
-    /// given.
+    /// Creates a published model of a vessel, converted to canonical signs; by default its first
+    /// one.
     ///
     /// # Errors
-    /// Says which model, parameter or coefficient is missing or unknown.
+    /// Returns an error that names the model, parameter or coefficient that is missing or unknown.
     pub fn published(vessel: &Vessel, name: Option<&str>, law: &Law) -> Result<Self, FileError> {
+        // The text of the vessel is not available here, so that errors have no line.
         let blame = Blame::new(vessel.name(), "");
         let raw = published_file(vessel, name).map_err(|e| blame.at("models", e))?;
         let path = |section: &str| format!("models.{}.{section}", raw.name);
@@ -144,6 +146,8 @@ impl Model {
             propulsion: None,
             branch: None,
         };
+        // Parameters are completed before the check, and the check precedes the change of signs,
+        // which needs known names.
         model.fill_parameters(law);
         model
             .check(law)
@@ -154,10 +158,10 @@ impl Model {
         Ok(model)
     }
 
-    /// This model carried over to another ship: the same coefficients in the law's own scaling, its
-    /// particulars, and every parameter that the law derives from particulars recomputed for it.
-    /// `approach_speed_m_s` replaces the speed about which the law is expanded, which belongs to
-    /// the trials.
+    /// Transfers this model to another ship: the same coefficients in the law's own scaling, the
+    /// particulars of that ship, and every parameter that the law derives from particulars
+    /// recomputed for it. `approach_speed_m_s` replaces the speed about which the law is expanded,
+    /// which belongs to the trials.
     pub fn transferred(
         &self,
         law: &Law,
@@ -171,7 +175,7 @@ impl Model {
         model.status = Status::Transferred;
         model.note = Some(format!("carried over from {}", self.name));
         model.particulars = particulars.clone();
-        // What acted on the source's trials, and what they left open, belongs to those trials.
+        // Effects and uncertainty belong to the trials of the source model.
         model.effects = Vec::new();
         (model.uncertainty, model.posterior, model.validity) = (None, None, None);
         (model.propulsion, model.branch) = (None, None);
@@ -186,7 +190,7 @@ impl Model {
         model
     }
 
-    /// The model without what was learned beside its law.
+    /// Returns the model without its learned correction.
     pub fn foundation(&self) -> Self {
         Self { branch: None, ..self.clone() }
     }
@@ -199,23 +203,23 @@ impl Model {
         }
     }
 
-    /// The value of a coefficient; zero where the model does not have it.
+    /// Value of a coefficient; zero if the model does not have it.
     pub fn coefficient(&self, name: &str) -> f64 {
         self.coefficients.get(name).map_or(0.0, |quantity| quantity.value)
     }
 
-    /// How far its coefficients may be from the truth; none where they are no longer those that
-    /// were estimated.
+    /// Joint uncertainty of the coefficients; `None` if they have changed since they were
+    /// estimated.
     pub fn posterior(&self) -> Option<&Posterior> {
         self.posterior.as_ref().filter(|p| {
             p.is_about(|name| self.coefficients.get(name).map(|quantity| quantity.value))
         })
     }
 
-    /// Checks that the law knows every name and that every parameter has a value.
+    /// Checks that the law has every name and that every parameter has a value.
     ///
     /// # Errors
-    /// The field at fault and what is wrong with it.
+    /// Returns the field at fault and the reason.
     pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
         most("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
         for name in self.coefficients.keys() {
@@ -263,6 +267,7 @@ impl Model {
             if self.parameters.contains_key(name) {
                 continue;
             }
+            // The approach speed belongs to the model; other parameters follow from particulars.
             let value = if parameter.is_approach_speed { self.speed_m_s } else { None };
             let value = value.or_else(|| law.derived_parameter(name, &self.particulars));
             if let Some(value) = value {
@@ -271,7 +276,7 @@ impl Model {
         }
     }
 
-    /// Turns coefficients that count positive rudder to port into canonical ones.
+    /// Converts coefficients with positive rudder to port to canonical signs.
     fn flip_rudder(&mut self, law: &Law) {
         let odd = law.odd_in_rudder().collect();
         for (name, quantity) in &mut self.coefficients {
@@ -283,10 +288,10 @@ impl Model {
 }
 
 impl Law {
-    /// This law with the propulsion and the effects that a model carries.
+    /// Returns this law with the propulsion and the effects of a model.
     ///
     /// # Errors
-    /// The field of the model at fault, and why.
+    /// Returns the field of the model at fault and the reason.
     pub fn with_effects(&self, model: &Model) -> Result<Self, (String, String)> {
         most("effects", model.effects.len(), MAX_EFFECTS)?;
         let mut forms = Vec::new();
@@ -298,12 +303,14 @@ impl Law {
         }
         let listed: Vec<(&str, &Form)> =
             forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
+        // Propulsion comes first: effects act on the law that includes it.
         let propelled = model.propulsion.as_ref().map(|own| self.with_propulsion(own));
         let propelled = propelled.transpose()?;
         let mut law = propelled.as_ref().unwrap_or(self).dressed(model, &listed);
         if !listed.is_empty() || model.propulsion.is_some() {
             law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
         }
+        // The forms were added at their absence; the parameters get the values of the model here.
         for (effect, _) in &forms {
             for (name, quantity) in &effect.parameters {
                 law.dressing
@@ -314,7 +321,8 @@ impl Law {
         Ok(law)
     }
 
-    /// This law with forms of effects at the absence of each; `model` gives the particulars.
+    /// Returns this law with forms of effects at the absence of each; `model` gives the
+    /// particulars.
     pub fn dressed(&self, model: &Model, forms: &[(&str, &Form)]) -> Self {
         dress(self, &model.particulars, model.speed_m_s, forms)
     }

@@ -1,4 +1,4 @@
-//! The particulars of a ship: what a file may state about it, with units in the names.
+//! Particulars of a ship: the figures that a file may state, with units in the names.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ const VOLUME: Dimension = Dimension::new(0.0, 3.0, 0.0);
 const DENSITY: Dimension = Dimension::new(1.0, -3.0, 0.0);
 const MASS: Dimension = Dimension::new(1.0, 0.0, 0.0);
 
-/// Name, dimension, smallest and largest value that is believed.
+/// Name, dimension, least and greatest plausible value.
 const KNOWN: &[(&str, Dimension, f64, f64)] = &[
     ("lpp_m", Dimension::LENGTH, 0.3, 600.0),
     ("loa_m", Dimension::LENGTH, 0.3, 700.0),
@@ -45,33 +45,33 @@ const KNOWN: &[(&str, Dimension, f64, f64)] = &[
     ("water_density_kg_m3", DENSITY, 900.0, 1100.0),
 ];
 
-/// The particulars that formulas may use without the ship stating them.
+/// Values of particulars that a ship need not state.
 const DEFAULTS: &[(&str, f64)] = &[("water_density_kg_m3", 1025.0)];
 
-/// The dimension of a particular.
+/// Dimension of a particular.
 pub fn dimension(name: &str) -> Option<Dimension> {
     KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, dimension, ..)| dimension)
 }
 
-/// The least and the largest value that is believed of a particular.
+/// Least and greatest plausible value of a particular.
 pub fn range(name: &str) -> Option<(f64, f64)> {
     KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, _, low, high)| (low, high))
 }
 
-/// The names that may be used.
+/// Names of all particulars.
 pub fn names() -> impl Iterator<Item = &'static str> {
     KNOWN.iter().map(|&(name, ..)| name)
 }
 
-/// Checks names and ranges, and that the numbers of one ship go together.
+/// Checks names and ranges, and the consistency of the figures of one ship.
 ///
 /// # Errors
-/// Names the particular at fault and what is believed of it.
+/// Returns the particular at fault and its plausible range.
 pub fn check(particulars: &Particulars) -> Result<(), (String, String)> {
     faults(particulars).into_iter().next().map_or(Ok(()), Err)
 }
 
-/// Every particular at fault, with what is believed of it; of many the first.
+/// Returns the particulars at fault with their plausible ranges, at most [`MOST_FAULTS`].
 pub fn faults(particulars: &Particulars) -> Vec<(String, String)> {
     let one = |(name, quantity): (&String, &Quantity)| {
         let Some(&(_, _, low, high)) = KNOWN.iter().find(|(known, ..)| known == name) else {
@@ -88,13 +88,14 @@ pub fn faults(particulars: &Particulars) -> Vec<(String, String)> {
     };
     let found: Vec<(String, String)> =
         particulars.iter().filter_map(one).take(MOST_FAULTS).collect();
+    // The consistency of several figures is checked only if each is plausible.
     match found.is_empty() {
         true => check_block_coefficient(particulars).err().into_iter().collect(),
         false => found,
     }
 }
 
-/// Displacement and block coefficient must tell the same story.
+/// Checks that displacement and block coefficient agree within 8 %.
 fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, String)> {
     let of = |name: &str| particulars.get(name).map(|q| q.value);
     let (Some(c_b), Some(volume), Some(l), Some(b), Some(t)) = (
@@ -116,25 +117,26 @@ fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, Str
     Ok(())
 }
 
-/// A particular's value, stated, derived from others, or by default.
+/// Value of a particular: stated, derived from others, or by default.
 pub fn value(particulars: &Particulars, name: &str) -> Option<f64> {
     let default =
         |name: &str| DEFAULTS.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
     given(particulars, name).or_else(|| default(name))
 }
 
-/// A particular's value, stated or derived from others that are.
+/// Value of a particular: stated, or derived from stated ones.
 pub fn given(particulars: &Particulars, name: &str) -> Option<f64> {
     let stated = |name: &str| particulars.get(name).map(|q| q.value);
     stated(name).or_else(|| derived(name, &stated))
 }
 
-/// What follows from other particulars.
+/// Value that follows from other particulars.
 fn derived(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
     let density = stated("water_density_kg_m3").unwrap_or(DEFAULTS[0].1);
     let box_volume = || Some(stated("lpp_m")? * stated("beam_m")? * stated("draught_m")?);
     let from_block = || Some(stated("block_coefficient")? * box_volume()?);
     let volume = || stated("displacement_m3").or_else(|| Some(stated("mass_kg")? / density));
+    // Each relation is used for every figure that it determines.
     match name {
         "displacement_m3" => volume().or_else(from_block),
         "block_coefficient" => Some(volume()? / box_volume()?),

@@ -1,4 +1,4 @@
-//! How far the coefficients of a refined model may be from the truth, jointly.
+//! Joint uncertainty of the coefficients of a refined model.
 
 use std::collections::BTreeMap;
 
@@ -7,25 +7,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::triangle::{self, TriangleError};
 
-/// The errors of estimated coefficients as a normal distribution about the estimate: variances of
-/// the estimator through the scatter of the trials, and of what the prior adds where it holds.
+/// Errors of estimated coefficients as a normal distribution about the estimate: variances of the
+/// estimator through the scatter of the trials, and of what the prior adds where it holds.
 /// docs/decisions/0012 says what an interval means.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Posterior {
     /// Names of the coefficients.
     pub names: Vec<String>,
-    /// The estimates that it is about, in the units of the coefficients; a model that has others
-    /// has lost its posterior.
+    /// The estimates to which it belongs, in the units of the coefficients; a model with other
+    /// values has no posterior.
     pub values: Vec<f64>,
     /// Standard deviations, in the units of the coefficients.
     pub deviations: Vec<f64>,
-    /// The lower triangle of the Cholesky root of the correlations, a row in a line: numbers up to
+    /// Lower triangle of the Cholesky root of the correlations, one string per row: numbers up to
     /// the diagonal, separated by spaces.
     pub root_correlation: Vec<String>,
 }
 
-/// Why it cannot be used.
+/// Reason for which a posterior cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PosteriorError {
     /// Lists differ in length.
@@ -34,13 +34,13 @@ pub enum PosteriorError {
     /// A deviation is negative.
     #[error("deviations should be at least 0")]
     Deviations,
-    /// The root of the correlation is no triangle.
+    /// The root of the correlations is not a lower triangle.
     #[error(transparent)]
     Root(#[from] TriangleError),
 }
 
 impl Posterior {
-    /// Writes a lower triangle row by row; `entry(i, j)` for `j <= i`.
+    /// Formats a lower triangle row by row; `entry(i, j)` for `j <= i`.
     pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
         let row = |i: usize| {
             (0..=i).map(|j| format!("{:.5e}", entry(i, j))).collect::<Vec<_>>().join(" ")
@@ -48,10 +48,11 @@ impl Posterior {
         (0..size).map(row).collect()
     }
 
-    /// The root of the covariance, row by row up to the diagonal, in the units of the coefficients.
+    /// Root of the covariance, row by row up to the diagonal, in the units of the coefficients.
     ///
     /// # Errors
-    /// Names the row that is not as long as it should be, or not of numbers.
+    /// Returns an error that names the row of a wrong length, or with an entry that is not a
+    /// number.
     pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
         let rows = triangle::read(
             "root_correlation",
@@ -59,12 +60,13 @@ impl Posterior {
             self.names.len(),
             |place| place + 1,
         )?;
+        // The root of the correlations times the deviations, row by row, is that of the covariance.
         let scaled =
             |(row, deviation): (Vec<f64>, &f64)| row.into_iter().map(|x| x * deviation).collect();
         Ok(rows.into_iter().zip(&self.deviations).map(scaled).collect())
     }
 
-    /// Whether it is about these coefficients.
+    /// Returns true if it belongs to coefficients with these values.
     pub fn is_about(&self, value: impl Fn(&str) -> Option<f64>) -> bool {
         self.names.iter().zip(&self.values).all(|(name, about)| value(name) == Some(*about))
     }
@@ -74,10 +76,10 @@ impl Posterior {
         self.names.iter().map(String::as_str).zip(self.deviations.iter().copied()).collect()
     }
 
-    /// Checks that the lists go together.
+    /// Checks that the lists are consistent.
     ///
     /// # Errors
-    /// Says which do not.
+    /// Returns an error that names the inconsistent lists.
     pub fn check(&self) -> Result<(), PosteriorError> {
         let size = self.names.len();
         if self.values.len() != size || self.deviations.len() != size {

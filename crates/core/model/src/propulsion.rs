@@ -1,12 +1,13 @@
-//! Propulsion where a model's trials do not reach: a surge balance of resistance and open-water
-//! thrust in place of what a law extrapolates straight ahead.
+//! Propulsion outside the range covered by a model's trials: a surge balance of resistance and
+//! open-water thrust in place of the law's extrapolation straight ahead.
 //!
 //! The formulas are data (`models/propulsion/open-water.yaml`). Within the speeds and revolutions
-//! of the trials the law stays as it is. Beyond them it sees revolutions of its trials, and what it
-//! says straight ahead gives way to the balance. With `F_s` for what a law says straight ahead,
-//! rudder amidships and in still air, `P` for the balance, `n'` for the revolutions that the law
-//! sees and `w` for its share, surge becomes `F - (1 - w) F_s + P(u, n) - w P(u, n')`; sway, yaw
-//! and roll the same without `P`. What is linear in the coefficients stays so.
+//! of the trials the law is unchanged. Outside of them its revolutions are limited to those of its
+//! trials, and its forces straight ahead are replaced by the balance. With `F_s` for the law's
+//! force straight ahead, rudder amidships and in still air, `P` for the balance, `n'` for the
+//! limited revolutions and `w` for the law's share, surge becomes `F - (1 - w) F_s + P(u, n) - w
+//! P(u, n')`; sway, yaw and roll the same without `P`. Terms that are linear in the coefficients
+//! remain so.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
@@ -24,7 +25,7 @@ use crate::source::Source;
 use sistership_formula::units::{Dimension, Unit};
 use sistership_formula::{Expr, parse};
 
-/// The surge balance of a model, by the parameters that its formulas name.
+/// The surge balance of a model, by the parameters in its formulas.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Propulsion {
@@ -32,7 +33,7 @@ pub struct Propulsion {
     pub parameters: BTreeMap<String, Quantity>,
 }
 
-/// The formulas as their file writes them.
+/// Formulas in the form of their file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BalanceFile {
@@ -66,7 +67,7 @@ struct ParameterFile {
     meaning: String,
 }
 
-/// The formulas, read.
+/// Formulas of the balance, parsed.
 #[derive(Debug)]
 struct Balance {
     parameters: IndexMap<String, Parameter>,
@@ -118,18 +119,18 @@ fn named<'a, C: FromIterator<(String, Expr)>>(
     raw.into_iter().map(|(name, text)| Ok((name.clone(), formula(name, text)?))).collect()
 }
 
-/// The revolutions in a law.
+/// Input of the revolutions in a law.
 const REVOLUTIONS: &str = "n";
-/// States that vanish straight ahead.
+/// States that are zero straight ahead.
 const ACROSS: [&str; 4] = ["v", "r", "p", "phi"];
-/// Inputs that vanish in still air, and the first letters of those that vanish with the rudder
+/// Inputs that are zero in still air, and the prefix of those that are zero with the rudder
 /// amidships.
 const WIND: [&str; 2] = ["wind_speed", "apparent_wind_speed"];
 const RUDDER: &str = "delta";
-/// The value that the share of the balance is.
+/// Name of the value that is the share of the balance.
 const BEYOND: &str = "beyond";
 
-/// A name of the balance in a law.
+/// Returns the name in a law of a name of the balance.
 fn own(name: &str) -> String {
     qualified("propulsion", "open-water", name)
 }
@@ -139,15 +140,15 @@ fn balance() -> Result<&'static Balance, (String, String)> {
 }
 
 impl Propulsion {
-    /// A parameter's value; none where it is not given.
+    /// Value of a parameter; `None` if it is not given.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.parameters.get(name).map(|quantity| quantity.value)
     }
 
-    /// Checks that exactly the parameters of the formulas are given, and finite.
+    /// Checks that exactly the parameters of the formulas are given, with finite values.
     ///
     /// # Errors
-    /// The field at fault, and why.
+    /// Returns the field at fault and the reason.
     pub fn check(&self) -> Result<(), (String, String)> {
         let field = |name: &str| format!("propulsion.parameters.{name}");
         let known = &balance()?.parameters;
@@ -163,10 +164,10 @@ impl Propulsion {
 }
 
 impl Law {
-    /// This law with the balance where the trials of a model do not reach.
+    /// Returns this law with the balance outside the range covered by a model's trials.
     ///
     /// # Errors
-    /// The field of the model at fault, and why.
+    /// Returns the field of the model at fault and the reason.
     pub fn with_propulsion(&self, propulsion: &Propulsion) -> Result<Self, (String, String)> {
         propulsion.check()?;
         let balance = balance()?;
@@ -175,6 +176,8 @@ impl Law {
         for (name, _) in &balance.sees {
             law.rename_in_forces(name, &own(&format!("seen.{name}")));
         }
+        // The values straight ahead are copied after the renaming, so that they use the limited
+        // revolutions.
         let renamed = straight_values(&mut law);
         for (name, expr) in &balance.sees {
             law.add_value(own(&format!("seen.{name}")), of_law(expr, balance));
@@ -190,6 +193,7 @@ impl Law {
         for axis in law.axes.values_mut() {
             axis.rest = straight.blended(axis.rest.clone(), &Expr::Number(1.0));
         }
+        // Only surge receives the balance in exchange for the removed forces.
         if let Some(axis) = law.axes.get_mut(&Axis::X) {
             let surge = Box::new(of_law(&balance.surge, balance));
             axis.rest = Expr::Add(Box::new(axis.rest.clone()), surge);
@@ -199,7 +203,8 @@ impl Law {
     }
 }
 
-/// Revolutions are an input, at those of self-propulsion where nobody gives them.
+/// Adds the revolutions as an input, with those of self-propulsion as the default, and the
+/// parameters.
 fn add_inputs(law: &mut Law, balance: &Balance, propulsion: &Propulsion) {
     let default = propulsion.value("revolutions");
     let revolutions = Input { dimension: Dimension::RATE, default };
@@ -211,7 +216,7 @@ fn add_inputs(law: &mut Law, balance: &Balance, propulsion: &Propulsion) {
     }
 }
 
-/// Formulas of the balance by the names that it has in a law.
+/// Returns a formula of the balance with its names in a law.
 fn of_law(expr: &Expr, balance: &Balance) -> Expr {
     let is_own = |name: &str| {
         balance.parameters.contains_key(name)
@@ -221,7 +226,8 @@ fn of_law(expr: &Expr, balance: &Balance) -> Expr {
     expr.renamed(&|name| is_own(name).then(|| Expr::Name(own(name))))
 }
 
-/// Adds what each value is straight ahead, where that differs, and returns what names become there.
+/// Adds the values straight ahead that differ from the original ones; returns the replacements of
+/// names.
 fn straight_values(law: &mut Law) -> BTreeMap<String, Expr> {
     let is_still = |name: &&String| name.starts_with(RUDDER) || WIND.contains(&name.as_str());
     let inputs = law.inputs.keys().filter(is_still).cloned();
@@ -230,6 +236,7 @@ fn straight_values(law: &mut Law) -> BTreeMap<String, Expr> {
     let values: Vec<(String, Expr)> =
         law.values.iter().map(|(name, expr)| (name.clone(), expr.clone())).collect();
     for (name, expr) in values {
+        // Values are in the order of dependence, so that replaced names propagate in one pass.
         let names: BTreeSet<&str> = expr.names();
         if names.iter().any(|name| renamed.contains_key(*name)) {
             let straight = own(&format!("straight.{name}"));

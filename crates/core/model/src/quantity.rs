@@ -1,4 +1,4 @@
-//! A number with its source, as a model file writes it.
+//! Numbers with their sources, as model files write them.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use sistership_formula::{self as formula, FormulaError};
 
-/// A value, its source, and what is known of its uncertainty.
+/// A value, its source, and its uncertainty if known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Quantity {
@@ -16,7 +16,7 @@ pub struct Quantity {
     /// Key of the source it comes from; empty only while a section's default is not yet filled in.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
-    /// Standard error, where one is known.
+    /// Standard error, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<f64>,
     /// A remark, such as a disagreement between sources.
@@ -25,17 +25,17 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// A value from a source.
+    /// Creates a value with its source.
     pub fn new(value: f64, source: impl Into<String>) -> Self {
         Self { value, source: source.into(), standard_error: None, note: None }
     }
 }
 
-/// The ways in which a file may write a value.
+/// A value in a file.
 #[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Written {
-    /// A plain number.
+    /// A number.
     Number(f64),
     /// A constant expression such as `"0.605/304.8"`.
     Expression(String),
@@ -63,11 +63,11 @@ enum NumberOrExpression {
     Expression(String),
 }
 
-/// Values that share a source unless one says otherwise.
+/// Values that share a source, unless one has its own.
 #[derive(Debug, Clone, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Section {
-    /// The source of every value that names none itself.
+    /// The source of every value without its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     /// The values by name.
@@ -76,11 +76,11 @@ pub struct Section {
 }
 
 impl Section {
-    /// The values with their sources filled in; `sources` are the keys that exist.
+    /// Resolves the values with their sources; `sources` are the keys that exist.
     ///
     /// # Errors
-    /// Names the value that is not a finite number, has no source, or cites one that the file does
-    /// not list.
+    /// Returns an error that names the value that is not a finite number, has no source, or cites
+    /// one that the file does not list.
     pub fn resolve(
         &self,
         sources: &[&str],
@@ -89,7 +89,7 @@ impl Section {
         refused.into_iter().next().map_or(Ok(values), Err)
     }
 
-    /// The values that can be read, and what is wrong with each of the others.
+    /// Resolves the values that can be read, and returns the faults of the others.
     pub fn resolve_all(
         &self,
         sources: &[&str],
@@ -107,7 +107,7 @@ impl Section {
     }
 }
 
-/// Why a number of a file is refused.
+/// Reason for which a number of a file is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 enum QuantityError {
     #[error(transparent)]
@@ -139,6 +139,7 @@ fn resolve(
     if !value.is_finite() {
         return Err(QuantityError::NotFinite(value));
     }
+    // A source of the value has precedence over that of the section.
     let source = source.or(default_source).ok_or(QuantityError::NoSource)?;
     if !sources.contains(&source) {
         return Err(QuantityError::Unlisted(source.to_owned()));

@@ -1,4 +1,4 @@
-//! Where a figure comes from.
+//! Source of a figure.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ pub struct Source {
     /// Digital object identifier.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub doi: Option<String>,
-    /// How it was read, if not from the publication itself.
+    /// Way in which it was read, if not from the publication itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! A free-running trial in canonical units and signs.
+//! Free-running trial in canonical units and signs.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::manifest::VelocityFrame;
 use sistership_formula::units::Dimension;
 
-/// What a trial may record besides time. Ship-fixed velocities are of midship; `U` and `V` are over
-/// the ground unless the trial says through the water; positive `Delta` turns the ship to starboard;
-/// angles in radians, revolutions per second.
+/// A quantity that a trial may record besides time. Ship-fixed velocities are those of midship; `U`
+/// and `V` are over the ground unless the trial declares them through the water; positive `Delta`
+/// turns the ship to starboard; angles in radians, revolutions per second.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
@@ -39,21 +39,21 @@ pub enum Channel {
     N,
     /// True wind speed, m/s.
     WindSpeed,
-    /// Where the true wind comes from, rad clockwise from north.
+    /// Direction from which the true wind comes, rad clockwise from north.
     WindFrom,
     /// Apparent wind speed, m/s.
     ApparentWindSpeed,
-    /// Where the apparent wind comes from, rad clockwise from the bow.
+    /// Direction from which the apparent wind comes, rad clockwise from the bow.
     ApparentWindFrom,
     /// Water depth, m.
     Depth,
-    /// Surge velocity through the water, m/s, beside `U` over the ground.
+    /// Surge velocity through the water, m/s, in addition to `U` over the ground.
     UWater,
-    /// Sway velocity through the water, m/s, to starboard, beside `V` over the ground.
+    /// Sway velocity through the water, m/s, to starboard, in addition to `V` over the ground.
     VWater,
 }
 
-/// Name in manifests, canonical column, dimension.
+/// Name in manifests, canonical column, and dimension of each channel, in the order of the enum.
 const CHANNELS: [(Channel, &str, &str, Dimension); 17] = [
     (Channel::X, "x", "x_m", Dimension::LENGTH),
     (Channel::Y, "y", "y_m", Dimension::LENGTH),
@@ -86,30 +86,31 @@ impl Channel {
     }
 
     fn row(self) -> &'static (Self, &'static str, &'static str, Dimension) {
+        // The table is in the order of the enum.
         &CHANNELS[self as usize]
     }
 
-    /// The name in manifests and formulas.
+    /// Name in manifests and formulas.
     pub fn name(self) -> &'static str {
         self.row().1
     }
 
-    /// The canonical column name, which carries the unit.
+    /// Canonical column name, which includes the unit.
     pub fn column(self) -> &'static str {
         self.row().2
     }
 
-    /// What it measures.
+    /// Dimension of its values.
     pub fn dimension(self) -> Dimension {
         self.row().3
     }
 
-    /// The channel with that name in manifests.
+    /// Returns the channel with a name in manifests.
     pub fn by_name(name: &str) -> Option<Self> {
         CHANNELS.iter().find(|(_, known, ..)| *known == name).map(|&(channel, ..)| channel)
     }
 
-    /// The channel with that canonical column.
+    /// Returns the channel with a canonical column name.
     pub fn by_column(column: &str) -> Option<Self> {
         CHANNELS.iter().find(|(_, _, known, _)| *known == column).map(|&(channel, ..)| channel)
     }
@@ -124,24 +125,24 @@ impl fmt::Display for Channel {
 /// One trial: time and channels of equal length, in canonical units.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trial {
-    /// What people call it, usually the file's name.
+    /// Name for readers, usually that of the file.
     pub name: String,
     /// Time, s, strictly increasing.
     pub t_s: Vec<f64>,
-    /// What was recorded; every vector is as long as `t_s`, every value finite.
+    /// Recorded channels; every vector is as long as `t_s`, every value finite.
     pub channels: BTreeMap<Channel, Vec<f64>>,
-    /// What was sailed, such as `zigzag 10/10`.
+    /// The manoeuvre, such as `zigzag 10/10`.
     pub manoeuvre: Option<String>,
     /// Water depth where it is constant, m.
     pub depth_m: Option<f64>,
-    /// Whether `u` and `v` are speeds over the ground or through the water.
+    /// Frame of `u` and `v`: speeds over the ground or through the water.
     pub velocity: VelocityFrame,
-    /// What the checks remarked without refusing the trial.
+    /// Findings of the checks that did not refuse the trial.
     pub warnings: Vec<Finding>,
 }
 
 impl Trial {
-    /// A channel's samples, if it was recorded.
+    /// Samples of a channel, if it was recorded.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         self.channels.get(&channel).map(Vec::as_slice)
     }
@@ -151,7 +152,7 @@ impl Trial {
         self.t_s.len()
     }
 
-    /// Whether there is no sample.
+    /// Returns true if there is no sample.
     pub fn is_empty(&self) -> bool {
         self.t_s.is_empty()
     }
@@ -164,14 +165,15 @@ impl Trial {
         }
     }
 
-    /// The median time between samples, s.
+    /// Median time between samples, s.
     pub fn interval_s(&self) -> f64 {
         let mut steps: Vec<f64> = self.t_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        // The median: gaps do not change it.
         let middle = steps.len() / 2;
         if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
     }
 
-    /// Ranges of samples without a gap: a step longer than 1.5 of the median starts a new one.
+    /// Ranges of samples without a gap: a step longer than 1.5 times the median starts a new range.
     pub fn segments(&self) -> Vec<std::ops::Range<usize>> {
         let limit = 1.5 * self.interval_s();
         let breaks = (1..self.len()).filter(|&k| self.t_s[k] - self.t_s[k - 1] > limit);
@@ -181,17 +183,17 @@ impl Trial {
     }
 }
 
-/// Something a check found.
+/// A finding of a check.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
-    /// Row of the file, counted from 1 with the header as row 1; absent where the whole column is
-    /// meant.
+    /// Row of the file, counted from 1 with the header as row 1; absent if it concerns the whole
+    /// column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<usize>,
-    /// Column as the file names it.
+    /// Name of the column in the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
-    /// What was found and what can be done.
+    /// The finding and its remedy.
     pub message: String,
 }
 

@@ -1,31 +1,32 @@
-//! Triangular matrices as documents write them: a row in a line, numbers separated by spaces.
+//! Triangular matrices in documents: one string per row, numbers separated by spaces.
 
-/// Why rows are no triangle.
+/// Reason for which rows are not a triangle.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TriangleError {
-    /// There are not as many rows as names.
+    /// The number of rows is not that of the names.
     #[error("{field}: {rows} rows for {names} names")]
     Rows {
-        /// The field that has them.
+        /// The field with the rows.
         field: &'static str,
-        /// How many there are.
+        /// Number of rows.
         rows: usize,
-        /// How many names.
+        /// Number of names.
         names: usize,
     },
-    /// A row is not as long as it should be, or not of numbers.
+    /// A row has a wrong length, or an entry that is not a number.
     #[error("{field}: row {row} should be {length} finite numbers")]
     Row {
-        /// The field that has it.
+        /// The field with the row.
         field: &'static str,
-        /// Its number, from 1.
+        /// Number of the row, from 1.
         row: usize,
-        /// How long it should be.
+        /// Required length.
         length: usize,
     },
 }
 
-/// Reads as many rows as there are names; `length` says how long each is, by its place.
+/// Reads as many rows as there are names; `length` returns the required length of a row by its
+/// index.
 pub fn read(
     field: &'static str,
     rows: &[String],

@@ -1,4 +1,4 @@
-//! What the trials that a model was fitted on leave open: the coefficients' information, and the
+//! Information of the trials on which a model was fitted about its coefficients, and the
 //! discrepancy that no coefficient explains.
 
 use std::collections::BTreeMap;
@@ -10,76 +10,77 @@ use crate::coefficient::Axis;
 use crate::effect::AppliedEffect;
 use crate::triangle::{self, TriangleError};
 
-/// What a fit leaves open. With `d` the change of the listed coefficients, each divided by its
-/// scale, the trials that were fitted say `|R d - z|^2` (minus twice the logarithm of their
-/// likelihood, less a constant).
+/// Information of a fit. With `d` the change of the listed coefficients, each divided by its scale,
+/// minus twice the logarithm of the likelihood of the fitted trials is `|R d - z|^2`, up to a
+/// constant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Uncertainty {
-    /// Names of the coefficients, and of terms that the model does not have (its value for them is
-    /// zero).
+    /// Names of the coefficients, and of terms that the model does not have (with a value of zero).
     pub names: Vec<String>,
-    /// What each change is divided by, in the unit of the coefficient.
+    /// Divisor of each change, in the unit of the coefficient.
     pub scales: Vec<f64>,
-    /// The upper triangle of R, a row in a line: numbers from the diagonal on, separated by spaces.
+    /// The upper triangle of R, one string per row: numbers from the diagonal on, separated by
+    /// spaces.
     pub root_information: Vec<String>,
     /// z.
     pub offset: Vec<f64>,
-    /// Accelerations that remain, by axis.
+    /// Remaining accelerations by axis.
     pub discrepancy: BTreeMap<Axis, Discrepancy>,
-    /// What the instruments did beside the scatter that their readings show, by channel.
+    /// Errors of the instruments beyond the scatter of their readings, by channel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentFit>,
-    /// Systematic errors of instruments: those that these trials show, one size for all; later
-    /// trials are read with them, too. Versions are their bytes, so that documents keep the name
-    /// under which the first were written.
+    /// Systematic errors of instruments that these trials show, with one size for all; later trials
+    /// are read with them, too. In documents the field is named `habits`, so that existing versions
+    /// keep their bytes.
     #[serde(rename = "habits", default, skip_serializing_if = "Vec::is_empty")]
     pub systematic_errors: Vec<AppliedEffect>,
-    /// Whether what instruments would say later was learned from the rates that the filter expects;
-    /// by those on the recorded path, whose noise is that of the readings, where absent. Later
-    /// trials are read in the same way.
+    /// True if the prediction of later readings was learned from the rates that the filter expects;
+    /// default: from those on the recorded path, whose noise is that of the readings. Later trials
+    /// are read in the same way.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub expected_rates: bool,
-    /// From one reading whose noise is new to the next, s; 0 where every sample is one. Later trials
-    /// are read in the same way. Where absent, each set of trials is asked by the samples that are
-    /// used of it.
+    /// Interval between readings with independent noise, s; 0 if every sample is independent. Later
+    /// trials are read in the same way. Default: determined from the samples used of each set of
+    /// trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reading_interval_s: Option<f64>,
-    /// How much each form of an effect explained of these trials, which do not have it: by
-    /// `effect/form`.
+    /// Level that each form of an effect explained in these trials, which do not have the effect:
+    /// by `effect/form`.
     #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]
     pub false_alarm_levels: BTreeMap<String, FalseAlarmLevel>,
-    /// The largest that any stretch of these trials left unexplained, in deviations, by channel.
+    /// Largest unexplained remainder of any segment of these trials, in standard deviations, by
+    /// channel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub remainder: BTreeMap<String, f64>,
-    /// Names of the trials that it was learned on.
+    /// Names of the trials on which it was learned.
     pub trials: Vec<String>,
 }
 
-/// An instrument as the trials that a model was fitted on show it.
+/// An instrument, as characterised by the trials on which a model was fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InstrumentFit {
-    /// Deviation of its error by the scatter from sample to sample: more than one where readings
-    /// were smoothed.
+    /// Standard deviation of its error relative to the scatter from sample to sample: more than one
+    /// if readings were smoothed.
     pub deviation_by_scatter: f64,
-    /// Root of the density of what its rate and the velocities disagree by, SI by the root of a
-    /// second.
+    /// Root of the spectral density of the difference between its rate and the velocities, SI times
+    /// the root of a second.
     pub drift: f64,
 }
 
-/// What an effect explained of trials that do not have it, by what chance would let it explain: one
-/// where the model is right. Each trial is judged by coefficients fitted on the others.
+/// Level that an effect explained in trials without it, relative to the level expected by chance:
+/// one if the model is right. Each trial is judged by coefficients fitted on the others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FalseAlarmLevel {
-    /// Of single trials, in the mean.
+    /// Mean over single trials.
     pub each: f64,
-    /// Of all together: more than `each` where one size of the effect would suit them all.
+    /// Level of all trials together: more than `each` if one size of the effect would fit them all.
     pub together: f64,
 }
 
-/// What remains of an acceleration: a random part of exponential autocorrelation, and a white one.
+/// Remainder of an acceleration: a random part of exponential autocorrelation, and a white one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Discrepancy {
@@ -91,25 +92,25 @@ pub struct Discrepancy {
     pub white: f64,
 }
 
-/// Why what a fit leaves open cannot be used.
+/// Reason for which the information of a fit cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UncertaintyError {
     /// Lists differ in length.
     #[error("names, scales and offset should be equally many")]
     Lists,
-    /// A scale divides by nothing.
+    /// A scale is not above zero.
     #[error("scales should be above 0")]
     Scales,
-    /// A discrepancy is no process.
+    /// A discrepancy is not a valid process.
     #[error("discrepancy: deviation and white should be at least 0 and time_s above 0")]
     Discrepancy,
-    /// The root information is no triangle.
+    /// The root of the information is not an upper triangle.
     #[error(transparent)]
     Root(#[from] TriangleError),
 }
 
 impl Uncertainty {
-    /// Writes R row by row; `entry(i, j)` for `j >= i`.
+    /// Formats R row by row; `entry(i, j)` for `j >= i`.
     pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
         let row = |i: usize| {
             (i..size).map(|j| format!("{:.7e}", entry(i, j))).collect::<Vec<_>>().join(" ")
@@ -120,16 +121,17 @@ impl Uncertainty {
     /// R, row by row from the diagonal on.
     ///
     /// # Errors
-    /// Names the row that is not as long as it should be, or not of numbers.
+    /// Returns an error that names the row of a wrong length, or with an entry that is not a
+    /// number.
     pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
         let size = self.names.len();
         triangle::read("root_information", &self.root_information, size, |place| size - place)
     }
 
-    /// Checks that the lists go together.
+    /// Checks that the lists are consistent.
     ///
     /// # Errors
-    /// Says which do not.
+    /// Returns an error that names the inconsistent lists.
     pub fn check(&self) -> Result<(), UncertaintyError> {
         let size = self.names.len();
         if self.scales.len() != size || self.offset.len() != size {

@@ -1,9 +1,9 @@
-//! The motion that a model's trials covered, and how far another motion leaves it.
+//! Range of motion covered by a model's trials, and the distance of another motion from it.
 //!
 //! The region is the octagon of Miné 2006 (Higher-Order and Symbolic Computation 19, 31-100): the
-//! hull of what was seen, bounded along every channel and along every sum and difference of two,
-//! each scaled to its own range. It is convex, holds the convex hull, and needs two numbers for
-//! each of n^2 directions.
+//! hull of the samples, bounded along every channel and along every sum and difference of two, each
+//! scaled to its own range. It is convex, contains the convex hull, and needs two numbers for each
+//! of n^2 directions.
 
 use std::collections::BTreeMap;
 
@@ -19,27 +19,28 @@ pub struct Region {
     /// Least and greatest sum and difference of two channels, each scaled to -1 at its least and 1
     /// at its greatest value: `v+r`, `v-r`.
     pub pairs: BTreeMap<String, [f64; 2]>,
-    /// Least and greatest wind speed and depth that the trials recorded, by channel, SI; nothing of
-    /// what none recorded. No part of the convex region.
+    /// Least and greatest wind speed and depth that the trials recorded, by channel, SI; absent for
+    /// channels that none recorded. Not part of the convex region.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub environment: BTreeMap<String, [f64; 2]>,
 }
 
-/// How a motion left a region.
+/// Excursion of a motion from a region.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Excursion {
-    /// When it first did, s.
+    /// Time of the first sample outside, s.
     pub first_s: f64,
     /// Share of the samples outside.
     pub share: f64,
-    /// The channel, or the two together, along which it went furthest.
+    /// The channel, or the pair of channels, along which it went furthest.
     pub along: String,
-    /// How far, by half the range that the trials covered.
+    /// Largest distance, in half ranges covered by the trials.
     pub beyond: f64,
 }
 
 impl Region {
-    /// The least region that holds samples, given by channel; none where there is no sample.
+    /// Returns the smallest region that contains samples, given by channel; `None` if there is no
+    /// sample.
     pub fn of(columns: &BTreeMap<String, Vec<f64>>) -> Option<Self> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
@@ -50,6 +51,7 @@ impl Region {
             .iter()
             .map(|(name, column)| (name.clone(), range(&mut column.iter().copied())))
             .collect();
+        // Empty columns give infinite bounds.
         if ranges.is_empty() || ranges.values().flatten().any(|bound| !bound.is_finite()) {
             return None;
         }
@@ -66,16 +68,16 @@ impl Region {
         Some(Self { ranges, pairs, environment: BTreeMap::new() })
     }
 
-    /// How far a point is outside, by half ranges, and along what; none where it is inside.
-    /// Channels that the point lacks do not count.
+    /// Returns the distance of a point from the region, in half ranges, with its direction; `None`
+    /// if it is inside. Channels that the point lacks do not count.
     pub fn beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
         let resolved = ResolvedRegion::new(self);
         let (along, beyond) = resolved.furthest(value, &mut Vec::new())?;
         Some((resolved.name(along), beyond))
     }
 
-    /// How a motion leaves it; none where it stays inside. `value(k, name)` is a channel at sample
-    /// `k`.
+    /// Returns the excursion of a motion; `None` if it stays inside. `value(k, name)` is a channel
+    /// at sample `k`.
     pub fn excursion(
         &self,
         t_s: &[f64],
@@ -88,6 +90,7 @@ impl Region {
             let found = resolved.furthest(&|name| value(k, name), &mut room);
             let Some((along, beyond)) = found else { continue };
             count += 1;
+            // The first sample outside fixes the time; later ones may increase the distance.
             let furthest = furthest.get_or_insert((*t, along, beyond));
             if beyond > furthest.2 {
                 (furthest.1, furthest.2) = (along, beyond);
@@ -98,7 +101,7 @@ impl Region {
         Some(Excursion { first_s, share, along: resolved.name(along), beyond })
     }
 
-    /// The directions in which it is bounded, for who asks often.
+    /// Bounded directions, for repeated evaluation.
     pub fn faces(&self) -> Vec<Face<'_>> {
         let single = self
             .ranges
@@ -106,6 +109,7 @@ impl Region {
             .map(|name| Face { terms: vec![self.term(name, 1.0)], bounds: [-1.0, 1.0] });
         let together = pairs(&self.ranges).flat_map(|(a, b)| {
             let of = |sign: char, factor: f64| {
+                // A pair without bounds does not limit the region.
                 let bounds = *self.pairs.get(&format!("{a}{sign}{b}"))?;
                 Some(Face { terms: vec![self.term(a, 1.0), self.term(b, factor)], bounds })
             };
@@ -122,7 +126,7 @@ impl Region {
     /// Checks that bounds are in order.
     ///
     /// # Errors
-    /// Names the channel.
+    /// Returns an error that names the channel.
     pub fn check(&self) -> Result<(), RangeError> {
         let wrong = |(_, [low, high]): &(&String, &[f64; 2])| {
             !(low.is_finite() && high.is_finite() && low <= high)
@@ -134,20 +138,20 @@ impl Region {
     }
 }
 
-/// A region whose names are looked up once: a motion has thousands of samples.
+/// Region whose names are looked up once: a motion has thousands of samples.
 struct ResolvedRegion<'a> {
-    /// By name: the middle of the range and half its width.
+    /// Name, middle of the range and half its width.
     channels: Vec<(&'a str, f64, f64)>,
     pairs: Vec<ResolvedPair>,
 }
 
-/// Two channels by their places, and the bounds of their sum and of their difference.
+/// Two channels by their indices, and the bounds of their sum and of their difference.
 struct ResolvedPair {
     places: [usize; 2],
     bounds: [Option<[f64; 2]>; 2],
 }
 
-/// A channel, or the sum or the difference of two, by their places.
+/// Direction: a channel, or the sum or the difference of two, by their indices.
 #[derive(Debug, Clone, Copy)]
 enum Along {
     One(usize),
@@ -172,7 +176,8 @@ impl<'a> ResolvedRegion<'a> {
         Self { channels, pairs }
     }
 
-    /// How far a point is outside, and along what; `scaled` is room for its channels.
+    /// Returns the largest distance of a point, with its direction; `scaled` is a workspace for its
+    /// channels.
     fn furthest(
         &self,
         value: &dyn Fn(&str) -> Option<f64>,
@@ -182,6 +187,7 @@ impl<'a> ResolvedRegion<'a> {
         scaled.clear();
         scaled.extend(self.channels.iter().map(scale));
         let single = scaled.iter().enumerate();
+        // A channel is scaled so that its range is [-1, 1].
         let single = single.filter_map(|(i, x)| Some((Along::One(i), excess((*x)?, [-1.0, 1.0]))));
         let together = self.pairs.iter().filter_map(|pair| {
             let ([i, j], [sum, difference]) = (pair.places, pair.bounds);
@@ -194,7 +200,7 @@ impl<'a> ResolvedRegion<'a> {
                 (Along::Two(i, '-', j), difference)
             })
         });
-        // A channel alone is named before two together where it is as far.
+        // At equal distance a single channel is named rather than a pair.
         single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| {
             match furthest {
                 Some((_, beyond)) if one.1 <= beyond => furthest,
@@ -211,40 +217,40 @@ impl<'a> ResolvedRegion<'a> {
     }
 }
 
-/// Bounds that are not in order.
+/// Error of bounds that are not in order.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{name}: from {low} to {high} is no range")]
 pub struct RangeError {
-    /// Of the channel, or of the pair.
+    /// Name of the channel or the pair.
     pub name: String,
     /// The lower bound.
     pub low: f64,
-    /// The upper one.
+    /// The upper bound.
     pub high: f64,
 }
 
-/// A direction in which a region is bounded: a channel, or a sum or difference of two.
+/// Direction in which a region is bounded: a channel, or a sum or difference of two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Face<'a> {
-    /// What is summed, each scaled to its range.
+    /// Terms of the sum, each scaled to its range.
     pub terms: Vec<FaceTerm<'a>>,
     /// Least and greatest sum inside.
     pub bounds: [f64; 2],
 }
 
-/// `factor (value - centre)` of a channel.
+/// Scaled channel, `factor (value - centre)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceTerm<'a> {
     /// The channel.
     pub channel: &'a str,
-    /// The middle of its range.
+    /// Middle of its range.
     pub centre: f64,
-    /// One by half its range, with the sign.
+    /// Inverse of half its range, with the sign.
     pub factor: f64,
 }
 
 impl Excursion {
-    /// In words.
+    /// Description in words.
     pub fn words(&self) -> String {
         let Self { first_s, share, along, beyond } = self;
         let percent = 100.0 * share;
@@ -256,19 +262,20 @@ impl Excursion {
     }
 }
 
-/// What is no excursion, by half ranges: a hard turn at 35 deg where the rudder was recorded at
-/// 34.9.
+/// Tolerance of an excursion, in half ranges: a hard turn at 35 deg where the rudder was recorded
+/// at 34.9 is none.
 pub const SLACK: f64 = 0.005;
-/// The half range of a channel that did not vary, by its size: a speed that was held to a per cent.
+/// Half range of a channel that did not vary, relative to its value: a speed that was constant
+/// within a per cent.
 const STILL: f64 = 0.01;
 
-/// A value with -1 at the low and 1 at the high end of a range.
+/// Scales a value to -1 at the low and 1 at the high end of a range.
 fn scale(x: f64, range: [f64; 2]) -> f64 {
     let (centre, half) = centre_and_half(range);
     (x - centre) / half
 }
 
-/// The middle of a range and half its width; 1 for a channel that stayed at nothing.
+/// Returns the middle of a range and half its width; 1 for a channel that was constantly zero.
 fn centre_and_half([low, high]: [f64; 2]) -> (f64, f64) {
     let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
     let half = half.max(STILL * centre.abs());
@@ -279,7 +286,7 @@ fn excess(x: f64, [low, high]: [f64; 2]) -> f64 {
     (low - x).max(x - high).max(0.0)
 }
 
-/// Every two names.
+/// Returns every pair of names.
 fn pairs(ranges: &BTreeMap<String, [f64; 2]>) -> impl Iterator<Item = (&String, &String)> {
     ranges.keys().enumerate().flat_map(|(i, a)| ranges.keys().skip(i + 1).map(move |b| (a, b)))
 }

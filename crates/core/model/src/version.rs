@@ -1,5 +1,4 @@
-//! What it takes to derive a version again. The server has the document that holds it with the
-//! model.
+//! Recipe by which a version is derived again. The server stores it in a document with the model.
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -7,10 +6,10 @@ use sha2::{Digest, Sha256};
 /// The format of a version's document.
 pub const FORMAT: &str = "sistership-version/1";
 
-/// How a version is derived. Everything it starts from is named by the SHA-256 of its bytes.
+/// Recipe of a version. Every input is named by the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-// A handful of them is in memory at a time.
+// Only few recipes are in memory at a time.
 #[allow(clippy::large_enum_variant)]
 pub enum Recipe {
     /// Taken from the ship's own file.
@@ -22,38 +21,38 @@ pub enum Recipe {
         /// The law's file.
         law_sha256: String,
     },
-    /// Refined from a source against trials.
+    /// Refined from a source model against trials.
     Refinement {
-        /// The version refined; none where the trials alone made the model.
+        /// The source model; absent if the trials alone determined the model.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         source: Option<SourceVersion>,
-        /// The law's name, where there is no source to tell it.
+        /// Name of the law, if there is no source model that has one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         law: Option<String>,
         /// The target ship's document.
         ship_sha256: String,
         /// The law's file.
         law_sha256: String,
-        /// Where the source is of another law.
+        /// The laws, if the source model has another law.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         across: Option<AcrossLaws>,
-        /// The ships whose population was the prior, in their order.
+        /// The ships of the population prior, in order.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         population: Vec<PopulationMember>,
-        /// The library of effects that its calibration was learned with; absent in recipes of
-        /// releases that had one only.
+        /// The library of effects with which its calibration was learned; absent in recipes of
+        /// releases with a single library.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         effects_sha256: Option<String>,
         /// The trials, in the order in which they were given.
         trials: Vec<RecipeTrial>,
-        /// Every setting.
+        /// All settings.
         settings: serde_json::Value,
-        /// The program that did it.
+        /// Revision of the program that derived it.
         code_revision: String,
     },
 }
 
-/// Two laws of a refinement whose source is of another law than what is fitted.
+/// Laws of a refinement whose source model has another law.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AcrossLaws {
@@ -63,7 +62,7 @@ pub struct AcrossLaws {
     pub source_law_sha256: String,
 }
 
-/// A ship of a population.
+/// Ship of a population.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PopulationMember {
@@ -73,7 +72,7 @@ pub struct PopulationMember {
     pub law_sha256: String,
 }
 
-/// A version that another starts from.
+/// Version from which another one starts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SourceVersion {
@@ -85,7 +84,7 @@ pub struct SourceVersion {
     pub sha256: String,
 }
 
-/// A trial of a recipe.
+/// Trial of a recipe.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecipeTrial {
@@ -95,12 +94,12 @@ pub struct RecipeTrial {
     pub sha256: String,
 }
 
-/// The SHA-256 of some bytes, in hexadecimal.
+/// Returns the SHA-256 of some bytes, in hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The revision of this program, which every recipe records.
+/// Returns the revision of this program, which every recipe records.
 pub fn code_revision() -> &'static str {
     option_env!("SISTERSHIP_REVISION").unwrap_or(env!("CARGO_PKG_VERSION"))
 }

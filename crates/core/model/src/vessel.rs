@@ -1,4 +1,4 @@
-//! A vessel of the zoo: particulars, conventions, and the published coefficients of its models,
+//! Vessels of the zoo: particulars, conventions, and the published coefficients of their models,
 //! with sources.
 
 use std::collections::BTreeMap;
@@ -23,12 +23,12 @@ pub struct VesselFile {
     /// Name in the zoo: lower case, digits, hyphens.
     #[schemars(length(min = 1, max = 64), regex(pattern = "^[a-z0-9][a-z0-9-]*$"))]
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub title: String,
     /// Ships are compared within a category: `tanker`, `dry-cargo`, `car-carrier`, ...
     #[schemars(length(min = 1, max = 64), regex(pattern = "^[a-z0-9][a-z0-9-]*$"))]
     pub category: String,
-    /// A finer word for people.
+    /// A more specific type for readers.
     #[serde(default, rename = "type", skip_serializing_if = "Option::is_none")]
     pub ship_type: Option<String>,
     /// Full-scale length over model length, for models.
@@ -37,21 +37,21 @@ pub struct VesselFile {
     /// Publications by key.
     #[serde(default)]
     pub sources: BTreeMap<String, Source>,
-    /// On what terms a source's own files stand, by its key: `MIT`, `CC BY 4.0`, `none stated`.
+    /// Licence of a source's own files, by its key: `MIT`, `CC BY 4.0`, `none stated`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub licences: BTreeMap<String, String>,
-    /// How the sources count.
+    /// Sign conventions of the sources.
     #[serde(default)]
     pub conventions: VesselConventions,
-    /// What is known of the ship.
+    /// Particulars of the ship.
     pub particulars: Section,
     /// Characteristic vectors exactly as a publication prints them, by the definition's name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub quoted_vectors: BTreeMap<String, QuotedVectorFile>,
-    /// Its models; none for a ship known by particulars only.
+    /// Its models; empty for a ship known by particulars only.
     #[serde(default)]
     pub models: Vec<PublishedModelFile>,
-    /// Published free-running trials, by which the models are judged.
+    /// Published free-running trials, against which the models are validated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_running: Vec<FreeRunning>,
 }
@@ -64,11 +64,11 @@ pub enum VesselKind {
     Vessel,
 }
 
-/// How the sources of a vessel count.
+/// Sign conventions of the sources of a vessel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct VesselConventions {
-    /// Which way positive rudder turns the ship in the published coefficients.
+    /// Direction in which positive rudder turns the ship in the published coefficients.
     pub rudder_positive: RudderSign,
 }
 
@@ -76,7 +76,7 @@ pub struct VesselConventions {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QuotedVectorFile {
-    /// Where it is printed.
+    /// Key of the source.
     pub source: String,
     /// A remark.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -93,7 +93,7 @@ pub struct PublishedModelFile {
     pub name: String,
     /// The law it belongs to.
     pub law: String,
-    /// Where the figures come from.
+    /// Origin of the figures.
     pub status: Status,
     /// A remark.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -115,15 +115,15 @@ pub struct PublishedModelFile {
     pub coefficients: Section,
 }
 
-/// How far a model's figures can be trusted to be somebody's measurement.
+/// Origin of a model's figures, and thus the trust that they deserve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// As published from captive tests, computations or trials.
     Published,
-    /// From particulars by regression formulas: a stopgap.
+    /// From particulars by regression formulas: a substitute until trials are available.
     Estimated,
-    /// A source model carried over to another ship by the prime system, not fitted to it.
+    /// A source model transferred to another ship by the prime system, not fitted to it.
     Transferred,
     /// Fitted to trials.
     Refined,
@@ -137,7 +137,7 @@ pub struct Steering {
     pub limit_deg: f64,
     /// Largest rudder rate, deg/s.
     pub rate_deg_s: f64,
-    /// Time constant, s; zero for a gear that moves at its full rate until it arrives.
+    /// Time constant, s; zero for a gear that moves at its full rate until it reaches the order.
     pub time_constant_s: f64,
     /// Key of the source.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -148,16 +148,16 @@ pub struct Steering {
 }
 
 impl Default for Steering {
-    /// The least that SOLAS II-1/29 asks of a main steering gear: 35 deg, 65 deg in 28 s.
+    /// The minimum of SOLAS II-1/29 for a main steering gear: 35 deg, 65 deg in 28 s.
     fn default() -> Self {
         Self { limit_deg: 35.0, rate_deg_s: 2.32, time_constant_s: 0.0, source: None, note: None }
     }
 }
 
-/// A vessel, read and checked.
+/// Vessel, read and checked.
 #[derive(Debug, Clone)]
 pub struct Vessel {
-    /// The file it came from.
+    /// The file in which it is defined.
     pub file: VesselFile,
     /// Its particulars with sources.
     pub particulars: Particulars,
@@ -166,25 +166,26 @@ pub struct Vessel {
 }
 
 impl Vessel {
-    /// Reads and checks a vessel; its models are checked against their laws when they are taken.
+    /// Reads and checks a vessel; its models are checked against their laws when they are used.
     ///
     /// # Errors
-    /// Names file, line and field of everything that is wrong.
+    /// Returns an error with file, line and field of every fault.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         let blame = Blame::new(file, text);
         Self::check(blame.read()?, &blame)
     }
 
-    /// Checks a vessel that came as a document; `name` is what errors call it.
+    /// Checks a vessel that was given as a document; `name` is its name in errors.
     ///
     /// # Errors
-    /// As [`Vessel::parse`].
+    /// The errors of [`Vessel::parse`].
     pub fn from_file(name: &str, raw: VesselFile) -> Result<Self, FileError> {
         Self::check(raw, &Blame::new(name, ""))
     }
 
     fn check(raw: VesselFile, blame: &Blame<'_>) -> Result<Self, FileError> {
         let keys: Vec<&str> = raw.sources.keys().map(String::as_str).collect();
+        // All sections are checked before the result, so that one answer lists every fault.
         let mut faults = head(&raw);
         let mut add = |section: &str, found: Vec<FieldError>| {
             let at = |(name, message)| (format!("{section}.{name}"), message);
@@ -194,6 +195,7 @@ impl Vessel {
         let (particulars, unread) = raw.particulars.resolve_all(&keys);
         add("particulars.values", unread);
         add("particulars.values", particulars::faults(&particulars));
+        // A faulty section is replaced by an empty one, so that the other checks continue.
         let quoted_vectors = quoted(&raw, &keys).unwrap_or_else(|fault| {
             add("quoted_vectors", vec![fault]);
             BTreeMap::new()
@@ -213,17 +215,17 @@ impl Vessel {
         }
     }
 
-    /// Its name in the zoo.
+    /// Name in the zoo.
     pub fn name(&self) -> &str {
         &self.file.name
     }
 
-    /// A particular, stated or derived, in SI.
+    /// Particular, stated or derived, in SI units.
     pub fn particular(&self, name: &str) -> Option<f64> {
         particulars::value(&self.particulars, name)
     }
 
-    /// The keys of its sources.
+    /// Keys of its sources.
     pub fn source_keys(&self) -> Vec<&str> {
         self.file.sources.keys().map(String::as_str).collect()
     }
@@ -231,10 +233,10 @@ impl Vessel {
 
 type FieldError = (String, String);
 
-/// The longest licence that is a name and no text, bytes.
+/// Longest name of a licence, bytes; anything longer is a text.
 const LONGEST_LICENCE: usize = 80;
 
-/// What is wrong with the names that stand first.
+/// Faults of the names and the scale.
 fn head(raw: &VesselFile) -> Vec<FieldError> {
     let slug =
         |field: &str, name: &str| Some((field.to_owned(), check_slug(name).err()?.to_string()));

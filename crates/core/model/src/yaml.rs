@@ -1,10 +1,10 @@
-//! The one door for YAML: what the parser would take unbounded time or memory for is refused before
-//! it sees it.
+//! The only entrance of YAML: a text for which the parser would take unbounded time or memory is
+//! refused before it is parsed.
 //!
-//! The parser (libyaml) looks through every open `[` and `{` at each token, so that time grows with
-//! the square of how deep they nest, and its limit of depth is only checked after that; it looks
-//! through every `%TAG` at each tag; and an alias is read as often as it stands there, so that a
-//! megabyte named a thousand times is a gigabyte.
+//! The parser (libyaml) searches every open `[` and `{` at each token, so that the time grows with
+//! the square of the nesting depth, and it checks its limit of depth only afterwards; it searches
+//! every `%TAG` at each tag; and it reads an alias as often as the alias occurs, so that a megabyte
+//! with a thousand aliases becomes a gigabyte.
 
 mod aliases;
 mod brackets;
@@ -16,48 +16,49 @@ pub(crate) use structure::faults;
 
 use serde::de::DeserializeOwned;
 
-/// Bytes of one document.
+/// Largest size of a document, bytes.
 pub const MAX_BYTES: usize = 8 << 20;
 
-/// Commas, brackets, colons, dashes and question marks that may each begin an item of a document,
-/// whichever of them do.
+/// Largest number of commas, brackets, colons, dashes and question marks that may each begin an
+/// item of a document.
 pub const MAX_ITEMS: usize = 400_000;
 
-/// Faults of one document that are told: each is looked for in the text, and a text may have
-/// hundreds of thousands.
+/// Largest number of faults that are reported of one document: each is searched in the text, and a
+/// text may have hundreds of thousands.
 pub const MOST_FAULTS: usize = 20;
 
-/// What is wrong with a text.
+/// Error of a YAML text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct YamlError {
-    /// Line, counted from 1, where it could be told.
+    /// Line, counted from 1, if known.
     pub line: Option<usize>,
-    /// What is wrong and, for limits, what was found and what is allowed.
+    /// Description and, for limits, the found and the permitted value.
     pub message: String,
 }
 
 /// Reads a document.
 ///
 /// # Errors
-/// Says what is wrong, with the parser's own line and column, or which bound the text exceeds.
+/// Returns an error with the parser's own line and column, or the limit that the text exceeds.
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, YamlError> {
     check(text)?;
     let refused = |error: serde_yaml::Error| YamlError {
         line: error.location().map(|place| place.line()),
         message: error.to_string(),
     };
-    // As a value first: of a key that is given twice, a map would silently keep the second.
+    // Read as a value first, because a map would silently keep the second value of a duplicate key.
     serde_yaml::from_str::<serde_yaml::Value>(text).map_err(refused)?;
     serde_yaml::from_str(text).map_err(refused)
 }
 
-/// Refuses what the parser should not see.
+/// Refuses a text that the parser should not read.
 fn check(text: &str) -> Result<(), YamlError> {
     if text.len() > MAX_BYTES {
         let message = format!("a YAML document of {} bytes; {MAX_BYTES} are the most", text.len());
         return Err(YamlError { line: None, message });
     }
+    // The size of the parsed document is bounded by the number of its items.
     let items = items(text.as_bytes());
     if items > MAX_ITEMS {
         let message = format!("a YAML document of some {items} items; {MAX_ITEMS} are the most");
@@ -71,7 +72,7 @@ fn check(text: &str) -> Result<(), YamlError> {
     brackets::check(text.as_bytes()).map_err(at)
 }
 
-/// How many items there may be.
+/// Returns an upper bound of the number of items.
 fn items(bytes: &[u8]) -> usize {
     let is_mark = |at: usize| match bytes[at] {
         b',' | b'[' | b'{' | b'?' => true,

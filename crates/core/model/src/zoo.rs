@@ -1,4 +1,4 @@
-//! The zoo: laws, effects and vessels by name, embedded in the program and extended at run time.
+//! Zoo: laws, effects and vessels by name, embedded in the program and extended at run time.
 
 mod entries;
 
@@ -15,7 +15,7 @@ use entries::Entries;
 
 static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models");
 
-/// Laws, effects and vessels by name. What the program carries is read when it is first asked for:
+/// Laws, effects and vessels by name. The embedded files are read when they are first requested:
 /// most calls need one law and one ship.
 #[derive(Debug, Clone)]
 pub struct Zoo {
@@ -35,11 +35,11 @@ impl Default for Zoo {
 }
 
 impl Zoo {
-    /// The laws, effects and vessels that the program carries. A test reads them all and checks
-    /// every model ([`Zoo::check`]); one that does not read would be missing.
+    /// Returns the embedded laws, effects and vessels. A file that cannot be read would be missing;
+    /// a test reads all of them and checks every model ([`Zoo::check`]).
     ///
     /// # Errors
-    /// A file that is no text.
+    /// Returns an error for a file that is not text.
     pub fn embedded() -> Result<Self, FileError> {
         Ok(Self {
             laws: Entries::embedded(MODELS.get_dir("laws"), Law::parse)?,
@@ -51,19 +51,20 @@ impl Zoo {
     /// Reads everything, and checks each model against its law.
     ///
     /// # Errors
-    /// The first file that does not read or fit.
+    /// Returns the error of the first file that cannot be read or is not consistent.
     pub fn check(&self) -> Result<(), FileError> {
         let faults = [self.laws.fault(), self.effects.fault(), self.vessels.fault()];
         if let Some(fault) = faults.into_iter().flatten().next() {
             return Err(fault.clone());
         }
+        // Documents are valid by themselves; models also depend on the law that they name.
         self.vessels().try_for_each(|vessel| self.check_models(vessel))
     }
 
     /// Adds a law, or replaces the one of the same name.
     ///
     /// # Errors
-    /// As [`Law::parse`].
+    /// The errors of [`Law::parse`].
     pub fn add_law(&mut self, file: &str, text: &str) -> Result<Arc<Law>, FileError> {
         let law = Arc::new(Law::parse(file, text)?);
         self.laws.keep(&law.name, text, Arc::clone(&law));
@@ -73,7 +74,7 @@ impl Zoo {
     /// Adds an effect, or replaces the one of the same name.
     ///
     /// # Errors
-    /// As [`Effect::parse`].
+    /// The errors of [`Effect::parse`].
     pub fn add_effect(&mut self, file: &str, text: &str) -> Result<Arc<Effect>, FileError> {
         let effect = Arc::new(Effect::parse(file, text)?);
         self.effects.keep(&effect.name, text, Arc::clone(&effect));
@@ -84,7 +85,7 @@ impl Zoo {
     /// its law.
     ///
     /// # Errors
-    /// As [`Vessel::parse`] and [`Model::published`].
+    /// The errors of [`Vessel::parse`] and [`Model::published`].
     pub fn add_vessel(&mut self, file: &str, text: &str) -> Result<Arc<Vessel>, FileError> {
         let vessel = Arc::new(Vessel::parse(file, text)?);
         let in_file = |error| FileError { file: file.to_owned(), ..error };
@@ -93,10 +94,10 @@ impl Zoo {
         Ok(vessel)
     }
 
-    /// Checks that each model of a vessel fits its law.
+    /// Checks that each model of a vessel is consistent with its law.
     ///
     /// # Errors
-    /// Names the model and the field.
+    /// Returns an error that names the model and the field.
     pub fn check_models(&self, vessel: &Vessel) -> Result<(), FileError> {
         vessel
             .file
@@ -105,10 +106,10 @@ impl Zoo {
             .try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
     }
 
-    /// A published model of a vessel, by default its first.
+    /// Returns a published model of a vessel, by default its first.
     ///
     /// # Errors
-    /// Says which law, model, parameter or coefficient is missing.
+    /// Returns an error that names the missing law, model, parameter or coefficient.
     pub fn published(&self, vessel: &Vessel, name: Option<&str>) -> Result<Model, FileError> {
         let models = &vessel.file.models;
         let wanted = name
@@ -116,6 +117,7 @@ impl Zoo {
         let law_name = wanted.map_or("", |model| model.law.as_str());
         match self.laws.get(law_name) {
             Some(law) => Model::published(vessel, name, law),
+            // There is no such model: the constructor reports it.
             None if wanted.is_none() => Model::published(vessel, name, &Law::empty()),
             None => Err(FileError {
                 file: vessel.name().to_owned(),
@@ -130,10 +132,10 @@ impl Zoo {
         }
     }
 
-    /// A model by `ship` or `ship/model`.
+    /// Returns a model by `ship` or `ship/model`.
     ///
     /// # Errors
-    /// Says what is not in the zoo, and what is.
+    /// Returns an error that names what is not in the zoo, and the known ones.
     pub fn model(&self, name: &str) -> Result<Model, FileError> {
         let (ship, model) =
             name.split_once('/').map_or((name, None), |(ship, model)| (ship, Some(model)));
@@ -141,7 +143,7 @@ impl Zoo {
         self.published(vessel, model)
     }
 
-    /// The refusal of a ship that is not here.
+    /// Error of an unknown ship.
     pub fn no_ship(&self, name: &str) -> FileError {
         let message = format!(
             "there is no such ship in the zoo and no such file; the zoo has {}",
@@ -156,47 +158,47 @@ impl Zoo {
         }
     }
 
-    /// A law by name.
+    /// Law by name.
     pub fn law(&self, name: &str) -> Option<&Arc<Law>> {
         self.laws.get(name)
     }
 
-    /// An effect by name.
+    /// Effect by name.
     pub fn effect(&self, name: &str) -> Option<&Arc<Effect>> {
         self.effects.get(name)
     }
 
-    /// A vessel by name.
+    /// Vessel by name.
     pub fn vessel(&self, name: &str) -> Option<&Arc<Vessel>> {
         self.vessels.get(name)
     }
 
-    /// Every law, by name.
+    /// Every law, in the order of names.
     pub fn laws(&self) -> impl Iterator<Item = &Arc<Law>> {
         self.laws.all()
     }
 
-    /// Every effect, by name.
+    /// Every effect, in the order of names.
     pub fn effects(&self) -> impl Iterator<Item = &Arc<Effect>> {
         self.effects.all()
     }
 
-    /// Every vessel, by name.
+    /// Every vessel, in the order of names.
     pub fn vessels(&self) -> impl Iterator<Item = &Arc<Vessel>> {
         self.vessels.all()
     }
 
-    /// The text of a law's file.
+    /// Text of a law's file.
     pub fn law_text(&self, name: &str) -> Option<&str> {
         self.laws.text(name)
     }
 
-    /// The text of an effect's file.
+    /// Text of an effect's file.
     pub fn effect_text(&self, name: &str) -> Option<&str> {
         self.effects.text(name)
     }
 
-    /// The text of a vessel's file.
+    /// Text of a vessel's file.
     pub fn vessel_text(&self, name: &str) -> Option<&str> {
         self.vessels.text(name)
     }

@@ -1,4 +1,4 @@
-//! What is learned beside a law of motion, as a simulation takes it.
+//! Access to the learned correction of a model for simulations.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ pub use sistership_model::learned::{
 
 use crate::equations::PlantError;
 
-/// What was learned beside a model's law; none where it has no branch.
+/// Returns the learned correction of a model; `None` for a model without one.
 ///
 /// # Errors
-/// It has one, and its weights have not been attached.
+/// Returns an error if the model has a learned correction whose weights have not been attached.
 pub fn attached(model: &Model) -> Result<Option<Arc<dyn LearnedBranch>>, PlantError> {
     let Some(branch) = &model.branch else { return Ok(None) };
     let missing =

@@ -1,12 +1,12 @@
-//! How much a learned branch counted for along a motion.
+//! Share of a learned correction along a motion.
 
 use crate::branch::Instant;
 use crate::ship::Ship;
 use crate::state::{Trajectory, at};
 
 impl Ship {
-    /// What the learned branch counted for in the mean over a motion, 0 to 1; none for a ship
-    /// without one, or without samples.
+    /// Mean share of the learned correction over a motion, 0 to 1; `None` for a ship without one,
+    /// or for a motion without samples.
     pub fn branch_share(&self, track: &Trajectory) -> Option<f64> {
         let branch = self.branch()?;
         let share = |k: usize| {
@@ -15,6 +15,7 @@ impl Ship {
                 velocities: [at::U, at::V, at::R].map(|place| state[place]),
                 delta_rad: if self.has_rudder() { state[at::DELTA] } else { 0.0 },
                 n_rps: if self.has_propeller() { track.n_rps[k] } else { 0.0 },
+                // The share depends on the distance from the domain only, not on the accelerations.
                 accelerations: [0.0; 3],
             })
         };

@@ -1,11 +1,11 @@
-//! Many sets of coefficients for one law, simulated without sensitivities: the tape holds
-//! regressors, coefficients are data.
+//! Simulation of many sets of coefficients of one law without sensitivities: the tape holds the
+//! regressors, the coefficients are data.
 //!
-//! A search by populations evaluates thousands of sets. Lowering each to a tape of its own takes
-//! longer than to simulate it, so that here the tape ends at the terms of the law, and forces are
-//! sums of them. Terms of a submodel share one condition, and what depends on recorded inputs alone
-//! is calculated once for all sets ([`CandidateSystem::prepared`]). Only what forces depend on is
-//! simulated: velocities, heading and roll, not the track.
+//! A population-based search evaluates thousands of sets. Lowering each set to a tape of its own
+//! takes longer than simulating it. Here the tape therefore ends at the terms of the law, and
+//! forces are sums of them. Terms of a submodel share one condition, and values that depend on
+//! recorded inputs alone are calculated once for all sets ([`CandidateSystem::prepared`]). Only the
+//! states on which forces depend are simulated: velocities, heading and roll, not the track.
 
 use std::collections::BTreeMap;
 
@@ -25,10 +25,10 @@ use crate::wide::{Wide, widest};
 
 const PLANE: [usize; 4] = [at::U, at::V, at::R, at::PSI];
 const ROLL: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
-/// Where the tape takes each state.
+/// States in the order in which the tape takes them.
 const TAPE_ORDER: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 
-/// A law for a model's particulars and parameters, ready for any coefficients of the names that the
+/// Law with a model's particulars and parameters, ready for any values of the coefficients that the
 /// model has.
 #[derive(Debug, Clone)]
 pub struct CandidateSystem {
@@ -36,19 +36,19 @@ pub struct CandidateSystem {
     tape: Tape,
     states: &'static [usize],
     axes: Vec<Sum>,
-    /// Mass matrix entries over the axes, row by row.
+    /// Outputs of the mass matrix entries over the axes, row by row.
     mass: Vec<Option<usize>>,
-    /// What a force on each axis accelerates, where masses do not change.
+    /// Accelerations per unit force on each axis, where masses do not change.
     constant: Option<Vec<f64>>,
-    /// What effects add to each acceleration.
+    /// Outputs of the accelerations that effects add.
     additions: Vec<Option<usize>>,
-    /// Rates of heading and roll where the law says them, by place among the states.
+    /// Rates of heading and roll where the law defines them: row among the states, output.
     kinematics: Vec<(usize, usize)>,
     names: Vec<String>,
     input_names: Vec<String>,
 }
 
-/// The right-hand side of an axis.
+/// Right-hand side of the equation of one axis.
 #[derive(Debug, Clone)]
 struct Sum {
     scale: usize,
@@ -59,17 +59,18 @@ struct Sum {
 /// Terms under one condition.
 #[derive(Debug, Clone)]
 struct Group {
-    /// The condition's output.
+    /// Output of the condition; `None` for terms without a condition.
     gate: Option<usize>,
-    /// Each coefficient with its term's output.
+    /// Index of each coefficient with the output of its term.
     terms: Vec<(usize, usize)>,
 }
 
 impl CandidateSystem {
-    /// For the coefficients that a model has; their values do not matter.
+    /// Prepares a law for the coefficients that a model has; their values are not read.
     ///
     /// # Errors
-    /// Names what the model does not give; refuses effects on instruments and lags.
+    /// Returns an error that names what the model does not give, or if the model has effects on
+    /// instruments or lags.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
@@ -82,25 +83,25 @@ impl CandidateSystem {
         .build()
     }
 
-    /// The coefficients, in the order in which their values are given.
+    /// Names of the coefficients, in the order in which their values are given.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Places in the state vector of what is simulated.
+    /// Places in the state vector of the simulated states.
     pub fn states(&self) -> &'static [usize] {
         self.states
     }
 
-    /// The inputs that the law takes, in their order.
+    /// Names of the inputs of the law, in order.
     pub fn input_names(&self) -> &[String] {
         &self.input_names
     }
 
-    /// What a step takes for the inputs of the law at an instant: these, and what follows from them
-    /// alone.
+    /// Returns the inputs of a step at an instant: the inputs of the law, followed by the values
+    /// that depend on them alone.
     pub fn prepared(&self, inputs: &[f64]) -> Vec<f64> {
-        // The front depends on no state: any will do.
+        // The hoisted front depends on no state, so that zeros will do.
         let point: Vec<f64> =
             std::iter::repeat_n(0.0, STATES.len()).chain(inputs.iter().copied()).collect();
         inputs.iter().copied().chain(self.front.values(&point)).collect()
@@ -121,6 +122,7 @@ impl Builder<'_> {
         let additions = self.lowering.additions(order)?;
         let states: &'static [usize] = if equations.law().has_roll() { &ROLL } else { &PLANE };
         let kinematics = self.kinematics(states)?;
+        // The front holds what depends on inputs alone: it is evaluated once for all candidates.
         let (front, tape) = self.lowering.finish_hoisted(STATES.len());
         let constant = constant_mobility(equations, &tape, &mass)?;
         let input_names = equations.law().inputs.keys().cloned().collect();
@@ -144,10 +146,12 @@ impl Builder<'_> {
         let of_law = &equations.law().axes[&axis];
         let (scale, rest) =
             (self.lowering.output(&of_law.scale)?, self.lowering.output(&of_law.rest)?);
+        // The key `None` collects the shared coefficients, which have no condition.
         let mut groups: BTreeMap<Option<&str>, Vec<(usize, usize)>> = BTreeMap::new();
         for name in equations.coefficients(axis) {
             let (shared, submodel) = split_submodel(name);
-            // The deviation must exist; its condition is multiplied once for all terms under it.
+            // Checks that the deviation exists; its condition multiplies the sum of all terms under
+            // it.
             equations.term(name)?;
             let entry = (self.names.len(), self.lowering.output(&equations.term(shared)?)?);
             self.names.push(name.clone());
@@ -165,6 +169,7 @@ impl Builder<'_> {
 
     fn kinematics(&mut self, states: &[usize]) -> Result<Vec<(usize, usize)>, PlantError> {
         let mut all = Vec::new();
+        // The position is left out: no force depends on it.
         for place in [at::PSI, at::PHI] {
             let Some(row) = states.iter().position(|&state| state == place) else { continue };
             all.push((
@@ -176,7 +181,7 @@ impl Builder<'_> {
     }
 }
 
-/// Runs of one set of coefficients in lockstep: by lane another start and other inputs.
+/// Runs of one set of coefficients in lockstep; each lane has its own start and inputs.
 #[derive(Debug)]
 pub struct CandidateRun<'a, const L: usize> {
     system: &'a CandidateSystem,
@@ -189,7 +194,7 @@ pub struct CandidateRun<'a, const L: usize> {
 }
 
 impl<'a, const L: usize> CandidateRun<'a, L> {
-    /// Of nothing yet; every lane must be started.
+    /// Creates a run without states; every lane must be started.
     pub fn new(system: &'a CandidateSystem) -> Self {
         let states = || vec![[0.0; L]; system.states.len()];
         Self {
@@ -203,7 +208,7 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
         }
     }
 
-    /// Starts a lane anew at a state.
+    /// Starts a lane at a state.
     pub fn start(&mut self, lane: usize, state: &StateVector) {
         self.states
             .iter_mut()
@@ -211,19 +216,19 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
             .for_each(|(lanes, &place)| lanes[lane] = state[place]);
     }
 
-    /// A simulated state in every lane, counted as [`CandidateSystem::states`] does: u, v and r
-    /// come first.
+    /// Values of a simulated state in every lane; rows are counted as in
+    /// [`CandidateSystem::states`], so that u, v and r come first.
     pub fn state(&self, row: usize) -> &Lanes<L> {
         &self.states[row]
     }
 
-    /// The rate of change of a state at the start of the last step.
+    /// Rate of change of a state at the start of the last step, in every lane.
     pub fn rate(&self, row: usize) -> &Lanes<L> {
         &self.rates[0][row]
     }
 
-    /// One step of every lane; `inputs` are [prepared](CandidateSystem::prepared) ones at its
-    /// start, middle and end, of which Euler's method reads the first only.
+    /// Advances every lane by one step. `inputs` are [prepared](CandidateSystem::prepared) inputs
+    /// at the start, middle and end of the step; Euler's method reads the first only.
     pub fn step(
         &mut self,
         method: Method,
@@ -231,6 +236,7 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
         inputs: [&[Lanes<L>]; 3],
         coefficients: &[f64],
     ) {
+        // One dispatch for each step: all of its stages are compiled for the same vector width.
         widest(Step { run: self, method, step_s, inputs, coefficients });
     }
 
@@ -242,12 +248,15 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
         [start, middle, end]: [&[Lanes<L>]; 3],
         coefficients: &[f64],
     ) {
+        // Stage i starts from the state moved along the rate of stage i - 1 (classical Runge-Kutta
+        // method).
         self.stage(0, 0.0, start, coefficients);
         if method == Method::Rk4 {
             self.stage(1, 0.5 * h, middle, coefficients);
             self.stage(2, 0.5 * h, middle, coefficients);
             self.stage(3, h, end, coefficients);
         }
+        // `x + h / 6 (k1 + 2 (k2 + k3) + k4)`
         let [a, b, c, d] = &self.rates;
         for (row, state) in self.states.iter_mut().enumerate() {
             for lane in 0..L {
@@ -262,7 +271,8 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
         }
     }
 
-    /// The rates at the state reached along those of the stage before.
+    /// Evaluates the rates of one stage at the state moved by `reach` along the rates of the stage
+    /// before.
     #[inline(always)]
     fn stage(&mut self, i: usize, reach: f64, inputs: &[Lanes<L>], coefficients: &[f64]) {
         for (row, at) in self.at.iter_mut().enumerate() {
@@ -273,11 +283,13 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
             }
         }
         self.inputs.clear();
+        // A state that is not simulated (roll of a 3-DOF law) is zero on the tape.
         for place in TAPE_ORDER {
             let row = self.system.states.iter().position(|&state| state == place);
             self.inputs.push(row.map_or([0.0; L], |row| self.at[row]));
         }
         self.inputs.extend_from_slice(inputs);
+        // One evaluation of the tape serves all lanes.
         self.system.tape.run(&self.inputs, &mut self.work);
         self.system.forces(&self.work, coefficients, &mut self.forces);
         self.system.rates(&self.work, &self.forces, &mut self.rates[i]);
@@ -311,6 +323,7 @@ impl CandidateSystem {
             let mut total = [0.0; L];
             for Group { gate, terms } in &sum.groups {
                 let gate = gate.map_or([1.0; L], |gate| self.tape.read(gate, work));
+                // A submodel whose condition holds in no lane costs nothing.
                 if gate.iter().all(|gate| *gate == 0.0) {
                     continue;
                 }
@@ -321,6 +334,8 @@ impl CandidateSystem {
                 }
                 (0..L).for_each(|lane| total[lane] += gate[lane] * own[lane]);
             }
+            // Force on the axis: scale times the sum of the terms, plus the rest without
+            // coefficients.
             let (scale, rest) = (self.tape.at(sum.scale, work), self.tape.at(sum.rest, work));
             (0..L).for_each(|lane| out[lane] = scale[lane] * total[lane] + rest[lane]);
         }
@@ -340,6 +355,7 @@ impl CandidateSystem {
             }
             None => self.solved(work, forces, out),
         }
+        // Accelerations that effects add follow those of the forces, in the order of the axes.
         for (out, output) in out.iter_mut().zip(&self.additions) {
             if let Some(output) = output {
                 let added = self.tape.at(*output, work);
@@ -351,9 +367,11 @@ impl CandidateSystem {
         }
     }
 
-    /// Where masses change with the motion, each lane has its own.
+    /// Accelerations for masses that change with the motion: the mass matrix is solved for each
+    /// lane.
     fn solved<const L: usize>(&self, work: &[Lanes<L>], forces: &[Lanes<L>], out: &mut [Lanes<L>]) {
         let n = self.axes.len();
+        // The matrix is solved for one lane at a time.
         for lane in 0..L {
             let entry = |output: Option<usize>| {
                 output.map_or(0.0, |output| self.tape.at(output, work)[lane])

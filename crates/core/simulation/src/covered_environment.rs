@@ -1,12 +1,13 @@
-//! The wind and the water depth that trials recorded.
+//! Wind and water depth that trials recorded.
 
 use std::collections::BTreeMap;
 
 use sistership_model::environment::DEEP_M;
 use sistership_model::trial::{Channel, Trial};
 
-/// Least and greatest true or apparent wind speed (m/s) and depth (m) by the channel's name; nothing
-/// of what no trial recorded. Where some trials have a depth, one without counts as deep.
+/// Returns the least and greatest true or apparent wind speed (m/s) and depth (m) by channel name;
+/// channels that no trial recorded are absent. If some trials have a depth, a trial without one
+/// counts as deep water.
 pub(crate) fn covered_environment(trials: &[&Trial]) -> BTreeMap<String, [f64; 2]> {
     let wind = [Channel::WindSpeed, Channel::ApparentWindSpeed].into_iter().filter_map(|channel| {
         let recorded = trials.iter().filter_map(|trial| trial.channel(channel));
@@ -21,6 +22,7 @@ pub(crate) fn covered_environment(trials: &[&Trial]) -> BTreeMap<String, [f64; 2
 
 fn depth(trial: &Trial) -> Option<[f64; 2]> {
     let recorded = trial.channel(Channel::Depth).map(|depths| range(depths.iter().copied()));
+    // A trial without recorded depths may state a constant one.
     recorded.flatten().or_else(|| trial.depth_m.map(|depth| [depth, depth]))
 }
 

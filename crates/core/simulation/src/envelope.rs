@@ -1,11 +1,11 @@
-//! The range in which a simulation is believed: outside it a run stops with a reason, never with
+//! Range in which a simulation is trusted: outside of it a run stops with a reason, never with
 //! infinities.
 
 use sistership_model::{Model, particulars};
 
 use crate::state::{StateVector, at, speed};
 
-/// Limits of what a ship can do.
+/// Limits of the speed, yaw rate and roll angle of a ship.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Envelope {
     speed_m_s: f64,
@@ -13,21 +13,22 @@ pub struct Envelope {
     roll_rad: f64,
 }
 
-/// Why a simulation was stopped.
+/// Reason and time at which a simulation was stopped.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("stopped at {t_s:.1} s: {reason}")]
 pub struct Stopped {
-    /// When, s.
+    /// Time of the stop, s.
     pub t_s: f64,
-    /// What left the physical range.
+    /// Description of the quantity that left the physical range.
     pub reason: String,
 }
 
 impl Envelope {
-    /// For a ship of a length that approaches at a speed: three times that speed (at least a Froude
-    /// number of 0.1), a yaw rate of one length in a sixth of the time it takes to sail it, 80
-    /// degrees of roll.
+    /// Creates the limits for a ship of length `lpp_m` that approaches at `approach_speed_m_s`:
+    /// three times that speed (at least a Froude number of 0.1), a yaw rate of six times speed over
+    /// length, 80 degrees of roll.
     pub fn new(lpp_m: f64, approach_speed_m_s: f64) -> Self {
+        // The lower limit of the Froude number applies to ships that start at rest or very slowly.
         let reference = approach_speed_m_s.abs().max(0.1 * (9.806_65 * lpp_m).sqrt());
         Self {
             speed_m_s: 3.0 * reference,
@@ -36,7 +37,8 @@ impl Envelope {
         }
     }
 
-    /// Of the ship that a model is of; none where it gives no length or no approach speed.
+    /// Returns the limits of the ship of a model; `None` if it gives no length or no approach
+    /// speed.
     pub fn of(model: &Model) -> Option<Self> {
         let value = |name: &str| particulars::value(&model.particulars, name);
         Some(Self::new(value("lpp_m")?, model.speed_m_s.or(value("service_speed_m_s"))?))
@@ -57,10 +59,10 @@ impl Envelope {
         self.roll_rad
     }
 
-    /// Checks a state.
+    /// Checks that a state lies within the limits.
     ///
     /// # Errors
-    /// Says what left the range.
+    /// Returns an error that names the quantity outside the range.
     pub fn check(&self, t_s: f64, state: &StateVector) -> Result<(), Stopped> {
         let stop = |reason: String| Err(Stopped { t_s, reason });
         if state.iter().any(|value| !value.is_finite()) {
@@ -90,7 +92,7 @@ impl Envelope {
     }
 }
 
-/// A number that may be of any size, once a motion has left what is physical.
+/// Formats a number of any size: a diverged motion may have reached huge values.
 fn figure(value: f64) -> String {
     if value.abs() < 1e4 { format!("{value:.2}") } else { format!("{value:.1e}") }
 }

@@ -1,4 +1,4 @@
-//! How far a simulated trial is from the measured one.
+//! Difference between simulated and measured trials.
 
 use std::collections::BTreeMap;
 
@@ -14,8 +14,8 @@ pub struct SquaredError {
 }
 
 impl SquaredError {
-    /// The differences of one simulated trial; the heading's is wrapped to half a turn. Roll counts
-    /// for ships that roll.
+    /// Differences of one simulated trial; that of the heading is wrapped to half a turn. Roll
+    /// counts for 4-DOF models only.
     pub fn of(trial: &Trial, replay: &Replay) -> Self {
         let mut error = Self::default();
         let compared = RECORDED.iter().filter(|(channel, _)| {
@@ -32,7 +32,7 @@ impl SquaredError {
         error
     }
 
-    /// Adds another trial's.
+    /// Adds the sums of another trial.
     pub fn add(&mut self, other: &Self) {
         for (channel, (sum, count)) in &other.sums {
             let entry = self.sums.entry(*channel).or_default();
@@ -41,14 +41,14 @@ impl SquaredError {
         }
     }
 
-    /// Root mean square by channel name; channels of which nothing was simulated are absent.
+    /// Root mean square by channel name; channels without simulated samples are absent.
     pub fn rmse(&self) -> BTreeMap<String, f64> {
         let named =
             |channel: &Channel| Some((channel.name().to_owned(), self.channel_rmse(*channel)?));
         self.sums.keys().filter_map(named).collect()
     }
 
-    /// Root mean square of one channel.
+    /// Root mean square of one channel; `None` without simulated samples.
     pub fn channel_rmse(&self, channel: Channel) -> Option<f64> {
         self.sums
             .get(&channel)
@@ -62,9 +62,10 @@ fn difference(channel: Channel, simulated: f64, measured: f64) -> f64 {
     if channel == Channel::Psi { wrapped(plain) } else { plain }
 }
 
-/// An angle in (-pi, pi].
+/// Wraps an angle to (-pi, pi].
 pub fn wrapped(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
+    // Subtracts the nearest whole number of turns.
     angle - turn * (angle / turn).round()
 }
 
@@ -87,6 +88,7 @@ pub fn standard_deviations(trials: &[&Trial]) -> BTreeMap<Channel, f64> {
 pub fn standardised_mse(error: &SquaredError, deviations: &BTreeMap<Channel, f64>) -> f64 {
     let term = |&(channel, _): &(Channel, usize)| {
         let (rmse, deviation) = (error.channel_rmse(channel)?, deviations.get(&channel)?);
+        // A channel without variation has no scale, and does not count.
         (*deviation > 0.0).then(|| (rmse / deviation).powi(2))
     };
     RECORDED[..6].iter().filter_map(term).sum()

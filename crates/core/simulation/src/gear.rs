@@ -1,8 +1,8 @@
-//! The steering gear: from the ordered rudder angle to the actual one.
+//! Steering gear: from the ordered rudder angle to the actual one.
 
 use sistership_model::vessel::Steering;
 
-/// A steering gear with a limit, a rate limit and a time constant, SI.
+/// Steering gear with a limit, a rate limit and a time constant, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gear {
     limit_rad: f64,
@@ -12,7 +12,7 @@ pub struct Gear {
 }
 
 impl Gear {
-    /// A gear as a model describes it.
+    /// Creates the steering gear that a model describes.
     pub fn new(steering: &Steering) -> Self {
         Self {
             limit_rad: steering.limit_deg.to_radians(),
@@ -22,13 +22,13 @@ impl Gear {
         }
     }
 
-    /// The same gear with a further lag, s.
+    /// Returns the gear with an additional lag, s.
     pub fn with_lag(self, lag_s: f64) -> Self {
         Self { time_constant_s: self.time_constant_s + lag_s, ..self }
     }
 
-    /// The same gear that follows its order only where that leaves a band of so much to either
-    /// side, rad.
+    /// Returns the gear with a dead band: it moves only where the order leaves a band of `band_rad`
+    /// to either side of the angle.
     pub fn with_band(self, band_rad: f64) -> Self {
         Self { band_rad, ..self }
     }
@@ -48,15 +48,16 @@ impl Gear {
         self.time_constant_s
     }
 
-    /// The rudder rate, rad/s. A gear without a time constant would chatter about its order: within
-    /// what it covers in one step of `step_s` it goes straight there.
+    /// Returns the rudder rate, rad/s. A gear without a time constant would chatter about its
+    /// order: an order within reach of one step of `step_s` is therefore met exactly at its end.
     pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         let order = order_rad.clamp(-self.limit_rad, self.limit_rad);
-        // Not `clamp`, which panics where an order is no number.
+        // Not `clamp`, which panics on an order that is NaN.
         let order = match self.band_rad > 0.0 {
             true => angle_rad.max(order - self.band_rad).min(order + self.band_rad),
             false => order,
         };
+        // First-order lag: the rate is the remaining angle over the time constant, limited.
         let time = self.time_constant_s.max(step_s);
         ((order - angle_rad) / time).clamp(-self.rate_rad_s, self.rate_rad_s)
     }

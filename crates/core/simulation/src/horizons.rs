@@ -1,12 +1,12 @@
-//! Errors of simulations that restart at several intervals, as one criterion.
+//! Errors of simulations that restart at several intervals, combined into one criterion.
 //!
 //! A bias in yaw moment or sway force grows with the length of a simulation: over five ship lengths
 //! it is less than the noise of the readings, over a whole trial it is not. Errors of long
-//! simulations alone are mostly what gusts and the noise of one starting state left behind. So the
-//! criterion is the geometric mean of the standardised errors at every restart interval: its logarithm
-//! is, up to constants, the negative log-likelihood of Gaussian errors whose variance at each
-//! interval is not known (the profile likelihood, `n/2 ln` of the mean square, summed), so that each
-//! interval counts by ratios, whatever its size.
+//! simulations alone are mostly due to gusts and to the noise of one starting state. The criterion
+//! is therefore the geometric mean of the standardised errors at every restart interval: its
+//! logarithm is, up to constants, the negative log-likelihood of Gaussian errors whose variance at
+//! each interval is not known (the profile likelihood, `n/2 ln` of the mean square, summed), so
+//! that each interval counts by ratios, whatever its size.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ use crate::error::{SquaredError, standardised_mse};
 use crate::recorded::Replay;
 use crate::state::RECORDED;
 
-/// Standardised squared error per channel of what was not simulated, for the simulation stopped:
-/// that of two independent motions of the same variance, `E (a - b)^2 = 2 s^2`.
+/// Standardised squared error per channel for samples that were not simulated because the
+/// simulation stopped: that of two independent motions of the same variance, `E (a - b)^2 = 2 s^2`.
 const UNRELATED: f64 = 2.0;
 
 /// Standardised squared errors of simulations with one restart interval.
@@ -30,7 +30,7 @@ pub struct HorizonErrors {
 }
 
 impl HorizonErrors {
-    /// Errors of simulations that all went on to their end.
+    /// Errors of simulations that all reached their end.
     pub fn new(
         total: &SquaredError,
         each: &[SquaredError],
@@ -40,7 +40,8 @@ impl HorizonErrors {
         Self { mean: of(total), each: each.iter().map(of).collect() }
     }
 
-    /// Errors of simulations that may have stopped early, which then count as [`UNRELATED`].
+    /// Errors of simulations that may have stopped early; samples after a stop count as
+    /// [`UNRELATED`].
     pub fn with_stops(
         trials: &[&Trial],
         runs: &[Replay],
@@ -48,6 +49,7 @@ impl HorizonErrors {
     ) -> Self {
         let one = |(trial, run): (&&Trial, &Replay)| error_with_stop(trial, run, deviations);
         let each: Vec<f64> = trials.iter().zip(runs).map(one).collect();
+        // The overall mean weights each trial by its number of samples.
         let weighted = trials.iter().zip(&each).map(|(trial, error)| error * trial.len() as f64);
         let samples: usize = trials.iter().map(|trial| trial.len()).sum();
         Self { mean: weighted.sum::<f64>() / samples.max(1) as f64, each }
@@ -56,17 +58,23 @@ impl HorizonErrors {
 
 fn error_with_stop(trial: &Trial, run: &Replay, deviations: &BTreeMap<Channel, f64>) -> f64 {
     let error = standardised_mse(&SquaredError::of(trial, run), deviations);
+    // Channels count that the trial has and whose deviation is not zero.
     let is_compared = |channel: &Channel| {
         trial.channel(*channel).is_some() && deviations.get(channel).is_some_and(|d| *d > 0.0)
     };
+    // The first six recorded channels are those of the standardised error; roll is not among them.
     let channels = RECORDED[..6].iter().filter(|(channel, _)| is_compared(channel)).count();
+    // Mean over all samples of the trial: simulated ones with their error, the others as unrelated
+    // motions.
     let (simulated, all) = (run.samples.len() as f64, trial.len().max(1) as f64);
     (error * simulated + UNRELATED * channels as f64 * (all - simulated)) / all
 }
 
-/// The criterion, and by trial the share of each in it: their mean is the geometric mean of the
-/// means over trials, and their scatter is, to first order, that of its logarithm times itself.
+/// Returns the criterion and the share of each trial in it: the mean of the shares is the geometric
+/// mean of the means over trials, and their scatter is, to first order, that of the criterion's
+/// logarithm times the criterion.
 pub fn combined(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
+    // A single interval needs no combination.
     match horizons {
         [] => return (0.0, Vec::new()),
         [only] => return (only.mean, only.each.clone()),
@@ -79,6 +87,7 @@ pub fn combined(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
         .map(|horizon| horizon.each.iter().sum::<f64>() / trials.max(1) as f64)
         .collect();
     let scale = geometric_mean(means.iter().copied());
+    // First-order expansion of the geometric mean about the means over trials.
     let share = |trial: usize| {
         let ratios = horizons.iter().zip(&means);
         let ratios = ratios.map(|(horizon, mean)| horizon.each[trial] / mean.max(LEAST));
@@ -87,7 +96,7 @@ pub fn combined(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
     (mean, (0..trials).map(share).collect())
 }
 
-/// Below this an error has no logarithm.
+/// Lower bound of an error before its logarithm is taken.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
 fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

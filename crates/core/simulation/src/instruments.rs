@@ -1,4 +1,4 @@
-//! What the instruments say of a state, where effects make them say something else than the truth.
+//! Readings of the instruments at a state, where effects make them differ from the true values.
 
 use sistership_formula::Expr;
 use sistership_model::law::Law;
@@ -9,8 +9,7 @@ use crate::equations::{EquationsOfMotion, Lowering, PlantError};
 use crate::state::{RECORDED, StateVector, at};
 use crate::tape::{Lanes, Slots, Tape};
 
-/// The names that the formula of an instrument may use, with their places: states, then their
-/// rates.
+/// Names that the formula of an instrument may use, with their places: states, then their rates.
 const STATES: [(&str, usize); 8] = [
     ("u", at::U),
     ("v", at::V),
@@ -22,15 +21,15 @@ const STATES: [(&str, usize); 8] = [
     ("y", at::Y),
 ];
 
-/// Instruments: for each channel that does not say the truth, what it says.
+/// Instruments: readings of every channel that differs from the true state.
 #[derive(Debug)]
 pub struct Instruments {
     tape: Tape,
-    /// Place in the state and output of the tape.
+    /// Place in the state vector and output of the tape.
     says: Vec<(usize, usize)>,
 }
 
-/// Room to read in, kept from sample to sample.
+/// Workspace of readings, kept from sample to sample to avoid allocation.
 #[derive(Debug, Default)]
 pub struct Room {
     values: Vec<Lanes<1>>,
@@ -38,11 +37,11 @@ pub struct Room {
 }
 
 impl Instruments {
-    /// The instruments of trials whose velocities are of a frame; `None` where every one says the
-    /// truth.
+    /// Creates the instruments of trials whose velocities are measured in a frame; `None` if every
+    /// instrument reads the true value.
     ///
     /// # Errors
-    /// Names what the model does not give.
+    /// Returns an error that names what the model does not give.
     pub fn new(
         equations: &EquationsOfMotion<'_>,
         frame: VelocityFrame,
@@ -51,6 +50,7 @@ impl Instruments {
         let mut lowering = Lowering::new(equations, &input_names(law));
         let mut says = Vec::new();
         for (channel, expr) in readings(law, frame) {
+            // A channel that is not part of the state has no reading to replace.
             let Some(&(_, place)) = RECORDED.iter().find(|(known, _)| *known == channel) else {
                 continue;
             };
@@ -59,7 +59,7 @@ impl Instruments {
         Ok((!says.is_empty()).then(|| Self { tape: lowering.finish(), says }))
     }
 
-    /// What they say of a state with its rate of change.
+    /// Returns the readings at a state with its rate of change.
     pub fn read(
         &self,
         state: &StateVector,
@@ -79,21 +79,24 @@ impl Instruments {
     }
 }
 
-/// The names of the tape of instruments: states, their rates, the inputs of the law.
+/// Input names of the tape of instruments: states, their rates, the inputs of the law.
 pub fn input_names(law: &Law) -> Vec<String> {
     let states = STATES.iter().map(|(name, _)| (*name).to_owned());
     let rates = STATES.iter().map(|(name, _)| format!("{name}_dot"));
     states.chain(rates).chain(law.inputs.keys().cloned()).collect()
 }
 
-/// The channels of speeds through the water beside those over the ground, with their places.
+/// Channels of speeds through the water, recorded in addition to those over the ground, with their
+/// places.
 pub const THROUGH_WATER: [(Channel, usize); 2] =
     [(Channel::UWater, at::U), (Channel::VWater, at::V)];
 
-/// What each channel says, where it is not the truth: a log that measures through the water says
-/// what the hull sees.
+/// Formulas of the channels that do not read the true value: a log that measures through the water
+/// reads the velocity relative to the water.
 pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
     let ground = [Channel::U, Channel::V];
+    // Separate channels of a log, and `u` and `v` in the frame of the water, are speeds through the
+    // water.
     let logs = THROUGH_WATER.map(|(log, _)| log).into_iter().zip(ground);
     let axes = ground.into_iter().zip(ground).filter(|_| frame == VelocityFrame::Water);
     let through_water = axes.chain(logs.clone());
@@ -101,9 +104,10 @@ pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
         through_water.filter_map(|(log, own)| Some((log, seen(law, own)?))).collect();
     for (channel, expr) in &law.dressing.measures {
         match readings.iter_mut().find(|(known, _)| known == channel) {
-            // The second effect acts on what the first one left.
+            // The second effect on a channel acts on the reading after the first one.
             Some((_, before)) => *before = expr_of(expr, *channel, before),
             None => {
+                // Without an error a log reads the velocity of the same direction.
                 let own = logs.clone().find(|(log, _)| log == channel).map(|(_, own)| own);
                 let truth = Expr::Name(own.unwrap_or(*channel).name().into());
                 readings.push((*channel, expr_of(expr, *channel, &truth)));
@@ -113,24 +117,26 @@ pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
     readings
 }
 
-/// An instrument's formula, of what it would say without an error.
+/// Formula of an instrument in terms of its reading without an error.
 fn expr_of(expr: &Expr, channel: Channel, without_error: &Expr) -> Expr {
     expr.renamed(&|name| (name == channel.name()).then(|| without_error.clone()))
 }
 
-/// What the hull sees of a velocity over the ground; nothing where the water stands still.
+/// Velocity relative to the water for a velocity over the ground; `None` without a current.
 fn seen(law: &Law, channel: Channel) -> Option<Expr> {
+    // Values of effects on the inflow are named `effect/form.seen.channel`.
     let name = law.values.keys().find(|name| name.ends_with(&format!(".seen.{channel}")))?;
     Some(Expr::Name(name.clone()))
 }
 
-/// Rounds in which a true state is sought: few, so that it stays near what is said where an error
-/// is too large for the search.
+/// Iterations of the search for a true state: few, so that it stays near the reading where an error
+/// is too large for the search to converge.
 const ROUNDS: usize = 16;
-/// Where the search ends, in any state.
+/// Largest remaining difference in any state at which the search ends.
 const FOUND: f64 = 1e-9;
 
-/// The true state of which instruments say `said`, by moving against what is said too much.
+/// Returns the true state for the readings `said`, by fixed-point iteration: each step subtracts
+/// the difference between the readings at the state and `said`.
 pub fn truth(said: &StateVector, mut read: impl FnMut(&StateVector) -> StateVector) -> StateVector {
     let mut state = *said;
     for _ in 0..ROUNDS {

@@ -1,4 +1,4 @@
-//! Integration of the equations of motion by one step.
+//! One-step integration of the equations of motion.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,8 +20,8 @@ pub enum Method {
 }
 
 impl Method {
-    /// The state one step later; `rate(fraction, state)` is the rate of change at that fraction of
-    /// the step.
+    /// Returns the state one step later; `rate(fraction, state)` is the rate of change at that
+    /// fraction of the step.
     pub fn step(
         self,
         state: &StateVector,
@@ -42,7 +42,8 @@ impl Method {
 }
 
 impl Method {
-    /// As [`Method::step`] for ships in lockstep, each with a step of its own; rounds as that does.
+    /// Advances ships in lockstep as [`Method::step`] does, each with its own step length; the
+    /// rounding is the same.
     pub fn steps<const N: usize>(
         self,
         states: &States<N>,
@@ -53,10 +54,12 @@ impl Method {
         if self == Self::Euler {
             return moved(states, &first, steps_s);
         }
+        // Stages at 0, h/2, h/2 and h.
         let half = steps_s.map(|step_s| 0.5 * step_s);
         let second = rates(Stage::Middle, &moved(states, &first, &half));
         let third = rates(Stage::Middle, &moved(states, &second, &half));
         let fourth = rates(Stage::End, &moved(states, &third, steps_s));
+        // The order of additions is that of `step`, so that both round alike.
         let mut slope = first;
         for (place, slope) in slope.iter_mut().enumerate() {
             for lane in 0..N {
@@ -69,19 +72,19 @@ impl Method {
     }
 }
 
-/// Where in a step a rate is asked for.
+/// Point of a step at which a rate is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// At its start.
+    /// Start of the step.
     Start,
-    /// Halfway.
+    /// Middle of the step.
     Middle,
-    /// At its end.
+    /// End of the step.
     End,
 }
 
 impl Stage {
-    /// The fraction of the step.
+    /// Fraction of the step.
     pub fn fraction(self) -> f64 {
         [0.0, 0.5, 1.0][self as usize]
     }

@@ -1,13 +1,13 @@
-//! Between samples: a cubic that never leaves the range of its two neighbours.
+//! Interpolation between samples by a cubic that never leaves the range of its two neighbours.
 //!
-//! A rudder moves smoothly between the samples of a slow recorder; a straight line cuts its
+//! A rudder moves smoothly between the samples of a slow recorder; linear interpolation cuts the
 //! corners, and half a degree for a second is a metre of track. Noise is not amplified, since the
 //! cubic has no overshoot (Fritsch and Carlson 1980, SIAM J Numer Anal 17, 238-246, with the
 //! harmonic mean of Fritsch and Butland 1984).
 
 use std::borrow::Cow;
 
-/// A monotone cubic through samples.
+/// Monotone cubic through samples.
 #[derive(Debug, Clone)]
 pub struct MonotoneCubic<'a> {
     t: &'a [f64],
@@ -16,17 +16,19 @@ pub struct MonotoneCubic<'a> {
 }
 
 impl<'a> MonotoneCubic<'a> {
-    /// Through values at increasing times.
+    /// Creates the cubic through values at increasing times.
     pub fn new(t: &'a [f64], values: impl Into<Cow<'a, [f64]>>) -> Self {
         let values = values.into();
         let secant = |k: usize| (values[k + 1] - values[k]) / (t[k + 1] - t[k]);
         let inner = |k: usize| {
             let (before, after) = (secant(k - 1), secant(k));
+            // Slope zero at an extremum, otherwise the harmonic mean of the neighbouring secants.
             if before * after <= 0.0 { 0.0 } else { 2.0 * before * after / (before + after) }
         };
         let n = values.len();
         let slope = |k: usize| match k {
             _ if n < 2 => 0.0,
+            // End slopes are the secants of the first and the last interval.
             0 => secant(0),
             k if k + 1 == n => secant(n - 2),
             k => inner(k),
@@ -35,38 +37,40 @@ impl<'a> MonotoneCubic<'a> {
         Self { t, values, slopes }
     }
 
-    /// The value at a fraction `w` of the way from sample `k` to the next; at the last sample, its
-    /// own.
+    /// Value at a fraction `w` of the way from sample `k` to the next; for the last sample, the
+    /// sample.
     pub fn at(&self, k: usize, w: f64) -> f64 {
         if k + 1 < self.values.len() { self.between(k, w) } else { self.values[k] }
     }
 
-    /// The value at a fraction `w` of the way from sample `k` to the next.
+    /// Value at a fraction `w` of the way from sample `k` to the next.
     pub fn between(&self, k: usize, w: f64) -> f64 {
         let step = self.t[k + 1] - self.t[k];
         let (a, b) = (self.values[k], self.values[k + 1]);
         let (da, db) = (self.slopes[k] * step, self.slopes[k + 1] * step);
         let (w2, w3) = (w * w, w * w * w);
+        // Cubic Hermite basis in w.
         a + (3.0 * w2 - 2.0 * w3) * (b - a) + (w - 2.0 * w2 + w3) * da + (w3 - w2) * db
     }
 }
 
-/// What comes out of a first-order lag into which samples go, straight between them; it starts
-/// settled.
+/// Returns the response of a first-order lag to samples that are interpolated linearly; it starts
+/// in steady state.
 pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
     let mut out = values.to_vec();
     for k in 1..values.len() {
+        // Interval in time constants; the lower limit avoids a division by zero.
         let x = (t[k] - t[k - 1]) / time_constant_s.max(1e-9);
         let decay = (-x).exp();
         let (from, slope) = (values[k - 1], (values[k] - values[k - 1]) / x);
-        // The answer to a ramp of `slope` a time constant, from the state before.
+        // Response to a ramp of `slope` per time constant, from the previous output.
         out[k] = values[k] - slope + (out[k - 1] - from + slope) * decay;
     }
     out
 }
 
-/// What follows samples only where they leave a band about it (a play, or backlash); it starts with
-/// the first sample.
+/// Returns the response of a dead band (play, or backlash): it follows the samples only where they
+/// leave a band of half width `half` about it, and starts with the first sample.
 pub fn within_band(values: &[f64], half: f64) -> Vec<f64> {
     let mut out = values.to_vec();
     for k in 1..values.len() {

@@ -1,5 +1,5 @@
-//! Forward: from a model and what is done to the ship to its motion, and to the figures by which
-//! it is judged.
+//! Forward simulation: from a model and its inputs to the motion of the ship, and to the figures by
+//! which its manoeuvring is assessed.
 
 pub mod branch;
 mod branch_share;

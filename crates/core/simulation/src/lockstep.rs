@@ -1,7 +1,7 @@
-//! Ships in lockstep: passages taken lane by lane, each lane with the next one as soon as its own
-//! has ended.
+//! Ships in lockstep: a batch of simulations is processed lane by lane; a lane takes the next
+//! simulation as soon as its own has ended.
 //!
-//! Every lane is calculated by itself, so that what comes out does not depend on who sails beside.
+//! Every lane is calculated independently, so that a result does not depend on the other lanes.
 
 use crate::integrate::{Method, Stage};
 use crate::plant::{Inputs, MAX_INPUTS, Work};
@@ -9,28 +9,30 @@ use crate::ship::Ship;
 use crate::state::{StateVector, States, at, lane_of, set_lane};
 use crate::tape::Lanes;
 
-/// Something sailed step by step.
+/// Simulation that is carried out step by step.
 pub(crate) trait Passage {
-    /// The ship's own values of the open coefficients, none where none is open.
+    /// Values of the open coefficients; empty where none is open.
     fn coefficients(&self) -> &[f64];
 
-    /// The state at the beginning.
+    /// Returns the state at the beginning.
     fn start(&mut self, ship: &Ship, work: &mut Work) -> StateVector;
 
-    /// Takes note of a state, at the beginning and after each step; answers the length of the next
-    /// step, s, or that it is over.
+    /// Records a state, at the beginning and after each step; returns the length of the next step,
+    /// s, or `None` at the end.
     fn arrive(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64>;
 
-    /// The inputs of the law at a stage of the step, the rudder being where it is.
+    /// Returns the inputs of the law at a stage of the step, for the current rudder angle.
     fn inputs(&self, ship: &Ship, stage: Stage, rudder_rad: f64) -> Inputs;
 
-    /// How fast the rudder moves, rad/s.
+    /// Returns the rudder rate, rad/s.
     fn rudder_rate(&self, ship: &Ship, rudder_rad: f64) -> f64;
 }
 
-/// Takes every passage to its end.
+/// Carries out every simulation to its end.
 pub(crate) fn sail(ship: &Ship, method: Method, passages: &mut [impl Passage]) {
     match passages.len() {
+        // The number of lanes is a constant of the compiled code: the smallest that fits, at most
+        // 8.
         0 => {}
         1 => Convoy::<_, 1>::new(ship, passages.iter_mut()).sail(method),
         2..=4 => Convoy::<_, 4>::new(ship, passages.iter_mut()).sail(method),
@@ -58,6 +60,7 @@ impl<'p, P: Passage, const N: usize> Convoy<'p, P, N> {
     fn sail(mut self, method: Method) {
         (0..N).for_each(|lane| self.board(lane));
         while self.lanes.iter().any(Option::is_some) {
+            // Empty lanes have a step of zero and keep their state.
             let Self { ship, lanes, states, steps_s, work, .. } = &mut self;
             *states = method
                 .steps(states, steps_s, |stage, states| rates(ship, lanes, stage, states, work));
@@ -69,13 +72,15 @@ impl<'p, P: Passage, const N: usize> Convoy<'p, P, N> {
         }
     }
 
-    /// Takes the next passage that has a step to sail into a lane.
+    /// Loads the next simulation that has a step to take into a lane.
     fn board(&mut self, lane: usize) {
         loop {
             self.lanes[lane] = None;
             self.steps_s[lane] = 0.0;
             let Some(passage) = self.waiting.next() else { return };
             self.work.set_coefficients(lane, passage.coefficients());
+            // `own` is the workspace of single evaluations: starting states and readings of
+            // instruments.
             self.own.set_coefficients(0, passage.coefficients());
             let start = passage.start(self.ship, &mut self.own);
             set_lane(&mut self.states, lane, &start);
@@ -86,10 +91,13 @@ impl<'p, P: Passage, const N: usize> Convoy<'p, P, N> {
         }
     }
 
-    /// Whether the passage in a lane ends where it has arrived; an empty lane has none to end.
+    /// Returns true if the simulation in a lane ends at the state that it has reached; false for an
+    /// empty lane.
     fn is_over(&mut self, lane: usize) -> bool {
         let Some(passage) = &mut self.lanes[lane] else { return false };
         let mut state = lane_of(&self.states, lane);
+        // Readings are evaluated in the workspace of a single ship, with this simulation's
+        // coefficients.
         if self.ship.reads_instruments() {
             self.own.set_coefficients(0, passage.coefficients());
         }
@@ -110,6 +118,7 @@ fn rates<P: Passage, const N: usize>(
     let mut inputs = [[0.0; N]; MAX_INPUTS];
     let mut rudder = [0.0; N];
     for (lane, passage) in lanes.iter().enumerate() {
+        // Inputs of a lane without a simulation stay zero; its result is not used.
         let (Some(passage), angle) = (passage, states[at::DELTA][lane]) else { continue };
         let own = passage.inputs(ship, stage, angle);
         inputs
@@ -120,6 +129,7 @@ fn rates<P: Passage, const N: usize>(
         rudder[lane] = passage.rudder_rate(ship, angle);
     }
     let mut rates = ship.rates(states, &inputs, work);
+    // The tape does not compute the rudder: its rate is that of the steering gear or the record.
     rates[at::DELTA] = rudder;
     rates
 }

@@ -1,4 +1,4 @@
-//! A model made ready to run: its law and figures on one tape.
+//! Model prepared for simulation: its law and coefficients on one tape.
 
 mod listed;
 mod rate;
@@ -15,64 +15,65 @@ use crate::tape::Tape;
 pub use listed::Listed;
 pub use rate::Work;
 
-/// What is given from outside at an instant, in the order of the law's inputs.
+/// Inputs at an instant, in the order of the law's inputs.
 pub type Inputs = [f64; MAX_INPUTS];
 
-/// Most inputs a law may declare.
+/// Largest number of inputs that a law may declare.
 pub const MAX_INPUTS: usize = 16;
 
-/// A model made ready to run.
+/// Model prepared for simulation.
 #[derive(Debug)]
 pub struct Plant {
     tape: Tape,
     layout: Layout,
-    /// What a force on each axis accelerates, where masses do not change.
+    /// Accelerations per unit force on each axis, where masses do not change.
     mobility: Option<Matrix4<f64>>,
     input_names: Vec<String>,
-    /// Coefficients that are data, given with each state; all others are folded into the tape.
+    /// Coefficients that are given with each state; all others are folded into the tape.
     open: Vec<String>,
     input_defaults: Vec<Option<f64>>,
     lags_s: Vec<(usize, f64)>,
     bands: Vec<(usize, f64)>,
 }
 
-/// Where the outputs stand on the tape.
+/// Outputs of the tape by meaning.
 #[derive(Debug, Clone, Default)]
 struct Layout {
-    /// Forces by axis in the order X, Y, K, N; absent axes have none.
+    /// Forces by axis in the order X, Y, K, N; `None` for an axis that the law does not have.
     forces: [Option<usize>; 4],
     /// Mass matrix entries in the same order.
     mass: [[Option<usize>; 4]; 4],
-    /// Rates of x, y, psi, phi where the law says them.
+    /// Rates of x, y, psi, phi where the law defines them.
     kinematics: [Option<usize>; 4],
-    /// What effects add to the accelerations, in the same order.
+    /// Accelerations that effects add, in the same order.
     accelerations: [Option<usize>; 4],
-    /// How far the motion is outside of what trials covered.
+    /// Distance of the motion from the range covered by trials.
     distance: Option<usize>,
 }
 
 impl Plant {
-    /// Lowers a model onto a tape, with the effects that it carries.
+    /// Lowers a model with its effects onto a tape.
     ///
     /// # Errors
-    /// Names what the model does not give, or says that the mass matrix cannot be solved.
+    /// Returns an error that names what the model does not give, or if the mass matrix cannot be
+    /// inverted.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Values)
     }
 
-    /// As [`Plant::new`], for any values of the coefficients that the model has: its own are not
-    /// read.
+    /// Lowers a model as [`Plant::new`] does, with all coefficients open: values are given with
+    /// each state, and those of the model are not read.
     ///
     /// # Errors
-    /// As [`Plant::new`].
+    /// The errors of [`Plant::new`].
     pub fn open(model: &Model, law: &Law) -> Result<Self, PlantError> {
         Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Names)
     }
 
-    /// As [`Plant::new`], of equations that are set up already.
+    /// Lowers equations that are set up already, as [`Plant::new`] does.
     ///
     /// # Errors
-    /// As [`Plant::new`].
+    /// The errors of [`Plant::new`].
     pub fn of(
         equations: &EquationsOfMotion<'_>,
         coefficients: Coefficients,
@@ -80,10 +81,10 @@ impl Plant {
         Self::with_distance(equations, coefficients, None)
     }
 
-    /// As [`Plant::of`], with a formula of how far the motion is outside of what trials covered.
+    /// Lowers equations with a formula of the distance from the range covered by trials.
     ///
     /// # Errors
-    /// As [`Plant::new`].
+    /// The errors of [`Plant::new`].
     pub fn with_distance(
         equations: &EquationsOfMotion<'_>,
         coefficients: Coefficients,
@@ -95,12 +96,14 @@ impl Plant {
             Coefficients::Values => Vec::new(),
             Coefficients::Names => model.coefficients.keys().cloned().collect(),
         };
+        // Open coefficients follow the inputs of the law on the tape.
         let names: Vec<String> =
             equations.names().into_iter().chain(open.iter().cloned()).collect();
         let mut lowering = Lowering::new(equations, &names);
         let mut layout = lay_out(equations, &mut lowering, coefficients)?;
         layout.distance = distance.map(|distance| lowering.output(distance)).transpose()?;
         let tape = lowering.finish();
+        // A mass matrix with a determinant of zero or less is not physical.
         let mobility = match constant_mass(&tape, &layout).map(LU::new) {
             Some(lu) if lu.determinant() > 0.0 => {
                 Some(lu.try_inverse().ok_or_else(|| PlantError::Mass(model.name.clone()))?)
@@ -120,38 +123,38 @@ impl Plant {
         })
     }
 
-    /// The inputs that the law takes, in their order.
+    /// Names of the inputs of the law, in order.
     pub fn input_names(&self) -> &[String] {
         &self.input_names
     }
 
-    /// The coefficients that are given with each state, in their order.
+    /// Names of the coefficients that are given with each state, in order.
     pub fn open_coefficients(&self) -> &[String] {
         &self.open
     }
 
-    /// Inputs that reach the ship through a lag: their place and its time constant, s.
+    /// Inputs with a lag: place among the inputs and time constant, s.
     pub fn lags_s(&self) -> &[(usize, f64)] {
         &self.lags_s
     }
 
-    /// Half widths of the dead bands of inputs, by the input's place.
+    /// Half widths of the dead bands of inputs, with the place among the inputs.
     pub fn bands(&self) -> &[(usize, f64)] {
         &self.bands
     }
 
-    /// Whether the law has roll.
+    /// Returns true for a 4-DOF law, which has roll.
     pub fn has_roll(&self) -> bool {
         self.layout.forces[2].is_some()
     }
 
-    /// The default of each input.
+    /// Default value of each input.
     pub fn input_defaults(&self) -> &[Option<f64>] {
         &self.input_defaults
     }
 }
 
-/// Refuses a law that takes more than [`Inputs`] have room for.
+/// Refuses a law that has more inputs than [`Inputs`] can hold.
 pub(crate) fn check_inputs(law: &Law) -> Result<(), PlantError> {
     if law.inputs.len() > MAX_INPUTS {
         return Err(PlantError::Inputs { law: law.name.clone(), most: MAX_INPUTS });
@@ -179,6 +182,7 @@ fn lay_out(
             layout.kinematics[place] = Some(lowering.output(expr)?);
         }
     }
+    // Several effects may act on one axis: their accelerations add.
     for (axis, expr) in &law.dressing.accelerations {
         let place = &mut layout.accelerations[*axis as usize];
         *place = Some(lowering.sum(*place, expr)?);
@@ -186,7 +190,7 @@ fn lay_out(
     Ok(layout)
 }
 
-/// Figures of inputs by the input's place, none below zero.
+/// Evaluates constant formulas by input; returns the input's place and the value, none below zero.
 fn by_input(
     equations: &EquationsOfMotion<'_>,
     figures: &[(String, Expr)],
@@ -194,6 +198,7 @@ fn by_input(
     let law = equations.law();
     let one = |(input, expr): &(String, Expr)| {
         let place = law.inputs.get_index_of(input)?;
+        // The formula must be constant: its tape has no inputs.
         let mut lowering = Lowering::new(equations, &[]);
         let lowered = lowering.output(expr);
         Some(lowered.map(|_| (place, lowering.finish().values(&[])[0].max(0.0))))
@@ -202,6 +207,7 @@ fn by_input(
 }
 
 fn constant_mass(tape: &Tape, layout: &Layout) -> Option<Matrix4<f64>> {
+    // Absent axes keep the entries of the identity, so that the matrix stays regular.
     let mut mass = Matrix4::identity();
     for (row, columns) in layout.mass.iter().enumerate() {
         for (column, output) in columns.iter().enumerate() {

@@ -1,5 +1,5 @@
 //! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the
-//! motion is compared.
+//! simulated motion is compared with the recorded one.
 
 mod part;
 mod rates;
@@ -19,15 +19,15 @@ use record::Record;
 pub use replayed::Replay;
 pub use truth::as_true_instruments_say;
 
-/// How a trial is simulated.
+/// Settings of the simulation of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReplaySettings {
-    /// Start anew from the recorded state every so often, s; `None` runs each gap-free part to its
-    /// end.
+    /// Interval after which the simulation restarts from the recorded state, s; `None` simulates
+    /// each gap-free part to its end.
     pub restart_s: Option<f64>,
     /// Integration method.
     pub method: Method,
-    /// Longest step, s; a sampling interval is cut into equal steps no longer than this.
+    /// Longest step, s; a sampling interval is divided into equal steps no longer than this.
     pub step_s: f64,
 }
 
@@ -37,21 +37,21 @@ impl Default for ReplaySettings {
     }
 }
 
-/// A trial to be simulated by one of some ships that differ in their coefficients alone.
+/// Trial to be simulated by one of several ships that differ in their coefficients alone.
 #[derive(Debug, Clone, Copy)]
 pub struct Recorded<'a> {
     /// The trial.
     pub trial: &'a Trial,
-    /// The ship's coefficients, in the order of [`Ship::open_coefficients`]; none for a ship with
-    /// its own.
+    /// Coefficients of the ship, in the order of [`Ship::open_coefficients`]; empty for a ship
+    /// without open coefficients.
     pub coefficients: &'a [f64],
 }
 
 /// Simulates a trial with its recorded inputs.
 ///
 /// # Errors
-/// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has
-/// no default.
+/// Returns an error that names the channel that the trial lacks: velocities, rudder, or another
+/// input of the law without a default.
 pub fn replay(
     ship: &Ship,
     trial: &Trial,
@@ -61,10 +61,10 @@ pub fn replay(
     Ok(all.remove(0))
 }
 
-/// Simulates trials in lockstep, each as [`replay`] would.
+/// Simulates trials in lockstep, each as [`replay`] does.
 ///
 /// # Errors
-/// As [`replay`], of the first trial that lacks something.
+/// Returns the error of [`replay`] for the first trial that lacks a channel.
 pub fn replay_all(
     ship: &Ship,
     trials: &[Recorded<'_>],
@@ -74,6 +74,7 @@ pub fn replay_all(
         .iter()
         .map(|recorded| Record::new(ship, recorded.trial))
         .collect::<Result<Vec<_>, _>>()?;
+    // Every part is a task of its own: lanes of a batch may hold parts of different trials.
     let mut passages: Vec<Part<'_>> = Vec::new();
     for (index, (record, recorded)) in records.iter().zip(trials).enumerate() {
         let parts = parts(recorded.trial, settings.restart_s).into_iter();
@@ -86,17 +87,19 @@ pub fn replay_all(
     let nothing = || Replay::nothing(ship.has_roll());
     let mut replays: Vec<Replay> = trials.iter().map(|_| nothing()).collect();
     passages.into_iter().for_each(|part| part.join(&mut replays));
+    // Excursions are those of the whole trial, not of its parts.
     replays.iter_mut().for_each(|replay| replay.outside = ship.leaves(&replay.track));
     Ok(replays)
 }
 
-/// The gap-free parts of a trial, cut where the simulation starts anew.
+/// Returns the gap-free parts of a trial, divided where the simulation restarts.
 fn parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Range<usize>> {
     let cut = |segment: std::ops::Range<usize>| {
         let mut starts = vec![segment.start];
         if let Some(restart) = restart_s {
             for k in segment.clone() {
                 let since = trial.t_s[k] - trial.t_s[*starts.last().unwrap_or(&segment.start)];
+                // The tolerance absorbs the rounding of recorded times.
                 if since >= restart * (1.0 - 1e-9) {
                     starts.push(k);
                 }

@@ -1,4 +1,4 @@
-//! Runs under orders from the bridge, several in lockstep.
+//! Runs under orders to rudder and engine, several in lockstep.
 
 use crate::envelope::Stopped;
 use crate::integrate::{Method, Stage};
@@ -7,27 +7,27 @@ use crate::plant::{Inputs, Work};
 use crate::ship::{Order, Run, Ship};
 use crate::state::{StateVector, Trajectory};
 
-/// An order, and how long it is held: at most to the end of the step.
+/// Order and its duration: at most to the end of the step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeldOrder {
     pub order: Order,
     pub lasts_s: f64,
 }
 
-/// A run to be sailed; `bridge` gives the order at each step, which is held over it, or `None` to
-/// end the run. A step in which the order ends early is sailed in two.
+/// Run to be simulated; `bridge` returns the order at each step, which is held during it, or `None`
+/// to end the run. A step in which the order ends early is simulated in two parts.
 pub(crate) struct Sailing<'a, B> {
     run: Run,
     coefficients: &'a [f64],
     bridge: B,
     held: HeldOrder,
     step: usize,
-    /// How much of the step is sailed, s.
+    /// Part of the step that has been simulated, s.
     within_s: f64,
     sailed: Sailed,
 }
 
-/// What was sailed, and why it ended early if it did.
+/// Track of a run, and the reason of an early stop, if any.
 #[derive(Debug, Default)]
 pub(crate) struct Sailed {
     pub track: Trajectory,
@@ -35,8 +35,9 @@ pub(crate) struct Sailed {
 }
 
 impl<'a, B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Sailing<'a, B> {
-    /// `coefficients` are the ship's own among sisters, and none for a ship with its own.
+    /// Creates a run; `coefficients` are the open coefficients, empty for a ship without any.
     pub fn new(run: Run, coefficients: &'a [f64], bridge: B) -> Self {
+        // The first call of the bridge replaces this order before any step.
         let held = HeldOrder { order: Order { delta_rad: 0.0, n_rps: 0.0 }, lasts_s: run.step_s };
         let sailed = Sailed::default();
         Self { run, coefficients, bridge, held, step: 0, within_s: 0.0, sailed }
@@ -44,18 +45,19 @@ impl<'a, B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Sailing<'a, B> {
 }
 
 impl Ship {
-    /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to
-    /// end the run.
+    /// Simulates a run; `bridge` returns the order at each step, which is held during it, or `None`
+    /// to end the run.
     ///
     /// # Errors
-    /// Says when and why the motion left the physical range; what was sailed until then is in
-    /// `track`.
+    /// Returns an error with time and reason if the motion left the physical range; `track` then
+    /// holds the motion until that time.
     pub fn sail(
         &self,
         run: Run,
         track: &mut Trajectory,
         mut bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
     ) -> Result<(), Stopped> {
+        // Every order is held for a whole step.
         let held = |t_s: f64, state: &StateVector| {
             Some(HeldOrder { order: bridge(t_s, state)?, lasts_s: run.step_s })
         };
@@ -65,7 +67,7 @@ impl Ship {
     }
 }
 
-/// Sails runs in lockstep.
+/// Simulates runs in lockstep.
 pub(crate) fn sail_all<'a, B>(
     ship: &Ship,
     method: Method,
@@ -94,15 +96,19 @@ impl<B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Passage for Sailing<'_, B
             return None;
         }
         self.held = (self.bridge)(t_s, state)?;
+        // The track has the states at whole steps only, not those within a divided step.
         if self.within_s == 0.0 {
             self.sailed.track.push(t_s, *state, self.held.order.n_rps);
         }
         let left_s = self.run.step_s - self.within_s;
+        // The order ends within the step: the rest of the step follows under the next order.
         if self.held.lasts_s < left_s {
             self.within_s += self.held.lasts_s;
             return Some(self.held.lasts_s);
         }
+        // The order lasts to the end of the step.
         (self.held.lasts_s, self.within_s) = (left_s, 0.0);
+        // The duration is rounded to a whole number of steps.
         let last = (self.run.duration_s / self.run.step_s).round() as usize;
         self.step += 1;
         (self.step <= last).then_some(left_s)

@@ -1,4 +1,4 @@
-//! A ship ready to sail: plant, steering gear, envelope and what is held constant around it.
+//! Ship prepared for simulation: plant, steering gear, envelope and constant conditions.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use crate::state::{StateVector, States, Trajectory, at, lane_of};
 use crate::tape::Lanes;
 use crate::validity::leaves;
 
-/// What the bridge orders at an instant.
+/// Order to rudder and propeller at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order {
     /// Rudder, rad, positive turns to starboard.
@@ -27,7 +27,7 @@ pub struct Order {
     pub n_rps: f64,
 }
 
-/// A ship ready to sail.
+/// Ship prepared for simulation.
 #[derive(Debug)]
 pub struct Ship {
     plant: Plant,
@@ -38,15 +38,15 @@ pub struct Ship {
     lpp_m: f64,
     approach_speed_m_s: f64,
     approach_n_rps: f64,
-    /// For velocities over the ground, and through the water.
+    /// Instruments for velocities over the ground, and through the water.
     instruments: [Option<Instruments>; 2],
-    /// What the model's trials covered.
+    /// Range covered by the model's trials.
     validity: Option<Region>,
-    /// What was learned beside the law.
+    /// Learned correction of the law.
     branch: Option<Arc<dyn LearnedBranch>>,
 }
 
-/// Places of the velocities that a learned branch changes.
+/// Places of the velocities that a learned correction changes.
 const VELOCITIES: [usize; 3] = [at::U, at::V, at::R];
 
 /// Places of the inputs that change during a run.
@@ -58,22 +58,22 @@ struct Slots {
 }
 
 impl Ship {
-    /// Makes a model ready, with what was learned beside its law.
+    /// Prepares a model with its learned correction.
     ///
     /// # Errors
-    /// As [`Plant::new`]; also where the model has no length or no approach speed, or the weights
-    /// of its learned branch have not been attached.
+    /// The errors of [`Plant::new`]; also an error if the model has no length or no approach speed,
+    /// or if the weights of its learned correction have not been attached.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let branch = attached(model)?;
         let equations = EquationsOfMotion::of_foundation(model, law)?;
         Ok(Self { branch, ..Self::of(&equations, Coefficients::Values)? })
     }
 
-    /// As [`Ship::new`], for sisters whose coefficients are given with each passage: those of the
-    /// model are not read.
+    /// Prepares a model as [`Ship::new`] does, for ships whose coefficients are given with each
+    /// simulation: those of the model are not read.
     ///
     /// # Errors
-    /// As [`Ship::new`].
+    /// The errors of [`Ship::new`].
     pub fn sisters(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let branch = attached(model)?;
         let equations = EquationsOfMotion::of_foundation(model, law)?;
@@ -96,10 +96,12 @@ impl Ship {
             })
         };
         let lpp_m = need("lpp_m", particulars::value(&model.particulars, "lpp_m"))?;
+        // The service speed replaces an approach speed that the model does not give.
         let service = particulars::value(&model.particulars, "service_speed_m_s");
         let speed = need("speed_m_s", model.speed_m_s.or(service))?;
         let place = |name: &str| plant.input_names().iter().position(|known| known == name);
         let slots = Slots { delta: place("delta"), n: place("n"), depth: place("depth") };
+        // Inputs that no run changes keep the defaults of the law.
         let mut template = [0.0; MAX_INPUTS];
         for (value, default) in template.iter_mut().zip(plant.input_defaults()) {
             *value = default.unwrap_or(0.0);
@@ -107,6 +109,7 @@ impl Ship {
         let envelope = Envelope::new(lpp_m, speed);
         let domain = model.branch.as_ref().map(|branch| &branch.domain);
         let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
+        // The lag and the dead band of the rudder are part of the steering gear.
         let of_rudder = |figures: &[(usize, f64)]| {
             let found = figures.iter().find(|(place, _)| Some(*place) == slots.delta);
             found.map_or(0.0, |&(_, figure)| figure)
@@ -122,19 +125,19 @@ impl Ship {
             lpp_m,
             approach_speed_m_s: speed,
             approach_n_rps,
-            // Where nobody says what the foundation's trials covered, runs tell when the branch
-            // fades.
+            // If the range of the foundation's trials is unknown, the domain of the correction is
+            // used, so that runs report where the correction fades out.
             validity: model.validity.as_ref().or(domain).cloned(),
             branch: None,
         })
     }
 
-    /// What was learned beside the law, if anything was.
+    /// Learned correction of the law, if any.
     pub fn branch(&self) -> Option<&dyn LearnedBranch> {
         self.branch.as_deref()
     }
 
-    /// Sets the water depth for laws that know it, m.
+    /// Sets the water depth, m, for laws that have it as an input.
     pub fn set_depth(&mut self, depth_m: f64) {
         if let Some(slot) = self.slots.depth {
             self.template[slot] = depth_m;
@@ -146,37 +149,37 @@ impl Ship {
         self.lpp_m
     }
 
-    /// The approach speed that the model belongs to, m/s.
+    /// Approach speed of the model, m/s.
     pub fn approach_speed_m_s(&self) -> f64 {
         self.approach_speed_m_s
     }
 
-    /// Revolutions for a steady approach at a speed, in proportion to the model's own, 1/s.
+    /// Revolutions of a steady approach at a speed, proportional to those of the model, 1/s.
     pub fn revolutions_at(&self, speed_m_s: f64) -> f64 {
         self.approach_n_rps * speed_m_s / self.approach_speed_m_s
     }
 
-    /// Whether the law turns revolutions into thrust.
+    /// Returns true if the law has revolutions as an input.
     pub fn has_propeller(&self) -> bool {
         self.slots.n.is_some()
     }
 
-    /// Whether the law takes a rudder angle.
+    /// Returns true if the law has a rudder angle as an input.
     pub fn has_rudder(&self) -> bool {
         self.slots.delta.is_some()
     }
 
-    /// The place of the rudder angle among the law's inputs.
+    /// Place of the rudder angle among the law's inputs.
     pub(crate) fn rudder_place(&self) -> Option<usize> {
         self.slots.delta
     }
 
-    /// Whether the law has roll.
+    /// Returns true for a 4-DOF law, which has roll.
     pub fn has_roll(&self) -> bool {
         self.plant.has_roll()
     }
 
-    /// What the law takes from outside, with what it takes where nothing is given.
+    /// Inputs of the law with their defaults.
     pub fn law_inputs(&self) -> impl Iterator<Item = (&str, Option<f64>)> {
         self.plant
             .input_names()
@@ -185,36 +188,37 @@ impl Ship {
             .zip(self.plant.input_defaults().iter().copied())
     }
 
-    /// A sister's coefficients as passages take them; none where its own are not those of the
-    /// others by name.
+    /// Coefficients of another model in the order of the open coefficients; `None` if its names are
+    /// not those of this ship.
     pub fn sister(&self, model: &Model) -> Option<Vec<f64>> {
         let names = self.plant.open_coefficients();
         let same = model.coefficients.len() == names.len()
+            // Equal numbers and known names: both sets of names are the same.
             && model.coefficients.keys().all(|name| names.contains(name));
         same.then(|| names.iter().map(|name| model.coefficient(name)).collect())
     }
 
-    /// How many inputs the law takes.
+    /// Number of inputs of the law.
     pub(crate) fn input_count(&self) -> usize {
         self.plant.input_names().len()
     }
 
-    /// Whether some instrument says something else than the truth.
+    /// Returns true if some instrument differs from the true state.
     pub(crate) fn reads_instruments(&self) -> bool {
         self.instruments.iter().any(Option::is_some)
     }
 
-    /// Inputs that reach the ship through a lag: their place and its time constant, s.
+    /// Inputs with a lag: place among the inputs and time constant, s.
     pub fn lags_s(&self) -> &[(usize, f64)] {
         self.plant.lags_s()
     }
 
-    /// Half widths of the dead bands of inputs, by the input's place.
+    /// Half widths of the dead bands of inputs, with the place among the inputs.
     pub fn bands(&self) -> &[(usize, f64)] {
         self.plant.bands()
     }
 
-    /// What the instruments say of a state; `inputs` as in [`Ship::rate_with`].
+    /// Readings of the instruments at a state; `inputs` as in [`Ship::rate_with`].
     pub fn says(
         &self,
         frame: VelocityFrame,
@@ -222,6 +226,7 @@ impl Ship {
         inputs: &Inputs,
         work: &mut Work,
     ) -> StateVector {
+        // Instruments are indexed by the frame: ground, then water.
         let Some(instruments) = &self.instruments[frame as usize] else { return *state };
         let rate = self.rate_with(state, inputs, work);
         instruments.read(
@@ -232,7 +237,7 @@ impl Ship {
         )
     }
 
-    /// The state of which the instruments say `said`.
+    /// Returns the true state for the readings `said`.
     pub fn truth(
         &self,
         frame: VelocityFrame,
@@ -246,33 +251,33 @@ impl Ship {
         truth(said, |state| self.says(frame, state, inputs, work))
     }
 
-    /// How a motion leaves what the model's trials covered; none where it stays inside, or where
-    /// nobody knows what they did.
+    /// Returns the excursion of a motion from the range covered by the model's trials; `None` if it
+    /// stays inside, or if that range is unknown.
     pub fn leaves(&self, track: &Trajectory) -> Option<Excursion> {
         leaves(self.validity.as_ref()?, track)
     }
 
-    /// Leaves out whether motions leave what the model's trials covered.
+    /// Disables the check of excursions from the range covered by the model's trials.
     pub fn forget_validity(&mut self) {
         self.validity = None;
     }
 
-    /// The range outside which runs are stopped.
+    /// Limits outside which runs are stopped.
     pub fn envelope(&self) -> &Envelope {
         &self.envelope
     }
 
-    /// The steering gear, with the lag that effects put before it.
+    /// Steering gear, including the lag that effects add.
     pub fn gear(&self) -> Gear {
         self.gear
     }
 
-    /// Widens the range to that of a run at another speed.
+    /// Widens the limits to those of a run at another speed.
     pub fn set_envelope_speed(&mut self, speed_m_s: f64) {
         self.envelope = Envelope::new(self.lpp_m, speed_m_s.abs().max(self.approach_speed_m_s));
     }
 
-    /// The inputs for a rudder angle and revolutions.
+    /// Returns the inputs for a rudder angle and revolutions.
     pub fn inputs(&self, delta_rad: f64, n_rps: f64) -> Inputs {
         let mut inputs = self.template;
         for (slot, value) in [(self.slots.delta, delta_rad), (self.slots.n, n_rps)] {
@@ -283,7 +288,7 @@ impl Ship {
         inputs
     }
 
-    /// The rate of change of the state with the steering gear following `order`.
+    /// Rate of change of the state with the steering gear following `order`.
     pub fn rate_under(
         &self,
         state: &StateVector,
@@ -297,7 +302,7 @@ impl Ship {
         rate
     }
 
-    /// The rate of change of the state at a recorded rudder angle.
+    /// Rate of change of the state at a recorded rudder angle.
     pub fn rate_at(
         &self,
         state: &StateVector,
@@ -308,10 +313,11 @@ impl Ship {
         self.rate_with(state, &self.inputs(delta_rad, n_rps), work)
     }
 
-    /// The rate of change of the state with every input of the law given, in the order of
+    /// Rate of change of the state with all inputs of the law, in the order of
     /// [`Ship::law_inputs`].
     pub fn rate_with(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
         let mut rate = self.plant.rate(state, inputs, work);
+        // A learned correction takes the rates of the foundation as inputs.
         if let Some(branch) = &self.branch {
             let added = branch.addition(&self.instant(state, &|slot| inputs[slot], &rate));
             VELOCITIES.into_iter().zip(added).for_each(|(place, added)| rate[place] += added);
@@ -319,7 +325,7 @@ impl Ship {
         rate
     }
 
-    /// What a learned branch sees; `input` is that of the law at its place.
+    /// Returns the inputs of a learned correction; `input` returns the input of the law at a place.
     pub fn instant(
         &self,
         state: &StateVector,
@@ -335,7 +341,7 @@ impl Ship {
         }
     }
 
-    /// The rates of change of several states, each with every input of the law.
+    /// Rates of change of several states, each with all inputs of the law.
     pub(crate) fn rates<const N: usize>(
         &self,
         states: &States<N>,
@@ -344,7 +350,8 @@ impl Ship {
     ) -> States<N> {
         let mut rates = self.plant.rates(states, inputs, work);
         if let Some(branch) = &self.branch {
-            // Each lane by itself: what comes out does not depend on who sails beside.
+            // Each lane is evaluated by itself, so that a result does not depend on the other
+            // lanes.
             for lane in 0..N {
                 let input = |slot: usize| inputs[slot][lane];
                 let (state, own) = (lane_of(states, lane), lane_of(&rates, lane));
@@ -358,18 +365,18 @@ impl Ship {
         rates
     }
 
-    /// How fast the steering gear moves the rudder towards what is ordered, rad/s.
+    /// Rate at which the steering gear moves the rudder towards the order, rad/s.
     pub(crate) fn rudder_rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         self.gear.rate(order_rad, angle_rad, step_s)
     }
 }
 
-/// How to sail.
+/// Settings of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Run {
-    /// The state at time zero.
+    /// State at time zero.
     pub start: StateVector,
-    /// How long, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// Step, s.
     pub step_s: f64,

@@ -1,15 +1,15 @@
-//! Sisters that sail side by side under the same orders, step by step, as the orders come.
+//! Ships that are simulated together under the same orders, step by step, as the orders arrive.
 
 use crate::integrate::Method;
 use crate::plant::{Inputs, MAX_INPUTS, Work};
 use crate::ship::Ship;
 use crate::state::{StateVector, States, at, lane_of, set_lane};
 
-/// Ships that are calculated together.
+/// Number of ships that are calculated together.
 const TOGETHER: usize = 8;
 
-/// Sisters side by side, each in a state of its own. One whose motion leaves the physical range
-/// drops out; the others sail on.
+/// Ensemble of ships that differ in their coefficients, each with its own state. A ship whose
+/// motion leaves the physical range drops out; the others continue.
 #[derive(Debug)]
 pub struct SideBySide {
     blocks: Vec<Block>,
@@ -19,24 +19,25 @@ pub struct SideBySide {
 struct Block {
     states: States<TOGETHER>,
     work: Work<TOGETHER>,
-    /// Who sails: lanes beyond the last ship, and those who dropped out, do not.
+    /// Active lanes; lanes beyond the last ship, and those of ships that dropped out, are not
+    /// active.
     sailing: [bool; TOGETHER],
 }
 
 impl SideBySide {
-    /// Sisters in one state; `coefficients` as [`Ship::sister`] gives them.
+    /// Creates an ensemble in one state; `coefficients` as returned by [`Ship::sister`].
     pub fn new(coefficients: &[Vec<f64>], start: &StateVector) -> Self {
         let blocks = coefficients.chunks(TOGETHER).map(|chunk| Block::new(chunk, start)).collect();
         Self { blocks }
     }
 
-    /// Sails a step: `inputs` are those of the law, in which the rudder angle is each ship's own,
-    /// and `order_rad` is what its steering gear follows.
+    /// Advances all ships by a step: `inputs` are those of the law, of which the rudder angle is
+    /// replaced by that of each ship, and `order_rad` is the order to its steering gear.
     pub fn step(&mut self, ship: &Ship, inputs: &Inputs, order_rad: f64, step_s: f64) {
         self.blocks.iter_mut().for_each(|block| block.step(ship, inputs, order_rad, step_s));
     }
 
-    /// The states of those who sail.
+    /// States of the active ships.
     pub fn states(&self) -> impl Iterator<Item = StateVector> {
         self.blocks.iter().flat_map(|block| {
             let lanes = (0..TOGETHER).filter(|lane| block.sailing[*lane]);
@@ -44,7 +45,7 @@ impl SideBySide {
         })
     }
 
-    /// How many are calculated at a time, by a ship alone.
+    /// Number of blocks, each of which takes about the time of a single ship.
     pub fn blocks(&self) -> usize {
         self.blocks.len()
     }
@@ -58,7 +59,7 @@ impl Block {
             sailing: [false; TOGETHER],
         };
         for lane in 0..TOGETHER {
-            // A lane that nobody has is calculated with the others, and read by nobody.
+            // An unused lane is calculated with the others, but its result is not read.
             let own = coefficients.get(lane).or(coefficients.first());
             own.into_iter().for_each(|own| block.work.set_coefficients(lane, own));
             set_lane(&mut block.states, lane, start);
@@ -69,6 +70,8 @@ impl Block {
 
     fn step(&mut self, ship: &Ship, inputs: &Inputs, order_rad: f64, step_s: f64) {
         let Self { states, work, sailing } = self;
+        // Order and inputs are constant over the step; only the rudder angle differs between
+        // stages.
         *states = Method::Rk4.steps(states, &[step_s; TOGETHER], |_, states| {
             let mut lanes: [[f64; TOGETHER]; MAX_INPUTS] = inputs.map(|value| [value; TOGETHER]);
             if let Some(place) = ship.rudder_place() {
@@ -79,6 +82,7 @@ impl Block {
                 states[at::DELTA].map(|angle| ship.rudder_rate(order_rad, angle, step_s));
             rates
         });
+        // A ship that has dropped out stays inactive, also if its state returned to the range.
         for (lane, sailing) in sailing.iter_mut().enumerate() {
             *sailing &= ship.envelope().check(0.0, &lane_of(states, lane)).is_ok();
         }

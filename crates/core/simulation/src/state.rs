@@ -1,18 +1,18 @@
-//! The state of a ship in motion.
+//! State of a ship in motion.
 
 use nalgebra::SVector;
 use sistership_model::trial::Channel;
 
 use crate::tape::Lanes;
 
-/// The state vector: `u, v, r, p, phi, psi, x, y, delta` in SI and radians; `delta` is the actual
+/// State vector: `u, v, r, p, phi, psi, x, y, delta` in SI units and radians; `delta` is the actual
 /// rudder angle.
 pub type StateVector = SVector<f64, 9>;
 
 /// States of ships in lockstep: by component, by ship.
 pub type States<const N: usize> = [Lanes<N>; 9];
 
-/// The state of one of several ships.
+/// State of one of several ships.
 pub fn lane_of<const N: usize>(states: &States<N>, lane: usize) -> StateVector {
     StateVector::from_fn(|place, _| states[place][lane])
 }
@@ -44,7 +44,7 @@ pub mod at {
     pub const DELTA: usize = 8;
 }
 
-/// The channels of a trial that record the state, with their places in it: velocities, heading,
+/// Channels of a trial that record the state, with their places in it: velocities, heading,
 /// position, then roll.
 pub const RECORDED: [(Channel, usize); 8] = [
     (Channel::U, at::U),
@@ -57,12 +57,12 @@ pub const RECORDED: [(Channel, usize); 8] = [
     (Channel::P, at::P),
 ];
 
-/// Speed over the water, m/s.
+/// Speed, m/s: the magnitude of the horizontal velocity.
 pub fn speed(state: &StateVector) -> f64 {
     state[at::U].hypot(state[at::V])
 }
 
-/// A state of straight running at a speed, heading north.
+/// State of straight running at a speed, heading north.
 pub fn straight(speed_m_s: f64) -> StateVector {
     let mut state = StateVector::zeros();
     state[at::U] = speed_m_s;
@@ -93,7 +93,7 @@ impl Trajectory {
         self.n_rps.push(n_rps);
     }
 
-    /// Adds the samples of another.
+    /// Appends the samples of another trajectory.
     pub fn append(&mut self, other: Self) {
         self.t_s.extend(other.t_s);
         self.states.extend(other.states);

@@ -1,4 +1,4 @@
-//! The motion that trials covered, and simulations that leave it.
+//! Range of motion covered by trials, and excursions of simulations from it.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use sistership_model::validity::{Excursion, Face, Region, SLACK};
 use crate::covered_environment::covered_environment;
 use crate::state::{StateVector, Trajectory, at};
 
-/// What bounds a region, with its place in the state; revolutions stand beside it.
+/// Channels that bound a region, with their places in the state; revolutions are not part of it.
 const BOUNDED: [(Channel, Option<usize>); 5] = [
     (Channel::U, Some(at::U)),
     (Channel::V, Some(at::V)),
@@ -19,8 +19,9 @@ const BOUNDED: [(Channel, Option<usize>); 5] = [
     (Channel::N, None),
 ];
 
-/// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered;
-/// channels that one of them lacks are left out. Beside it, the wind and depth that they recorded.
+/// Returns the region of `u, v, r, delta` and, where the law has revolutions, `n` that trials
+/// covered, and the wind and depth that they recorded. Channels that one of the trials lacks are
+/// left out.
 pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
     let bounds =
         |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());
@@ -37,18 +38,20 @@ pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
     Some(Region { environment: covered_environment(trials), ..Region::of(&columns)? })
 }
 
-/// How far a motion is outside of a region, by half ranges, as a formula of its channels; 0 inside.
-/// Directions along a channel that is not known are left out.
+/// Returns the distance of a motion from a region, in half ranges, as a formula of its channels; 0
+/// inside. Directions along an unknown channel are left out.
 pub fn distance(region: &Region, is_known: &dyn Fn(&str) -> bool) -> Expr {
     let known = |face: &Face<'_>| face.terms.iter().all(|term| is_known(term.channel));
+    // The distance from a convex region is the largest one over its directions.
     let faces = region.faces();
     let furthest = faces.iter().filter(|face| known(face)).map(beyond);
     let furthest = furthest.fold(Expr::Number(0.0), |a, b| Expr::Call(Function::Max, vec![a, b]));
+    // Distances up to the slack count as inside.
     let parts = [furthest.clone(), Expr::Number(SLACK), furthest, Expr::Number(0.0)];
     Expr::If(Comparison::Greater, Box::new(parts))
 }
 
-/// How far outside along one direction, below zero inside.
+/// Formula of the distance outside along one direction, below zero inside.
 fn beyond(face: &Face<'_>) -> Expr {
     let number = |value: f64| Box::new(Expr::Number(value));
     let along = face.terms.iter().fold(Expr::Number(0.0), |sum, term| {
@@ -61,7 +64,7 @@ fn beyond(face: &Face<'_>) -> Expr {
     Expr::Call(Function::Max, vec![below, above])
 }
 
-/// How a motion leaves a region; none where it stays inside.
+/// Returns the excursion of a motion from a region; `None` if it stays inside.
 pub fn leaves(region: &Region, track: &Trajectory) -> Option<Excursion> {
     let of_state = |state: &StateVector, n_rps: f64, name: &str| {
         let (_, place) = BOUNDED.into_iter().find(|(channel, _)| channel.name() == name)?;

@@ -1,17 +1,18 @@
-//! Wide vector instructions where the processor has them.
+//! Dispatch to wide vector instructions where the processor has them.
 //!
-//! The same code is compiled three times, with AVX-512, with AVX2 and plainly, and the processor is
-//! asked which to run. Nothing else differs: without fused multiplication every lane is rounded as
-//! it is in the plain code, so that results are the same to the last bit. What calls
-//! [`f64::mul_add`] itself passes [`fused`].
+//! The same code is compiled three times, with AVX-512, with AVX2 and for the base target, and the
+//! version is selected at run time. Without fused multiplication every lane is rounded as it is in
+//! the base version, so that results are the same to the last bit. A kernel that calls
+//! [`f64::mul_add`] itself is passed to [`fused`].
 
-/// What is worth compiling for each width.
+/// Computation that is compiled for each vector width.
 pub trait Wide {
-    /// Does it; to be `#[inline(always)]`, and so all that it calls in its loops.
+    /// Runs the computation; must be `#[inline(always)]`, and so must all that it calls in its
+    /// loops.
     fn go(self);
 }
 
-/// Does it with the widest instructions that the processor has.
+/// Runs a kernel with the widest instructions of the processor.
 #[inline]
 #[allow(unsafe_code)]
 pub fn widest(work: impl Wide) {
@@ -28,9 +29,9 @@ pub fn widest(work: impl Wide) {
     work.go();
 }
 
-/// Does it where the processor has instructions that multiply and add with one rounding
-/// ([`f64::mul_add`]), by the widest of them, and says whether it did: elsewhere each would be a
-/// call.
+/// Runs a kernel with the widest instructions that multiply and add with one rounding
+/// ([`f64::mul_add`]), if the processor has them, and returns true if it did: without them each
+/// `mul_add` would be a function call.
 #[inline]
 #[allow(unsafe_code)]
 pub fn fused(work: impl Wide) -> bool {

@@ -5,9 +5,9 @@
 pub struct ColumnData {
     /// The header, or `#3` for the third column of a file without one.
     pub header: String,
-    /// The cell of a line of units.
+    /// Cell of the row of units below the header.
     pub below: Option<String>,
-    /// A value a row; NaN where the cell holds no number.
+    /// One value for each row; NaN where the cell contains no number.
     pub values: Vec<f64>,
     /// For times that are written as text or as days of a sheet: their unit in manifests. The
     /// values are then seconds.
@@ -19,7 +19,8 @@ pub struct ColumnData {
 pub struct RecordingSample {
     /// Its columns, of equal length.
     pub columns: Vec<ColumnData>,
-    /// Rows before which others were not looked at.
+    /// Row indices at which the recording is interrupted: the rows before such a row are not
+    /// adjacent to it in time.
     pub breaks: Vec<usize>,
 }
 
@@ -29,7 +30,7 @@ impl RecordingSample {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// Whether it has no row.
+    /// Returns true if the recording has no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

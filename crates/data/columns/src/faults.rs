@@ -1,64 +1,66 @@
-//! Faults of a recording, found by a robust filter: values that neither what came before nor what
-//! came after explains.
+//! Faults of a recording, found by a robust filter: values that neither the samples before nor the
+//! samples after explain.
 //!
-//! The filter holds level and slope of a channel; where its rate is measured, only what that leaves
-//! is filtered. A value is rejected that lies further from its prediction than eight times the 80 %
-//! quantile of all such distances, and it is a fault where the pass forward and the pass backward
-//! both reject it, so that a sudden manoeuvre is none. That is ten standard deviations of normal
-//! noise; of Laplace noise, whose tails are heavy, 3 in 10^6 samples are beyond.
+//! The filter estimates level and slope of a channel; where the rate of the channel is measured,
+//! its integral is subtracted first. A value is rejected if it lies further from its prediction
+//! than eight times the 80 % quantile of all such distances, and it is a fault if both the forward
+//! and the backward pass reject it, so that a sudden manoeuvre is not a fault. The limit is ten
+//! standard deviations of normal noise; of Laplace noise, whose tails are heavy, 3 in 10^6 samples
+//! are beyond.
 
 use std::f64::consts::{PI, TAU};
 
-/// Multiple of the 80 % quantile of innovations that is rejected.
+/// Multiple of the 80 % quantile of innovations beyond which a sample is rejected.
 const GATE: f64 = 8.0;
-/// Gains of level and slope.
+/// Gains of the level and of the slope.
 const LEVEL: f64 = 0.7;
 const SLOPE: f64 = 0.2;
-/// Samples after which a filter that rejects everything starts anew: what it sees is no fault.
+/// Number of consecutive rejected samples after which the filter restarts: a longer deviation is
+/// not a fault.
 const LOST: usize = 60;
-/// Steps from which a slope is taken at first.
+/// Number of steps from which the initial slope is taken.
 const BEGINNING: usize = 15;
-/// Samples of a run of equal values at least that may be a frozen sensor, and the expected number
-/// of such runs by chance in a recording.
+/// Minimum number of equal values in a run that may be a frozen sensor, and the expected number of
+/// such runs by chance in a recording.
 const FROZEN: usize = 8;
 const BY_CHANCE: f64 = 1e-3;
-/// Part of a channel that may be faulty; with more, it is not the samples that are wrong.
+/// Largest faulty fraction of a channel; with more, the filter rather than the samples is wrong.
 const MOST: f64 = 0.2;
-/// Samples of a fault that is called a spike.
+/// Maximum number of samples of a spike; longer faults are jumps.
 const SPIKE: usize = 3;
 
 /// A channel in SI units; a gap is NaN.
 #[derive(Debug, Clone, Copy)]
 pub struct FilteredChannel<'a> {
-    /// A value a sample.
+    /// One value for each sample.
     pub values: &'a [f64],
-    /// Its measured rate, where there is one.
+    /// Measured rate of the channel, where there is one.
     pub rate: Option<&'a [f64]>,
-    /// Whether it returns at a full turn.
+    /// True if the channel is a direction, which wraps at a full turn.
     pub is_direction: bool,
-    /// The least distance that is a fault, whatever the noise.
+    /// Smallest distance from the prediction that is a fault, whatever the noise.
     pub least: f64,
-    /// Magnitude that no instrument shows.
+    /// Magnitude above which a value is no reading of an instrument.
     pub impossible: f64,
 }
 
-/// What is wrong with a sample.
+/// Kind of fault of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SampleFault {
     /// A direction averaged across the full turn.
     WrappedAverage,
-    /// A few samples apart from their neighbours.
+    /// A few samples that deviate from their neighbours.
     Spike,
-    /// Samples that stand apart together.
+    /// A longer run of samples that deviates from its neighbours.
     Jump,
-    /// The last value again and again.
+    /// The last value, repeated.
     Frozen,
     /// A value that no instrument shows, such as -9999.
     Impossible,
 }
 
 impl SampleFault {
-    /// As it is written in a manifest.
+    /// Reason as written in a manifest.
     pub fn text(self) -> &'static str {
         match self {
             Self::WrappedAverage => "averages across 360 degrees",
@@ -70,7 +72,8 @@ impl SampleFault {
     }
 }
 
-/// Faults of a channel by sample, in order; none where more than a fifth would be faulty.
+/// Returns the faults of a channel by sample, in order of the samples; none if more than a fifth
+/// would be faulty.
 pub fn sample_faults(t_s: &[f64], channel: &FilteredChannel) -> Vec<(usize, SampleFault)> {
     let mut values = channel.values.to_vec();
     let mut found: Vec<(usize, SampleFault)> = Vec::new();
@@ -87,16 +90,21 @@ pub fn sample_faults(t_s: &[f64], channel: &FilteredChannel) -> Vec<(usize, Samp
     found.extend(frozen(&values, &filter).into_iter().map(|k| (k, SampleFault::Frozen)));
     found.sort_unstable();
     found.dedup_by_key(|(k, _)| *k);
+    // With so many faults the model of the filter does not describe the channel, so none is
+    // reported.
     let many = found.len() as f64 > MOST * values.len() as f64;
     if many { Vec::new() } else { found }
 }
 
-/// Rows whose time does not run forward, so few as possible; none where they are many.
+/// Returns the smallest set of rows without which time increases strictly; none if that set is
+/// large.
 pub fn backward_times(t_s: &[f64]) -> Vec<usize> {
     // The longest strictly increasing subsequence (Fredman 1975, doi 10.1016/0012-365X(75)90103-X).
     let mut ends: Vec<usize> = Vec::new();
     let mut before: Vec<Option<usize>> = vec![None; t_s.len()];
     for k in (0..t_s.len()).filter(|&k| t_s[k].is_finite()) {
+        // `ends[n]` is the row with the smallest time at which an increasing subsequence of length
+        // n + 1 can end; `before` links each row to its predecessor in that subsequence.
         let place = ends.partition_point(|&at| t_s[at] < t_s[k]);
         before[k] = place.checked_sub(1).map(|place| ends[place]);
         match ends.get_mut(place) {
@@ -104,6 +112,7 @@ pub fn backward_times(t_s: &[f64]) -> Vec<usize> {
             None => ends.push(k),
         }
     }
+    // Follow the links backwards from the end of the longest subsequence.
     let mut kept = vec![false; t_s.len()];
     let mut at = ends.last().copied();
     while let Some(k) = at {
@@ -114,7 +123,7 @@ pub fn backward_times(t_s: &[f64]) -> Vec<usize> {
     if dropped.len() as f64 > MOST * t_s.len() as f64 { Vec::new() } else { dropped }
 }
 
-/// A channel without what its rate explains, and how far samples may lie from a prediction.
+/// Channel less the integral of its rate, and the largest innovation of a sample that is accepted.
 struct Filter {
     values: Vec<f64>,
     is_direction: bool,
@@ -130,6 +139,8 @@ impl Filter {
         let mut filter = Self { values, is_direction: channel.is_direction, gate: f64::INFINITY };
         let forward = filter.pass(t_s, 0..t_s.len());
         let mut distances: Vec<f64> = forward.into_iter().flatten().map(f64::abs).collect();
+        // The first pass accepts everything (infinite gate) and gives the distances that set the
+        // gate.
         let at = (0.8 * distances.len() as f64) as usize;
         filter.gate = match distances.get(at) {
             Some(_) => {
@@ -141,7 +152,7 @@ impl Filter {
         filter
     }
 
-    /// Innovations in an order of samples; `None` for a gap.
+    /// Returns the innovations of the samples visited in the given order; `None` for a gap.
     fn pass(&self, t_s: &[f64], order: impl Iterator<Item = usize>) -> Vec<Option<f64>> {
         let order: Vec<usize> = order.collect();
         let mut innovations = vec![None; self.values.len()];
@@ -157,6 +168,9 @@ impl Filter {
                 lost = 0;
                 continue;
             };
+            // Alpha-beta filter: predict with the slope, then correct level and slope by fixed
+            // gains. The gate widens with each rejected sample, as the prediction grows less
+            // certain.
             let step = t_s[k] - last;
             let predicted = level + slope * step;
             let innovation = self.wrapped(value - predicted);
@@ -172,7 +186,7 @@ impl Filter {
         innovations
     }
 
-    /// The median slope of the next samples, which a fault among them does not change.
+    /// Returns the median slope of the next samples, which a fault among them does not change.
     fn slope(&self, t_s: &[f64], next: &[usize]) -> f64 {
         let pairs = next.windows(2).take(BEGINNING);
         let slopes = pairs.map(|pair| {
@@ -184,11 +198,12 @@ impl Filter {
         slopes.get(slopes.len() / 2).copied().unwrap_or(0.0)
     }
 
+    /// Brings the change of a direction into -pi to pi; other channels stay as they are.
     fn wrapped(&self, change: f64) -> f64 {
         if self.is_direction { change - ((change + PI) / TAU).floor() * TAU } else { change }
     }
 
-    /// Samples that both passes reject.
+    /// Flags the samples that both passes reject.
     fn rejected(&self, t_s: &[f64]) -> Vec<bool> {
         let beyond = |innovation: Option<f64>| innovation.is_some_and(|one| one.abs() > self.gate);
         let forward = self.pass(t_s, 0..t_s.len());
@@ -197,7 +212,7 @@ impl Filter {
     }
 }
 
-/// The values less the integral of their rate.
+/// Returns the values less the integral of their rate (trapezoidal rule).
 fn without_rate(t_s: &[f64], values: &[f64], rate: &[f64]) -> Vec<f64> {
     let (mut sum, mut last) = (0.0, None);
     let each = values.iter().zip(rate).zip(t_s);
@@ -213,6 +228,7 @@ fn without_rate(t_s: &[f64], values: &[f64], rate: &[f64]) -> Vec<f64> {
     .collect()
 }
 
+/// First and past-the-end index of every run of set flags.
 fn runs(flags: &[bool]) -> Vec<(usize, usize)> {
     let (mut runs, mut k) = (Vec::new(), 0);
     while k < flags.len() {
@@ -226,6 +242,7 @@ fn runs(flags: &[bool]) -> Vec<(usize, usize)> {
 }
 
 fn kind(values: &[f64], is_direction: bool, first: usize, end: usize) -> SampleFault {
+    // An average across the wrap lies between neighbours that are more than half a turn apart.
     let before = first.checked_sub(1).and_then(|k| values.get(k));
     let crosses = before.zip(values.get(end)).is_some_and(|(a, b)| (a - b).abs() > PI);
     match (is_direction && crosses, end - first <= SPIKE) {
@@ -235,14 +252,17 @@ fn kind(values: &[f64], is_direction: bool, first: usize, end: usize) -> SampleF
     }
 }
 
-/// Runs of one value, too long for chance, after which the channel goes on elsewhere.
+/// Returns the samples of runs of one value that are too long for chance and after which the
+/// channel continues at another value.
 fn frozen(values: &[f64], filter: &Filter) -> Vec<usize> {
     let equal: Vec<bool> = (0..values.len()).map(|k| k > 0 && values[k] == values[k - 1]).collect();
     let part = equal.iter().filter(|equal| **equal).count() as f64 / equal.len().max(1) as f64;
-    // Held or coarse readings are equal by nature.
+    // Channels that hold or round their readings have equal neighbours by nature.
     if part > 0.2 {
         return Vec::new();
     }
+    // With the fraction p of equal neighbours, about n p^L runs of length L are expected by chance
+    // among n samples: L follows from n p^L = BY_CHANCE.
     let longest = (BY_CHANCE / values.len() as f64).ln() / part.max(1e-4).ln();
     let longest = FROZEN.max(longest.ceil() as usize);
     let resumes = |first: usize, end: usize| {

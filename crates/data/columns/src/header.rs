@@ -1,4 +1,4 @@
-//! Evidence of a header: quantities, unit, side and sign that its words name.
+//! Evidence of a header: the quantities, unit, side and sign that its words name.
 
 use crate::role::{Kind, Role, Side};
 use crate::vocabulary::{Meaning, Phrase, vocabulary};
@@ -6,24 +6,24 @@ use crate::words::{is_ideographic, words};
 
 /// Log odds of a quantity whose phrase explains every word of a header: 400 to 1.
 const EXACT: f64 = 6.0;
-/// The same for a phrase of one letter, which stands for more than one thing.
+/// Log odds of a phrase of one letter, which is ambiguous.
 const LETTER: f64 = 3.5;
 /// Log odds lost with each word that a phrase does not explain.
 const UNEXPLAINED: f64 = 2.0;
 
-/// What a header says.
+/// Quantities, units, side and sign named by a header.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct HeaderEvidence {
     /// Quantities and their log odds, best first.
     pub candidates: Vec<(Meaning, f64)>,
-    /// Units that are written in it or below it, by their names in manifests.
+    /// Units written in the header or below it, by their names in manifests.
     pub units: Vec<String>,
     pub side: Option<Side>,
     pub is_port_positive: bool,
 }
 
 impl HeaderEvidence {
-    /// Reads a header and the cell of a line of units.
+    /// Reads a header and the cell of a row of units below it.
     pub(crate) fn new(header: &str, below: Option<&str>) -> Self {
         let parts = Parts::new(header);
         let mut units = parts.units.clone();
@@ -39,12 +39,15 @@ impl HeaderEvidence {
                 evidence.add(&phrase.meaning, odds);
             }
         }
+        // Six candidates suffice: the search takes them up by log odds.
         evidence.candidates.sort_by(|a, b| b.1.total_cmp(&a.1));
         evidence.candidates.truncate(6);
         evidence
     }
 
     fn add(&mut self, meaning: &Meaning, odds: f64) {
+        // `rudder port` names the port rudder: a side in the header makes the quantity that of the
+        // side.
         let meaning = match (meaning, self.side) {
             (Meaning::Channel(role), Some(side)) => Meaning::Channel(role.of_side(side)),
             _ => meaning.clone(),
@@ -55,13 +58,13 @@ impl HeaderEvidence {
         }
     }
 
-    /// Log odds of a channel against a column that holds none.
+    /// Returns the log odds of a channel against a column that holds no channel.
     pub(crate) fn odds(&self, role: Role) -> Option<f64> {
         let of_role = |(meaning, _): &&(Meaning, f64)| *meaning == Meaning::Channel(role);
         self.candidates.iter().find(of_role).map(|(_, odds)| *odds)
     }
 
-    /// The quantity that no channel holds, where the header names one, and its log odds.
+    /// Returns the quantity named by the header that no channel holds, and its log odds.
     pub(crate) fn other(&self) -> Option<(&str, f64)> {
         self.candidates.iter().find_map(|(meaning, odds)| match meaning {
             Meaning::Other(name) => Some((name.as_str(), *odds)),
@@ -69,12 +72,12 @@ impl HeaderEvidence {
         })
     }
 
-    /// The highest log odds of anything.
+    /// Returns the highest log odds of all candidates, 0 if there is none.
     pub(crate) fn best(&self) -> f64 {
         self.candidates.first().map_or(0.0, |(_, odds)| *odds)
     }
 
-    /// The written unit of a kind.
+    /// Returns the first written unit that measures the given kind of quantity.
     pub(crate) fn unit(&self, kind: Kind) -> Option<&str> {
         let fits = |unit: &&String| unit_is(kind, unit);
         self.units.iter().find(fits).map(String::as_str)
@@ -86,7 +89,7 @@ fn unit_is(kind: Kind, unit: &str) -> bool {
     percent || kind.units().iter().any(|known| known.name == unit)
 }
 
-/// The unit that a text is, as manifests name it.
+/// Returns the unit that a text denotes, by its name in manifests.
 pub(crate) fn unit_named(text: &str) -> Option<String> {
     let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}']).trim().to_lowercase();
     let inner: String = inner.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -99,17 +102,17 @@ fn is_port_positive(header: &str) -> bool {
     vocabulary().port_positive.iter().any(|phrase| small.contains(phrase.as_str()))
 }
 
-/// A header taken apart.
+/// Words, units and letters of a header.
 struct Parts {
-    /// Words outside units, without those that are passed over.
+    /// Words outside units, without the words that state a sign.
     words: Vec<String>,
-    /// All of them, without anything between.
+    /// All words, joined without a separator.
     joined: String,
-    /// A letter alone, in its own case.
+    /// The letter of a header of one letter, in its original case.
     letter: Option<char>,
     /// Units in brackets or at the end.
     units: Vec<String>,
-    /// Units among the words, each with how many words it takes at the end.
+    /// Units formed by the last words, each with the number of words that it takes.
     ending: Vec<(String, usize)>,
 }
 
@@ -123,6 +126,7 @@ impl Parts {
         let mut units = units;
         units.extend(all.iter().filter(|word| word.len() > 1).filter_map(|word| unit_named(word)));
         units.extend(ending.iter().map(|(unit, _)| unit.clone()));
+        // Words that only state a sign (`port positive`) name no side of the ship, and are removed.
         let sign = vocabulary().port_positive.iter().any(|text| name.to_lowercase().contains(text));
         let kept = |word: &String| !(sign && is_sign_word(word));
         let all: Vec<String> = all.into_iter().filter(kept).collect();
@@ -141,6 +145,8 @@ impl Parts {
             let within = |text: &str| is_ideographic(text) && self.joined.contains(text);
             vocabulary().sides.iter().find(|(text, _)| within(text)).map(|(_, side)| *side)
         };
+        // The last word names the side more often than the first (`rudder port`); then the first,
+        // then ideographic text within the header, then a letter at the end of a known stem.
         self.words
             .iter()
             .skip(usize::from(several))
@@ -151,7 +157,8 @@ impl Parts {
             .or_else(|| self.suffix().map(|(_, side)| side))
     }
 
-    /// A word that is a known one with the letter of a side at its end, as `deltal`.
+    /// Returns the stem and the side of a single word that ends in the letter of a side, such as
+    /// `deltal`.
     fn suffix(&self) -> Option<(&str, Side)> {
         let [word] = self.words.as_slice() else { return None };
         let sides =
@@ -163,7 +170,7 @@ impl Parts {
         })
     }
 
-    /// Log odds of a phrase; none where the header does not hold it.
+    /// Returns the log odds of a phrase; `None` if the header does not contain it.
     fn odds(&self, phrase: &Phrase) -> Option<f64> {
         if phrase.joined.chars().count() == 1 && !is_ideographic(&phrase.joined) {
             return self.letter_odds(phrase);
@@ -186,11 +193,12 @@ impl Parts {
             Meaning::Other(name) if name != "count or mark" => 1.0,
             _ => UNEXPLAINED,
         };
-        // Of phrases that explain as much, the one with more words is the more particular.
+        // Of phrases that explain equally many words, the longer one is more specific.
         EXACT - weight * open as f64 + 0.3 * (phrase.words.len() as f64 - 1.0)
     }
 
-    /// Words that neither the phrase, nor a unit, nor a side, nor the list of common words explains.
+    /// Counts the words explained by neither the phrase, nor a unit, nor a side, nor the list of
+    /// common words.
     fn unexplained(&self, phrase: &Phrase) -> usize {
         let kind = match phrase.meaning {
             Meaning::Channel(role) => role.kind(),
@@ -198,6 +206,7 @@ impl Parts {
         };
         let fits = |unit: &str| kind == Kind::Any || unit_is(kind, unit);
         let ends = self.ending.iter().filter(|(unit, _)| fits(unit)).map(|(_, count)| *count);
+        // The words of a fitting unit at the end need no other explanation.
         let kept = self.words.len() - ends.max().unwrap_or(0);
         let words = vocabulary();
         let common = |word: &String| {
@@ -228,6 +237,7 @@ impl Parts {
         (rest == 0).then_some(odds)
     }
 
+    /// Scripts without spaces are compared by substring; characters that remain are unexplained.
     fn ideographic_odds(&self, phrase: &str) -> Option<f64> {
         let mut rest = self.joined.clone();
         if !rest.contains(phrase) {
@@ -245,7 +255,7 @@ impl Parts {
     }
 }
 
-/// Whether two words are the same but for a number at the end of the header's.
+/// Returns true if two words are equal, apart from digits at the end of the written one.
 fn same(written: &str, known: &str) -> bool {
     let stem = written.trim_end_matches(|letter: char| letter.is_ascii_digit());
     written == known || (stem.len() > 1 && stem == known)
@@ -255,11 +265,13 @@ fn is_sign_word(word: &str) -> bool {
     vocabulary().port_positive.iter().any(|phrase| words(phrase).iter().any(|one| one == word))
 }
 
-/// The header without what stands in brackets, and the units that stand there.
+/// Returns the header without the units in brackets or after a separator, and these units.
 fn without_brackets(header: &str) -> (String, Vec<String>) {
     let (mut name, mut units, mut rest) = (String::new(), Vec::new(), header);
     while let Some(open) = rest.find(['[', '(', '{', '（', '［']) {
         let inner = &rest[open..];
+        // Brackets may be full-width characters of several bytes, so that lengths come from the
+        // text.
         let first = inner.chars().next().map_or(1, char::len_utf8);
         let close = inner.find([']', ')', '}', '）', '］']).unwrap_or(inner.len());
         let text = &inner[first.min(close)..close];
@@ -276,6 +288,7 @@ fn without_brackets(header: &str) -> (String, Vec<String>) {
         rest = &inner[close + after..];
     }
     name.push_str(rest);
+    // A unit may follow a blank or punctuation, or a slash: `speed, kn` and `speed/kn`.
     let ends: [&[char]; 2] = [&[' ', ',', ';', ':'], &['/']];
     for end in ends {
         if units.is_empty()
@@ -289,12 +302,13 @@ fn without_brackets(header: &str) -> (String, Vec<String>) {
     (name, units)
 }
 
-/// Whether a unit at the end of a header is no letter of a side or an axis.
+/// Returns true if a unit at the end of a header cannot be the letter of a side or an axis.
 fn is_clear(unit: &str) -> bool {
     unit.trim().chars().count() > 1 || is_ideographic(unit)
 }
 
-/// Units that the last words are: `deg`, `deg_s`, `m_s`.
+/// Returns the units formed by the last one or two words, such as `deg`, `deg_s`, `m_s`, with the
+/// number of words of each.
 fn ending(words: &[String]) -> Vec<(String, usize)> {
     let counts = (1..=2).filter(|count| *count < words.len());
     counts

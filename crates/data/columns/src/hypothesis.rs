@@ -1,23 +1,23 @@
-//! What a column may be.
+//! Hypotheses on the content of a column: a quantity, its unit and its sign.
 
 use crate::role::{Role, Unit};
 
-/// A quantity with unit and sign.
+/// Quantity, unit and sign that a column may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hypothesis {
     pub role: Role,
     pub unit: Unit,
-    /// Whether the column counts the other way.
+    /// True if the sign of the column is opposite to that of the channel.
     pub is_reversed: bool,
 }
 
 impl Hypothesis {
-    /// The factor from the column's numbers to SI units and canonical sign.
+    /// Returns the factor from the numbers of the column to SI units and canonical sign.
     pub(crate) fn factor(&self) -> f64 {
         if self.is_reversed { -self.unit.to_si } else { self.unit.to_si }
     }
 
-    /// Every unit and sign of a role.
+    /// Returns the hypotheses of every unit and sign of a role.
     pub(crate) fn of_role(role: Role) -> impl Iterator<Item = Self> {
         let signs: &[bool] = if role.is_signed() { &[false, true] } else { &[false] };
         let units = role.kind().units().iter();
@@ -27,7 +27,7 @@ impl Hypothesis {
     }
 }
 
-/// What each column is taken for; nothing for a column that is not read.
+/// Hypothesis assigned to each column; `None` for a column that is not read.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Assignment {
     pub columns: Vec<Option<Hypothesis>>,
@@ -36,7 +36,7 @@ pub(crate) struct Assignment {
 }
 
 impl Assignment {
-    /// The column of a role, and its factor.
+    /// Returns the index of the column with a role, and its factor to SI units.
     pub(crate) fn find(&self, role: Role) -> Option<(usize, f64)> {
         let of_role = |one: &Option<Hypothesis>| one.is_some_and(|one| one.role == role);
         let at = self.columns.iter().position(of_role)?;
@@ -47,10 +47,12 @@ impl Assignment {
         self.find(role).is_some()
     }
 
-    /// With a column taken for something else; whatever was of the same role is free again.
+    /// Returns the assignment with another hypothesis for a column; a column that had the same role
+    /// becomes free.
     pub(crate) fn with(&self, column: usize, to: Option<Hypothesis>) -> Self {
         let mut other = self.clone();
         if let Some(to) = to.filter(|to| to.role != Role::Other) {
+            // A role occurs only once.
             for one in &mut other.columns {
                 if one.is_some_and(|one| one.role == to.role) {
                     *one = None;

@@ -13,33 +13,36 @@ use crate::starts;
 use crate::thrusters;
 use crate::time::{self, TimeUnit};
 
-/// Probability from which nobody need look.
+/// Probability from which a column needs no confirmation by the user.
 const CERTAIN: f64 = 0.97;
-/// Log odds of a name, or of relations, that bear a reading.
+/// Log odds of a name, and of relations, that support a hypothesis by themselves.
 const NAMED: f64 = 3.0;
 const RELATED: f64 = 8.0;
-/// Log odds of a relation that is worth a word.
+/// Log odds from which a relation is mentioned in the reason.
 const TOLD: f64 = 3.0;
-/// Probability of a second reading that is worth a question.
+/// Probability of an alternative from which it is reported.
 const ASKED: f64 = 0.15;
-/// Probability below which a column that no name bears is left out.
+/// Probability below which a column that its name does not support is left unassigned.
 const TAKEN: f64 = 0.6;
 
-/// A column that the user has settled.
+/// Column whose content is given by the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GivenColumn {
-    /// Its header.
+    /// Header of the column.
     pub header: String,
-    /// Nothing for a column that is to be left out.
+    /// Quantity of the column; `None` for a column that is not to be read.
     pub role: Option<Role>,
-    /// Its unit in manifests; nothing for the likeliest.
+    /// Unit by its name in manifests; `None` for the likeliest.
     pub unit: Option<String>,
-    /// Whether it counts the other way; nothing for the likelier.
+    /// True if the sign of the column is opposite to that of the channel; `None` for the likelier
+    /// sign.
     pub is_reversed: Option<bool>,
 }
 
 /// Identifies the columns of a recording by headers, values and the relations between them.
 pub fn identify(recording: &RecordingSample, given: &[GivenColumn]) -> Identification {
+    // The time column is found from the evidence of single columns; relations between columns need
+    // its integrals, so that the signals are computed again once it is known.
     let plain = Signals::new(recording, None);
     let own: Vec<OwnEvidence> = recording
         .columns
@@ -53,6 +56,7 @@ pub fn identify(recording: &RecordingSample, given: &[GivenColumn]) -> Identific
     let fallback = TimeUnit { name: "s", to_si: 1.0, odds: 0.0 };
     let units = if units.is_empty() { vec![fallback] } else { units };
     let search = Search::new(&own, Physics::new(&signals), time, settled(recording, given));
+    // One search for each unit of time: the relations decide between the units.
     let found = units.iter().map(|unit| {
         let (best, odds) = starts::best(&search, unit.to_si);
         (*unit, best, odds + unit.odds)
@@ -60,6 +64,7 @@ pub fn identify(recording: &RecordingSample, given: &[GivenColumn]) -> Identific
     let mut found: Vec<(TimeUnit, Assignment, f64)> = found.collect();
     found.sort_by(|a, b| b.2.total_cmp(&a.2));
     let Some((unit, best, _)) = found.first().cloned() else { return Identification::default() };
+    // Figures for the reader are computed for the best assignment only.
     let physics = Physics::with_figures(&signals);
     let outcome = Outcome { search: &search, best: &best, relations: physics.relations(&best) };
     let mut columns: Vec<IdentifiedColumn> = recording
@@ -105,6 +110,8 @@ fn settled(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<Settled> {
             one.unit.as_deref().is_none_or(|unit| unit == what.unit.name)
                 && one.is_reversed.is_none_or(|is_reversed| is_reversed == what.is_reversed)
         };
+        // The first hypothesis that the user's unit and sign allow; units are ordered most usual
+        // first.
         let what = role.and_then(|role| Hypothesis::of_role(role).find(fits));
         (one.role != Some(Role::Time)).then_some(Settled { column, what })
     };
@@ -117,6 +124,7 @@ fn of_time(
     unit: TimeUnit,
     second: Option<(TimeUnit, f64)>,
 ) -> IdentifiedColumn {
+    // `odds` of the second unit is its log odds relative to the best, hence at most 0.
     let other = second.map_or(0.0, |(_, odds)| odds.exp());
     let probability = 1.0 / (1.0 + other);
     let named = own.named(Role::Time) >= NAMED;
@@ -141,7 +149,7 @@ fn of_time(
     }
 }
 
-/// The best assignment, and what is said of its columns.
+/// Best assignment, from which the result of each column is written.
 struct Outcome<'a> {
     search: &'a Search<'a>,
     best: &'a Assignment,
@@ -153,6 +161,7 @@ impl Outcome<'_> {
         let own = &self.search.own[at];
         let what = self.best.columns[at];
         let mut all = self.alternatives(at);
+        // Softmax of the log odds, shifted by their maximum against overflow.
         let most = all.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
         let sum: f64 = all.iter().map(|one| (one.1 - most).exp()).sum();
         all.iter_mut().for_each(|one| one.1 = (one.1 - most).exp() / sum);
@@ -181,7 +190,7 @@ impl Outcome<'_> {
         }
     }
 
-    /// A column whose best reading is too unlikely to be taken.
+    /// Returns the result of a column whose best hypothesis is too unlikely to be accepted.
     fn left_out(&self, at: usize, header: &str, probability: f64) -> IdentifiedColumn {
         let what = self.best.columns[at];
         let alternative = what.map(|what| Alternative {
@@ -203,7 +212,7 @@ impl Outcome<'_> {
         }
     }
 
-    /// Every reading of a column with its log odds, the others being what they are.
+    /// Returns every hypothesis of a column with its log odds, the other columns as assigned.
     fn alternatives(&self, at: usize) -> Vec<(Option<Hypothesis>, f64)> {
         let each = self.search.hypotheses[at].iter().copied().map(Some).chain([None]);
         let mut all: Vec<(Option<Hypothesis>, f64)> =
@@ -218,6 +227,8 @@ impl Outcome<'_> {
     fn is_certain(&self, at: usize, probability: f64) -> bool {
         let own = &self.search.own[at];
         let Some(what) = self.best.columns[at] else {
+            // A column that is not read is certain if its header, its counting of rows or its being
+            // empty says why.
             let known = own.header.other().is_some() || own.summary.is_counter;
             return known || own.summary.count == 0;
         };

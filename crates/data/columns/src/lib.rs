@@ -2,9 +2,9 @@
 //!
 //! Three sources are combined as log odds: headers (a vocabulary in nine languages,
 //! `models/vocabulary`), values (range, period, monotony), and relations between columns (heading
-//! and yaw rate, positions and velocities, yaw rate and rudder). [`identify`] finds the assignment
-//! that all three make likeliest, the probability of each column, and what to ask where two
-//! readings are nearly as likely.
+//! and yaw rate, positions and velocities, yaw rate and rudder). [`identify_columns`] returns the
+//! assignment that is likeliest by all three, the probability of each column, and the alternative
+//! where two hypotheses are nearly as likely.
 
 mod data;
 mod faults;

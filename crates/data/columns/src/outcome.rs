@@ -1,38 +1,40 @@
-//! What the columns of a recording are, and how sure that is.
+//! Result of the identification of columns, with probabilities.
 
 use crate::role::Role;
 
-/// What a column was taken for.
+/// Quantity, unit and sign identified for a column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdentifiedColumn {
-    /// Its header.
+    /// Header of the column.
     pub header: String,
-    /// Nothing for a column that is left out.
+    /// Quantity of the column; `None` for a column that is not read.
     pub role: Option<Role>,
-    /// Its unit in manifests.
+    /// Unit by its name in manifests.
     pub unit: String,
-    /// Whether it counts the other way: the rudder to port, the heading anticlockwise.
+    /// True if the sign of the column is opposite to that of the channel: rudder positive to port,
+    /// heading anticlockwise.
     pub is_reversed: bool,
-    /// Posterior probability, the other columns being what they are taken for.
+    /// Posterior probability, given the assignment of the other columns.
     pub probability: f64,
-    /// Whether nobody need look: the probability is high, and a name or a relation bears it.
+    /// True if the column needs no confirmation: the probability is high, and a name or a relation
+    /// supports it.
     pub is_certain: bool,
-    /// Evidence, for a reader.
+    /// Evidence as text for the user.
     pub reason: String,
-    /// The second likeliest reading, where it is nearly as likely.
+    /// Second likeliest hypothesis, where it is nearly as likely.
     pub alternative: Option<Alternative>,
-    /// What the header names, where no channel holds it.
+    /// Quantity named by the header for which there is no channel.
     pub other: Option<String>,
 }
 
-/// Another reading of a column.
+/// Alternative hypothesis for a column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alternative {
-    /// Nothing for a column that is left out.
+    /// Quantity of the column; `None` for a column that is not read.
     pub role: Option<Role>,
-    /// Its unit in manifests.
+    /// Unit by its name in manifests.
     pub unit: String,
-    /// Whether it counts the other way.
+    /// True if the sign of the column is opposite to that of the channel.
     pub is_reversed: bool,
     /// Posterior probability.
     pub probability: f64,
@@ -41,27 +43,27 @@ pub struct Alternative {
 /// Two thruster commands whose difference steers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThrusterPair {
-    /// Places of the port and the starboard column.
+    /// Indices of the port and the starboard column.
     pub columns: (usize, usize),
-    /// Whether one of them counts the other way, so that their sum steers.
+    /// True if one command has the opposite sign, so that their sum steers.
     pub is_opposed: bool,
-    /// Correlation of what steers with the yaw rate.
+    /// Correlation of the steering combination with the yaw rate.
     pub yaw_correlation: f64,
-    /// Correlation of what drives with the speed ahead.
+    /// Correlation of the driving combination with the speed ahead.
     pub speed_correlation: f64,
 }
 
 /// The identified columns of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Identification {
-    /// One for each column of the recording.
+    /// One entry for each column of the recording.
     pub columns: Vec<IdentifiedColumn>,
-    /// Two commands of thrusters, where there are such.
+    /// Pair of thruster commands, where there is one.
     pub thrusters: Option<ThrusterPair>,
 }
 
 impl Identification {
-    /// The column of a role.
+    /// Returns the column of a role.
     pub fn find(&self, role: Role) -> Option<&IdentifiedColumn> {
         self.columns.iter().find(|column| column.role == Some(role))
     }

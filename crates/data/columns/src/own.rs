@@ -1,4 +1,4 @@
-//! Log odds of a hypothesis by the column itself: header, unit, range and shape.
+//! Log odds of a hypothesis from the column alone: header, unit, range and shape.
 
 use crate::data::ColumnData;
 use crate::header::HeaderEvidence;
@@ -8,21 +8,21 @@ use crate::summary::Summary;
 
 /// Log odds of a given channel where a header names none: one of some thirty quantities.
 const UNNAMED: f64 = -3.2;
-/// What a header that clearly names something else takes from a channel, at most.
+/// Largest loss of log odds of a channel whose column clearly names another quantity.
 const NAMED_OTHERWISE: f64 = 8.0;
 /// Log odds lost with a unit that is not the written one.
 const OTHER_UNIT: f64 = 9.0;
-/// Log odds lost with a reversed sign, and of a rudder's, which is common.
+/// Log odds lost with a reversed sign; of a rudder, whose reversed sign is common; and of a rudder
+/// column without a name, whose sign is not stated anywhere.
 const REVERSED: f64 = 4.5;
 const REVERSED_RUDDER: f64 = 3.6;
-/// The same of a column without a name, whose sign nobody has stated.
 const UNNAMED_RUDDER: f64 = 0.7;
-/// Standard deviation, in natural logarithms, with which ranges fade.
+/// Standard deviation, in natural logarithms, of the size of a value outside the usual range.
 const FADE: f64 = 0.45;
-/// Log odds that a range can take.
+/// Largest loss of log odds by the range.
 const OUT_OF_RANGE: f64 = 14.0;
 
-/// A column with what its header says and its values show.
+/// Evidence of a single column: its header and the summary of its values.
 #[derive(Debug, Clone)]
 pub(crate) struct OwnEvidence {
     pub header: HeaderEvidence,
@@ -38,7 +38,7 @@ impl OwnEvidence {
         Self { header, summary: summary.clone(), is_blank }
     }
 
-    /// Log odds against the column being none of the channels.
+    /// Returns the log odds of a hypothesis against the column being none of the channels.
     pub(crate) fn odds(&self, what: &Hypothesis) -> f64 {
         if self.summary.count == 0 {
             return -OUT_OF_RANGE;
@@ -46,7 +46,7 @@ impl OwnEvidence {
         self.named(what.role) + self.unit(what) + self.sign(what) + self.range(what)
     }
 
-    /// Log odds of a column that no channel holds.
+    /// Returns the log odds of the column holding none of the channels.
     pub(crate) fn none(&self) -> f64 {
         let other = self.header.other().map_or(0.0, |(_, odds)| odds);
         if self.summary.is_counter { other.max(2.0) } else { other }
@@ -62,7 +62,7 @@ impl OwnEvidence {
         }
     }
 
-    /// Whether the header names a quantity that is often called by this one's name.
+    /// Returns true if the header names a quantity whose name is often used for the given one.
     fn alike(&self, role: Role) -> bool {
         const ALIKE: [(Role, Role); 11] = [
             (Role::Speed, Role::U),
@@ -84,6 +84,7 @@ impl OwnEvidence {
 
     fn unit(&self, what: &Hypothesis) -> f64 {
         let kind = what.role.kind();
+        // Values that wrap at 360 or 2 pi show their unit, whatever is written.
         if let Some((_, unit)) = self.summary.period
             && kind == Kind::Angle
             && unit != what.unit.name
@@ -93,7 +94,7 @@ impl OwnEvidence {
         match self.header.unit(kind) {
             Some(written) if written == what.unit.name => 0.0,
             Some(_) => -OTHER_UNIT,
-            // A unit of another kind is written: then it is another quantity.
+            // A written unit of another kind means another quantity.
             None if self.written_otherwise(kind) => -OTHER_UNIT,
             None => -unusual(what),
         }
@@ -114,7 +115,7 @@ impl OwnEvidence {
             (true, false) => -OTHER_UNIT,
             (true, true) | (false, false) => 0.0,
             (false, true) if is_rudder && self.is_blank => -UNNAMED_RUDDER,
-            // The rudders of a ship count the same way: each of two bears half of it.
+            // The rudders of a ship have the same sign: each of two bears half of the loss.
             (false, true) if is_rudder && what.role != Role::Delta => -0.5 * REVERSED_RUDDER,
             (false, true) if is_rudder => -REVERSED_RUDDER,
             (false, true) => -REVERSED,
@@ -124,17 +125,20 @@ impl OwnEvidence {
     fn range(&self, what: &Hypothesis) -> f64 {
         let summary = &self.summary;
         let [low, high] = what.role.largest();
+        // Positions and unwrapped headings have an arbitrary origin: their spread counts, not their
+        // size.
         let size = match what.role {
             Role::X | Role::Y => summary.spread,
             Role::Psi | Role::Course if summary.period.is_none() => summary.spread,
             _ => summary.largest,
         } * what.unit.to_si;
         let out = if size < low { low / size.max(1e-12) } else { (size / high).max(1.0) };
+        // A log-normal tail outside the usual range, bounded so that relations may outweigh it.
         let faded = 0.5 * (out.ln() / FADE).powi(2);
         -(faded.min(OUT_OF_RANGE)) + self.shape(what)
     }
 
-    /// What the shape of the values says for or against a quantity.
+    /// Returns the log odds of a quantity by the shape of the values.
     fn shape(&self, what: &Hypothesis) -> f64 {
         let summary = &self.summary;
         let directed =
@@ -149,6 +153,7 @@ impl OwnEvidence {
             Role::Speed | Role::WindSpeed | Role::ApparentWindSpeed | Role::Depth
         );
         let negative = if positive && summary.negative > 0.005 { -10.0 } else { 0.0 };
+        // Revolutions and depth are often constant; other quantities change in a manoeuvre.
         let constant = match (summary.spread == 0.0, what.role) {
             (false, _) | (true, Role::N | Role::NS | Role::NP | Role::Depth) => 0.0,
             (true, _) => -4.0,
@@ -166,7 +171,7 @@ impl OwnEvidence {
     }
 }
 
-/// Log odds lost with a unit that is less usual of a quantity whose unit is not written.
+/// Returns the log odds lost with a less usual unit where the header states none.
 fn unusual(what: &Hypothesis) -> f64 {
     let is_log =
         matches!(what.role, Role::Speed | Role::UWater | Role::WindSpeed | Role::ApparentWindSpeed);

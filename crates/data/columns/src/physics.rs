@@ -11,7 +11,7 @@ use crate::rudder;
 use crate::signals::Signals;
 use crate::track::Track;
 
-/// Relations of the columns of a recording.
+/// Relations between the columns of a recording, with results cached by assignment.
 pub(crate) struct Physics<'a> {
     pub observed: Observed<'a>,
     tracks: RefCell<HashMap<[i64; 9], Option<Rc<Track>>>>,
@@ -23,7 +23,7 @@ impl<'a> Physics<'a> {
         Self::read(Observed { signals, is_told: false })
     }
 
-    /// The same with figures.
+    /// Returns the relations with the figures that are shown to the user.
     pub(crate) fn with_figures(signals: &'a Signals) -> Self {
         Self::read(Observed { signals, is_told: true })
     }
@@ -32,12 +32,13 @@ impl<'a> Physics<'a> {
         Self { observed, tracks: RefCell::default(), rudders: RefCell::default() }
     }
 
-    /// Every relation that holds between the columns as they are taken.
+    /// Returns every relation between the columns of an assignment.
     pub(crate) fn relations(&self, of: &Assignment) -> Vec<Relation> {
         let mut all = Vec::new();
         if self.observed.signals.scales.is_empty() {
             return all;
         }
+        // Without blocks of a time column no relation can be computed.
         let rates = [
             (Role::Psi, Role::R, "turns as fast as the yaw rate says"),
             (Role::Phi, Role::P, "rolls as fast as the roll rate says"),
@@ -55,12 +56,13 @@ impl<'a> Physics<'a> {
         all
     }
 
-    /// Sum of the log odds of all relations.
+    /// Returns the sum of the log odds of all relations.
     pub(crate) fn odds(&self, of: &Assignment) -> f64 {
         self.relations(of).iter().map(|relation| relation.odds).sum()
     }
 
-    /// A quantity that is the integral of another.
+    /// Relation of a quantity with its rate: the change over blocks against the integral of the
+    /// rate.
     pub(crate) fn rate(
         &self,
         of: &Assignment,
@@ -73,16 +75,21 @@ impl<'a> Physics<'a> {
         let each = self.observed.signals.scales.iter().filter_map(|scale| {
             Fit::new(&scale.columns[i].change, fi, &scale.columns[j].integral, fj)
         });
+        // The scale on which the two agree best: coarse blocks for slow motions, fine ones for fast
+        // turns.
         let best = each.min_by(|a, b| a.left.total_cmp(&b.left))?;
         let figure = self.observed.figure(|| format!("{text} ({:.2} times)", best.slope));
         let roles = [whole, rate, Role::Other];
         Some(Relation { roles, odds: best.odds(1e-5), figure })
     }
 
-    /// Positions and heading as a track.
+    /// Returns the track of positions and heading of an assignment, from the cache where it is
+    /// known.
     pub(crate) fn track(&self, of: &Assignment) -> Option<Rc<Track>> {
         let pairs = [(Role::X, Role::Y), (Role::Latitude, Role::Longitude)];
         let (x, y) = pairs.into_iter().find(|(x, y)| of.has(*x) && of.has(*y))?;
+        // The key holds every column and factor on which the track depends; factors as integers of
+        // 1e-9, since floating-point numbers are no keys.
         let place = |role: Role| match of.find(role) {
             Some((at, factor)) => [at as i64, (factor * 1e9) as i64],
             None => [-1, 0],
@@ -105,7 +112,7 @@ impl<'a> Physics<'a> {
         Some(steering.relation(rudder, self.observed))
     }
 
-    /// Revolutions of a size that fits speed and turning.
+    /// Relation of revolutions with speed and turning by their sizes.
     fn propulsion(&self, of: &Assignment) -> Option<Relation> {
         let n = [Role::N, Role::NS, Role::NP].into_iter().find(|role| of.has(*role))?;
         let speed = [Role::U, Role::Speed, Role::UWater, Role::VNorth];
@@ -115,8 +122,9 @@ impl<'a> Physics<'a> {
         let speed_m_s = self.observed.signals.summaries[j].largest * fj.abs();
         let turning =
             of.find(Role::R).map(|(k, fk)| self.observed.signals.summaries[k].largest * fk.abs());
-        // Tight turns are of about 2.5 lengths across: r L / u = 0.8; with the speed lost, 0.4 of
-        // the largest speed. A propeller advances by some 2 % of the length a turn.
+        // A tight turn has a diameter of about 2.5 ship lengths, hence r L / u = 0.8; with the
+        // speed lost in the turn, 0.4 of the largest speed. A propeller advances by about 2 % of
+        // the length per revolution.
         let length = 0.4 * speed_m_s / turning.filter(|r| *r > 1e-4)?;
         let advance = speed_m_s / revolutions.max(1e-9) / length.clamp(0.5, 300.0);
         let off = (advance.max(1e-12) / 0.02).ln();
@@ -126,7 +134,7 @@ impl<'a> Physics<'a> {
         Some(Relation { roles: [n, Role::Other, Role::Other], odds, figure })
     }
 
-    /// A ship that turns heels, to one side or the other.
+    /// Relation of roll angle and yaw rate: a turning ship heels, to one side or the other.
     fn heel(&self, of: &Assignment) -> Option<Relation> {
         let ((i, _), (j, _)) = (of.find(Role::Phi)?, of.find(Role::R)?);
         let correlation = self.correlation(i, j).abs();
@@ -136,14 +144,14 @@ impl<'a> Physics<'a> {
         Some(Relation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
     }
 
-    /// Correlation of the means over coarse blocks.
+    /// Returns the correlation of the means over coarse blocks.
     fn correlation(&self, i: usize, j: usize) -> f64 {
         let means =
             |at: usize| self.observed.signals.scales.first().map(|scale| &scale.columns[at].mean);
         means(i).zip(means(j)).map_or(0.0, |(a, b)| rudder::correlation(a, b))
     }
 
-    /// Two instruments of one quantity.
+    /// Relations between two instruments of one quantity.
     fn alike(&self, of: &Assignment) -> Vec<Relation> {
         let pairs = [
             (Role::U, Role::UWater, 0.01),

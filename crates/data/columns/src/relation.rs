@@ -1,40 +1,41 @@
-//! A relation between columns: how well one series explains another, and what that is worth.
+//! Relations between columns: how well one series explains another, as log odds.
 
 use crate::role::Role;
 use crate::signals::Signals;
 
-/// Log odds for each e-fold by which a relation leaves less unexplained.
+/// Log odds for each factor e by which the unexplained part of a relation is smaller.
 pub(crate) const PER_FOLD: f64 = 3.0;
-/// Log odds that one relation can give or take: instruments have scales and offsets of their own.
+/// Largest and smallest log odds of one relation: instruments have scale errors and offsets.
 const MOST: f64 = 30.0;
 pub(crate) const LEAST: f64 = -12.0;
-/// Log odds of a relation that a constant would explain as well: the sizes match, no more.
+/// Largest log odds of a relation that a constant would explain as well: only the sizes agree.
 const SIZE: f64 = 5.0;
-/// Part of the blocks whose residuals are left out: faults of instruments.
+/// Fraction of the blocks whose residuals are excluded as faults of instruments.
 const FAULTY: f64 = 0.04;
 
-/// A relation, what it gives, and its figure for a reader.
+/// Relation between columns, its log odds, and its figure as text.
 #[derive(Debug, Clone)]
 pub(crate) struct Relation {
-    /// Quantities that take part; `Other` fills up.
+    /// Quantities of the relation; `Other` fills unused places.
     pub roles: [Role; 3],
     /// Log odds against the columns being unrelated.
     pub odds: f64,
     pub figure: String,
 }
 
-/// How well one series explains another.
+/// Fit of one series by another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fit {
-    /// Squares that are left, of all; and of those about the mean.
+    /// Unexplained sum of squares as a fraction of the sum of squares, and of the sum of squares
+    /// about the mean.
     pub left: f64,
     pub left_of_changes: f64,
-    /// The factor that would explain most.
+    /// Factor of the second series that explains the first best.
     pub slope: f64,
 }
 
 impl Fit {
-    /// Explains `a` by `factor * b`; nothing where both stand still.
+    /// Fits `factor_a * a` by `factor_b * b`; returns `None` if both are zero throughout.
     pub(crate) fn new(a: &[f64], factor_a: f64, b: &[f64], factor_b: f64) -> Option<Self> {
         let mut rows: Vec<(f64, f64, f64)> = a
             .iter()
@@ -44,6 +45,7 @@ impl Fit {
                 ((a - b) * (a - b), a, b)
             })
             .collect();
+        // Trimmed least squares: the largest residuals are excluded before the sums are formed.
         let kept = rows.len() - (FAULTY * rows.len() as f64) as usize;
         if kept < rows.len() {
             rows.select_nth_unstable_by(kept, |x, y| x.0.total_cmp(&y.0));
@@ -57,6 +59,7 @@ impl Fit {
             bb += b * b;
             mean += a;
         }
+        // Sum of squares about the mean.
         let changes = aa - mean * mean / rows.len().max(1) as f64;
         let all = aa.max(bb);
         (all > 0.0).then(|| Self {
@@ -66,22 +69,22 @@ impl Fit {
         })
     }
 
-    /// Its log odds; `floor` is the part that instruments leave at best.
+    /// Returns the log odds; `floor` is the unexplained fraction that instruments leave at best.
     pub(crate) fn odds(&self, floor: f64) -> f64 {
         odds_of(self.left.max(floor)).min(SIZE + odds_of(self.left_of_changes.max(floor)))
     }
 }
 
-/// Log odds of a part that is left unexplained.
+/// Returns the log odds of an unexplained fraction.
 pub(crate) fn odds_of(unexplained: f64) -> f64 {
     (-PER_FOLD * unexplained.max(1e-5).ln()).clamp(LEAST, MOST)
 }
 
-/// What relations are read from, and whether their figures are written out.
+/// Signals from which relations are computed, and the request to write their figures.
 #[derive(Clone, Copy)]
 pub(crate) struct Observed<'a> {
     pub signals: &'a Signals,
-    /// Not while thousands of assignments are compared.
+    /// False while thousands of assignments are compared, since text is slow.
     pub is_told: bool,
 }
 

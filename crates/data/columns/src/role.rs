@@ -63,7 +63,7 @@ pub enum Role {
     Other,
 }
 
-/// What a quantity measures.
+/// Physical kind of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// s.
@@ -86,10 +86,10 @@ struct Properties {
     role: Role,
     name: &'static str,
     kind: Kind,
-    /// Range, in SI units, in which the largest magnitude of nearly every recording lies: model
-    /// basins to large ships.
+    /// Range, in SI units, of the largest magnitude of nearly every recording, from model basins to
+    /// large ships.
     largest: [f64; 2],
-    /// Whether recorders differ in its sign.
+    /// True if recorders differ in the sign of the quantity.
     is_signed: bool,
 }
 
@@ -103,6 +103,7 @@ const fn row(
     Properties { role, name, kind, largest, is_signed }
 }
 
+// In the order of the variants of `Role`, which index this table.
 const TABLE: [Properties; 29] = [
     row(Role::Time, "t", Kind::Time, [0.0, 1e12], false),
     row(Role::X, "x", Kind::Length, [1.0, 1e7], false),
@@ -136,7 +137,7 @@ const TABLE: [Properties; 29] = [
 ];
 
 impl Role {
-    /// Every quantity that a channel holds.
+    /// Returns every quantity for which there is a channel.
     pub fn channels() -> impl Iterator<Item = Self> {
         TABLE.iter().map(|row| row.role).filter(|&role| role != Self::Other)
     }
@@ -145,32 +146,32 @@ impl Role {
         &TABLE[self as usize]
     }
 
-    /// Its name in manifests; empty for `Other`.
+    /// Returns the name in manifests; empty for `Other`.
     pub fn name(self) -> &'static str {
         self.properties().name
     }
 
-    /// The quantity of that name in manifests.
+    /// Returns the quantity of a name in manifests.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::channels().find(|role| role.name() == name)
     }
 
-    /// What it measures.
+    /// Returns the physical kind of the quantity.
     pub fn kind(self) -> Kind {
         self.properties().kind
     }
 
-    /// Usual range of the largest magnitude, SI.
+    /// Returns the usual range of the largest magnitude of a recording, in SI units.
     pub fn largest(self) -> [f64; 2] {
         self.properties().largest
     }
 
-    /// Whether recorders differ in its sign.
+    /// Returns true if recorders differ in the sign of the quantity.
     pub fn is_signed(self) -> bool {
         self.properties().is_signed
     }
 
-    /// The quantity of the starboard or port side.
+    /// Returns the quantity of the starboard or port side, where there is one.
     pub(crate) fn of_side(self, side: Side) -> Self {
         match (self, side) {
             (Self::Delta, Side::Port) => Self::DeltaP,
@@ -207,7 +208,7 @@ const fn unit(name: &'static str, to_si: f64) -> Unit {
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
 impl Kind {
-    /// Units that columns of this kind come in, most usual first.
+    /// Returns the units in which columns of this kind are recorded, most usual first.
     pub fn units(self) -> &'static [Unit] {
         const TIME: [Unit; 6] = [
             unit("s", 1.0),
@@ -217,6 +218,7 @@ impl Kind {
             unit("h", 3600.0),
             unit("ns", 1e-9),
         ];
+        // Exact factors: a nautical mile is 1852 m, a knot one nautical mile per hour.
         const LENGTH: [Unit; 3] = [unit("m", 1.0), unit("km", 1000.0), unit("nmi", 1852.0)];
         const SPEED: [Unit; 3] =
             [unit("m/s", 1.0), unit("kn", 1852.0 / 3600.0), unit("km/h", 1.0 / 3.6)];

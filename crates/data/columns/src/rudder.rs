@@ -1,18 +1,19 @@
-//! The yaw rate answers the rudder: which column is it, and which way it counts.
+//! Relation of rudder and yaw rate: which column is the rudder, and the sign of it.
 //!
-//! Two witnesses: the correlation with the yaw rate some moments later, and the partial correlation
-//! with the yaw acceleration in Nomoto's first-order model, dr/dt = a r + b delta + c.
+//! Two indications are combined: the correlation with the yaw rate some moments later, and the
+//! partial correlation with the yaw acceleration in Nomoto's first-order model, dr/dt = a r + b
+//! delta + c.
 
 use crate::relation::{Observed, Relation};
 use crate::role::Role;
 use crate::signals::Signals;
 
-/// Lags of the yaw rate, as parts of the recording.
+/// Lags of the yaw rate behind the rudder, as fractions of the recording.
 const LAGS: [f64; 5] = [0.0, 0.0025, 0.005, 0.01, 0.02];
-/// Log odds for each unit of correlation of the two witnesses together.
+/// Log odds for each unit of the sum of both correlations.
 const PER_UNIT: f64 = 6.0;
 
-/// Both witnesses, of the rudder as it is taken to count.
+/// Lagged and partial correlation of yaw rate and rudder, for the assumed sign of the rudder.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Steering {
     pub lagged: f64,
@@ -23,6 +24,8 @@ impl Steering {
     pub(crate) fn new(signals: &Signals, r: usize, delta: usize, is_reversed: bool) -> Self {
         let sign = if is_reversed { -1.0 } else { 1.0 };
         let lagged = lagged(&signals.continuous[delta], &signals.continuous[r]);
+        // Nomoto's model integrated over blocks: change of r = a (integral of r) + b (integral of
+        // delta) + c (duration), which needs no derivative of a noisy yaw rate.
         let partials = signals.scales.iter().map(|scale| {
             let (yaw, rudder) = (&scale.columns[r], &scale.columns[delta]);
             partial(&yaw.change, [&yaw.integral, &rudder.integral, &scale.duration])
@@ -49,7 +52,7 @@ pub(crate) fn lagged(delta: &[f64], r: &[f64]) -> f64 {
     LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
-/// Pearson's correlation; zero where one side is constant.
+/// Returns Pearson's correlation; zero if one side is constant.
 pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().max(1) as f64;
     let (ma, mb) = (a.iter().sum::<f64>() / n, b.iter().sum::<f64>() / n);
@@ -62,14 +65,14 @@ pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
 }
 
-/// The partial correlation of the second regressor with a response: its coefficient over its
-/// standard error, brought to -1 to 1.
+/// Returns the partial correlation of the second regressor with a response: its coefficient divided
+/// by its standard error, scaled to -1 to 1.
 fn partial(response: &[f64], regressors: [&Vec<f64>; 3]) -> f64 {
     let rows = response.len();
     if rows < 15 {
         return 0.0;
     }
-    // What the first and the third explain is taken out of both.
+    // The first and the third regressor are projected out of the response and of the second.
     let rest = |values: &[f64]| residual(values, regressors[0], regressors[2]);
     let (Some(y), Some(d)) = (rest(response), rest(regressors[1])) else { return 0.0 };
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -77,6 +80,7 @@ fn partial(response: &[f64], regressors: [&Vec<f64>; 3]) -> f64 {
     if yy > 0.0 && dd > 0.0 { yd / (yy * dd).sqrt() } else { 0.0 }
 }
 
+/// Residual of a regression on two series, by the normal equations; `None` if they are collinear.
 fn residual(values: &[f64], one: &[f64], other: &[f64]) -> Option<Vec<f64>> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (aa, ab, bb) = (dot(one, one), dot(one, other), dot(other, other));

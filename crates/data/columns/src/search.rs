@@ -1,4 +1,4 @@
-//! The assignment with the highest log odds: header, values and relations of all columns together.
+//! Search for the assignment with the highest log odds of headers, values and relations together.
 
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::own::OwnEvidence;
@@ -6,16 +6,16 @@ use crate::physics::Physics;
 use crate::role::{Kind, Role, Unit};
 use crate::whole;
 
-/// Log odds by themselves below which a hypothesis is not looked at.
+/// Log odds of a column alone below which a hypothesis is not considered.
 const HOPELESS: f64 = -9.0;
-/// Log odds of a name that is clear.
+/// Log odds from which a name is clear.
 const NAMED: f64 = 3.0;
 /// Passes over all columns; the assignment seldom changes after the third.
 const PASSES: usize = 8;
-/// Pairs of columns that are tried together, of those that most likely are the two quantities.
+/// Number of the likeliest pairs of columns that are tried for two coupled quantities.
 const PAIRS: usize = 16;
 
-/// Quantities that explain each other, and may be found only together.
+/// Quantities that explain each other, which single changes may not find.
 const COUPLED: [(Role, Role); 5] = [
     (Role::Psi, Role::R),
     (Role::Phi, Role::P),
@@ -23,7 +23,7 @@ const COUPLED: [(Role, Role); 5] = [
     (Role::Latitude, Role::Longitude),
     (Role::VNorth, Role::VEast),
 ];
-/// Quantities whose signs may be changed together without a relation between them noticing.
+/// Quantities whose signs can change together without any effect on the relations between them.
 const SIGNED: [&[Role]; 5] = [
     &[Role::Delta, Role::DeltaS, Role::DeltaP],
     &[Role::R, Role::Delta, Role::DeltaS, Role::DeltaP],
@@ -32,18 +32,19 @@ const SIGNED: [&[Role]; 5] = [
     &[Role::Phi, Role::P],
 ];
 
-/// A column that the user has settled: what it is, or nothing for one that is left out.
+/// Column settled by the user: its hypothesis, or `None` if it is not to be read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Settled {
     pub column: usize,
     pub what: Option<Hypothesis>,
 }
 
-/// Everything that the log odds of an assignment are made of.
+/// Evidence from which the log odds of an assignment are computed, and the hypotheses that are
+/// searched.
 pub(crate) struct Search<'a> {
     pub own: &'a [OwnEvidence],
     pub physics: Physics<'a>,
-    /// What each column may be; a column that is settled has one entry or none.
+    /// Hypotheses of each column; a settled column has one or none.
     pub hypotheses: Vec<Vec<Hypothesis>>,
     pub settled: Vec<Settled>,
     pub time: Option<usize>,
@@ -58,6 +59,7 @@ impl<'a> Search<'a> {
     ) -> Self {
         let hypotheses = own.iter().enumerate().map(|(at, own)| {
             match settled.iter().find(|one| one.column == at) {
+                // The time column is fixed before the search.
                 _ if time == Some(at) => Vec::new(),
                 Some(settled) => settled.what.into_iter().collect(),
                 None => hypotheses(own),
@@ -66,23 +68,26 @@ impl<'a> Search<'a> {
         Self { own, physics, hypotheses: hypotheses.collect(), settled, time }
     }
 
-    /// Log odds of an assignment.
+    /// Returns the log odds of an assignment.
     pub(crate) fn odds(&self, of: &Assignment) -> f64 {
         let each = of.columns.iter().zip(self.own).map(|(what, own)| match what {
             Some(what) => own.odds(what),
             None => own.none(),
         });
+        // A prohibitive penalty for each settled column that the assignment contradicts.
         let kept = self.settled.iter().filter(|one| of.columns[one.column] != one.what).count();
         each.sum::<f64>() + self.physics.odds(of) + whole::odds(of) - 1e3 * kept as f64
     }
 
-    /// An assignment improved by pairs of columns, single columns and signs, until nothing gains.
+    /// Improves an assignment by single columns, signs, pairs of columns and exchanges until
+    /// nothing gains; returns it with its log odds.
     pub(crate) fn improved(&self, start: Assignment) -> (Assignment, f64) {
         let (mut best, mut odds) = (start.clone(), self.odds(&start));
         for pass in 0..PASSES {
             let before = odds;
             (0..self.own.len()).for_each(|column| self.single(column, &mut best, &mut odds));
             self.signs(&mut best, &mut odds);
+            // Pairs and exchanges cost most, and seldom gain anything after the first pass.
             if pass < 1 {
                 COUPLED.iter().for_each(|&pair| self.pairs(pair, &mut best, &mut odds));
                 self.swaps(&mut best, &mut odds);
@@ -94,7 +99,7 @@ impl<'a> Search<'a> {
         (best, odds)
     }
 
-    /// Signs of several quantities at once.
+    /// Tries to reverse the signs of several quantities at once.
     fn signs(&self, best: &mut Assignment, odds: &mut f64) {
         for group in SIGNED {
             let mut other = best.clone();
@@ -106,7 +111,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Each column by itself, the clearest first.
+    /// Returns the assignment of each column by its own evidence, the clearest first.
     pub(crate) fn start(&self, time_factor: f64) -> Assignment {
         let columns = vec![None; self.own.len()];
         let mut start = Assignment { columns, time_factor };
@@ -149,7 +154,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Two columns for what the other was taken for.
+    /// Tries to exchange the roles of two columns.
     fn swaps(&self, best: &mut Assignment, odds: &mut f64) {
         for i in 0..self.own.len() {
             for j in 0..i {
@@ -172,12 +177,14 @@ impl<'a> Search<'a> {
         self.hypotheses[column].iter().copied().filter(move |what| what.role == role)
     }
 
-    /// Two columns at once; those that by themselves and by their relation are likeliest.
+    /// Tries both columns of a coupled pair at once; the likeliest pairs by their own evidence and
+    /// their relation only.
     fn pairs(&self, (one, other): (Role, Role), best: &mut Assignment, odds: &mut f64) {
         let named = |role: Role| {
             let found = best.find(role);
             found.is_some_and(|(at, _)| self.own[at].named(role) >= NAMED)
         };
+        // Columns with clear names need no search in pairs.
         if named(one) && named(other) {
             return;
         }
@@ -194,6 +201,8 @@ impl<'a> Search<'a> {
             }
         }
         likely.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // The cheap score only ranks the pairs; `keep_if_better` compares the log odds of the whole
+        // assignment.
         for (_, pair) in likely.into_iter().take(PAIRS) {
             self.try_one(pair, best, odds);
         }
@@ -221,11 +230,12 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What a column may be by itself.
+/// Returns the hypotheses that the evidence of a column alone allows.
 fn hypotheses(own: &OwnEvidence) -> Vec<Hypothesis> {
     let percent = |kind: Kind| own.header.unit(kind) == Some("%");
     let roles = Role::channels().filter(|role| *role != Role::Time);
     let each = roles.flat_map(|role| {
+        // Percent is a unit of angles and revolutions whose full scale the manifest declares.
         let of_percent = percent(role.kind()).then_some(Unit { name: "%", to_si: 0.01 });
         let all: Vec<Hypothesis> = Hypothesis::of_role(role).collect();
         let first = all.first().copied();

@@ -1,20 +1,20 @@
 //! Columns on a common time base: changes over blocks of rows, and integrals over them.
 //!
-//! Relations between columns are looked for in integrals rather than in differences of samples,
-//! which keeps the noise of instruments out.
+//! Relations between columns are computed from integrals rather than from differences of samples,
+//! which suppresses the noise of instruments.
 
 use crate::data::RecordingSample;
 use crate::summary::{Summary, continuous};
 
-/// Blocks that a recording is cut into: coarse for slow motions, fine where it turns fast.
+/// Number of blocks of a recording: few for slow motions, many for fast turns.
 const BLOCKS: [usize; 2] = [150, 600];
 
-/// One column over the blocks of one scale.
+/// Sums of one column over the blocks of one scale.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BlockSums {
-    /// Last value less the first.
+    /// Last value less the first of each block.
     pub change: Vec<f64>,
-    /// Integral over the time column, in its unit.
+    /// Integral over time, in the unit of the time column.
     pub integral: Vec<f64>,
     pub mean: Vec<f64>,
 }
@@ -23,11 +23,11 @@ pub(crate) struct BlockSums {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Scale {
     pub columns: Vec<BlockSums>,
-    /// Duration of each block, in the time column's unit.
+    /// Duration of each block, in the unit of the time column.
     pub duration: Vec<f64>,
 }
 
-/// All columns, with their summaries.
+/// Columns of a recording with their summaries and block sums.
 #[derive(Debug, Clone)]
 pub(crate) struct Signals {
     pub summaries: Vec<Summary>,
@@ -36,7 +36,7 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Columns by blocks of the time column, or none where there is no time.
+    /// Computes the signals; without a time column there are no block sums.
     pub(crate) fn new(recording: &RecordingSample, time: Option<usize>) -> Self {
         let columns = &recording.columns;
         let summaries: Vec<Summary> =
@@ -55,10 +55,11 @@ impl Signals {
     }
 }
 
-/// Rows between which time runs forward without a gap.
+/// Returns the ranges of rows in which time increases without a gap.
 fn spans(t: &[f64], breaks: &[usize], step: f64) -> Vec<(usize, usize)> {
     let (mut spans, mut first) = (Vec::new(), 0);
     for k in 1..=t.len() {
+        // Negated, so that a time that is not a number ends the range too.
         let ends = k == t.len()
             || breaks.contains(&k)
             || !(t[k] > t[k - 1])
@@ -75,6 +76,7 @@ fn spans(t: &[f64], breaks: &[usize], step: f64) -> Vec<(usize, usize)> {
 
 fn scale(columns: &[Vec<f64>], t: &[f64], spans: &[(usize, usize)], count: usize) -> Scale {
     let rows = (t.len() / count).max(2);
+    // Blocks share their end rows, and a rest shorter than a block is not used.
     let blocks: Vec<(usize, usize)> = spans
         .iter()
         .flat_map(|&(first, end)| {
@@ -85,6 +87,7 @@ fn scale(columns: &[Vec<f64>], t: &[f64], spans: &[(usize, usize)], count: usize
         let mut sums = BlockSums::default();
         for &(first, last) in &blocks {
             let each = first..last;
+            // Trapezoidal rule.
             let pieces = each.map(|k| 0.5 * (values[k] + values[k + 1]) * (t[k + 1] - t[k]));
             let integral: f64 = pieces.sum();
             sums.change.push(values[last] - values[first]);

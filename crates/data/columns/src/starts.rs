@@ -1,21 +1,22 @@
-//! Starts of the search, by headers and without: columns of which one is the rate of the other.
+//! Starting points of the search: by headers, and without them by columns of which one is the rate
+//! of the other.
 
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::role::Role;
 use crate::rudder::correlation;
 use crate::search::Search;
 
-/// Correlation of changes and integrals from which one column is another's rate.
+/// Correlation of changes and integrals above which one column is a rate of the other.
 const RATE: f64 = 0.9;
-/// Starts, besides that of headers, from which an assignment is improved.
+/// Number of starting points in addition to that by headers.
 const STARTS: usize = 3;
-/// Pairs that are looked at.
+/// Largest number of pairs that are considered.
 const MOST: usize = 6;
 /// Quantities and their rates.
 const PAIRS: [(Role, Role); 4] =
     [(Role::Psi, Role::R), (Role::X, Role::VNorth), (Role::Y, Role::VEast), (Role::Phi, Role::P)];
 
-/// The best assignment that is found, from headers and from relations, and its log odds.
+/// Returns the best assignment from all starting points, and its log odds.
 pub(crate) fn best(search: &Search, time_factor: f64) -> (Assignment, f64) {
     let named = search.start(time_factor);
     let related = related(search, &named, STARTS);
@@ -24,7 +25,8 @@ pub(crate) fn best(search: &Search, time_factor: f64) -> (Assignment, f64) {
     best.unwrap_or_else(|| (search.start(time_factor), f64::NEG_INFINITY))
 }
 
-/// The likeliest assignments in which each such pair is one of those quantities, or none.
+/// Returns the likeliest assignments in which each pair of columns is a quantity and its rate, or
+/// neither.
 fn related(search: &Search, base: &Assignment, count: usize) -> Vec<Assignment> {
     let pairs = rates(search);
     let mut found = Vec::new();
@@ -34,7 +36,7 @@ fn related(search: &Search, base: &Assignment, count: usize) -> Vec<Assignment> 
     found.into_iter().map(|(_, start)| start).collect()
 }
 
-/// Columns and those that are their rates, the closest first.
+/// Returns pairs of a column and its rate, highest correlation first.
 fn rates(search: &Search) -> Vec<(usize, usize)> {
     let signals = search.physics.observed.signals;
     let mut found = Vec::new();
@@ -54,7 +56,7 @@ fn rates(search: &Search) -> Vec<(usize, usize)> {
     found.into_iter().map(|(_, pair)| pair).collect()
 }
 
-/// Every way to take the rest of the pairs.
+/// Collects every assignment of the remaining pairs, recursively.
 fn extend(
     search: &Search,
     pairs: &[(usize, usize)],
@@ -65,8 +67,10 @@ fn extend(
         found.push((search.odds(of), of.clone()));
         return;
     };
+    // The pair may also have no meaning: continue without it.
     extend(search, rest, of, found);
     for (whole, rate) in PAIRS {
+        // A role occurs only once in an assignment.
         let taken = [whole, rate].iter().any(|&role| of.has(role));
         if !taken && let Some(with) = likeliest(search, of, (i, whole), (j, rate)) {
             extend(search, rest, &with, found);
@@ -74,7 +78,7 @@ fn extend(
     }
 }
 
-/// Both columns in the units and signs that fit each other best.
+/// Returns the assignment of both columns in the units and signs that fit each other best.
 fn likeliest(
     search: &Search,
     of: &Assignment,

@@ -1,50 +1,50 @@
-//! What the values of a column show by themselves.
+//! Summary of the values of a column: range, period, steps.
 
 use std::f64::consts::TAU;
 
-/// Periods at which directions return to zero, with the unit that each means.
+/// Periods at which directions wrap, with the unit that each implies.
 const PERIODS: [(f64, &str); 2] = [(360.0, "deg"), (TAU, "rad")];
-/// Crossings of the mean that zigzags do not reach.
+/// Number of crossings of the mean that a heading in zigzags does not reach.
 const SWINGS: usize = 60;
-/// Samples between which an average across the period may lie.
+/// Largest number of samples of an average across the wrap.
 const AVERAGED: usize = 8;
-/// Deviations from the median of neighbours, in robust standard deviations, that are taken out
-/// before columns are compared. It is no cleaning: nothing of it is kept.
+/// Deviation from the median of the neighbours, in robust standard deviations, above which a value
+/// is replaced before columns are compared. The recording itself is not changed.
 const SPIKE: f64 = 12.0;
 
-/// A column's range and shape.
+/// Range and shape of the values of a column.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Summary {
-    /// Values that are numbers.
+    /// Number of finite values.
     pub count: usize,
-    /// 99 % of magnitudes are below.
+    /// 99 % quantile of the magnitudes.
     pub largest: f64,
     pub median: f64,
-    /// Between 1 % and 99 %.
+    /// Distance between the 1 % and the 99 % quantile.
     pub spread: f64,
-    /// Part of values below zero.
+    /// Fraction of values below zero.
     pub negative: f64,
-    /// The period at which it returns, and its unit.
+    /// Period at which the values wrap, and its unit.
     pub period: Option<(f64, &'static str)>,
-    /// Part of steps that are not backward.
+    /// Fraction of steps that do not decrease.
     pub forward: f64,
     /// Median step.
     pub step: f64,
-    /// Part of steps within 10 % of the median.
+    /// Fraction of steps within 10 % of the median.
     pub regular: f64,
-    /// Part of steps within 1 % of the median.
+    /// Fraction of steps within 1 % of the median.
     pub steady: f64,
-    /// Whether it swings about its mean, as roll does and no heading.
+    /// True if the values swing about their mean, as roll does and a heading does not.
     pub swings: bool,
-    /// Whether it counts rows.
+    /// True if the column counts rows.
     pub is_counter: bool,
-    /// Part of steps that are zero.
+    /// Fraction of steps that are zero.
     pub still: f64,
 }
 
 impl Summary {
-    /// Summary of the values of one recording, or of several one after the other: no step leads
-    /// from before a break to behind it, since clocks begin anew there.
+    /// Summarises the values of one recording, or of several in sequence: no step is formed across
+    /// a break, since clocks restart there.
     pub(crate) fn new(values: &[f64], breaks: &[usize]) -> Self {
         let finite = |value: &f64| value.is_finite();
         let mut sorted: Vec<f64> = values.iter().copied().filter(finite).collect();
@@ -76,6 +76,7 @@ impl Summary {
         if steps.is_empty() {
             return;
         }
+        // Row numbers increase by exactly one.
         let counts = steps.iter().all(|step| *step == 1.0);
         self.is_counter = counts && (first == 0.0 || first == 1.0 || first.fract() == 0.0);
         self.forward = share(&steps, |step| step >= 0.0);
@@ -87,14 +88,14 @@ impl Summary {
         self.steady = share(&steps, |one| (one - step).abs() <= 0.01 * step.abs());
     }
 
-    /// Whether values grow as a clock does.
+    /// Returns true if the values increase as a clock does.
     pub(crate) fn is_clock(&self) -> bool {
-        // One step in fifty may be out of order: that is a fault of the file.
+        // One step in fifty may be out of order, as a fault of the file.
         self.count > 1 && self.forward > 0.98 && self.step > 0.0 && self.still < 0.9
     }
 }
 
-/// Steps between finite values that follow each other, none across a break.
+/// Returns the steps between consecutive finite values, none across a break.
 fn steps_within(values: &[f64], breaks: &[usize]) -> Vec<f64> {
     let ends = breaks.iter().copied().chain([values.len()]);
     let mut steps = Vec::with_capacity(values.len());
@@ -108,6 +109,7 @@ fn steps_within(values: &[f64], breaks: &[usize]) -> Vec<f64> {
     steps
 }
 
+/// Nearest-rank quantile of sorted values; 0 for none.
 pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
     let last = sorted.len().saturating_sub(1);
     sorted.get((last as f64 * part).round() as usize).copied().unwrap_or(0.0)
@@ -118,13 +120,13 @@ pub(crate) fn share(values: &[f64], holds: impl Fn(f64) -> bool) -> f64 {
     count as f64 / values.len().max(1) as f64
 }
 
-/// Whether the mean is crossed more often than any manoeuvre takes a heading across it.
+/// Returns true if the mean is crossed more often than a heading crosses it in any manoeuvre.
 fn swings(values: &[f64]) -> bool {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let (low, high) = values.iter().fold((0.0_f64, 0.0_f64), |(low, high), value| {
         (low.min(value - mean), high.max(value - mean))
     });
-    // Noise about the mean is no swing: a tenth of the range has to be passed.
+    // Noise about the mean is no swing: a crossing must pass a tenth of the range on either side.
     let (mut side, mut crossings) = (0.0, 0);
     for value in values.iter().map(|value| value - mean) {
         let now = if value > 0.1 * high {
@@ -140,7 +142,8 @@ fn swings(values: &[f64]) -> bool {
     crossings > SWINGS
 }
 
-/// A direction that returns: it keeps within a period, fills it, and jumps by one.
+/// Returns the period of a direction that wraps: the values keep within one period, fill most of
+/// it, and jump by it.
 fn period(values: &[f64]) -> Option<(f64, &'static str)> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
@@ -151,11 +154,12 @@ fn period(values: &[f64]) -> Option<(f64, &'static str)> {
         let bounds = low >= -0.505 * period && high <= 1.005 * period;
         let jumps = values.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 0.7 * period);
         let near = within && bounds && jumps.count() > 0;
+        // Directions are written either from -180 to 180 or from 0 to 360 degrees.
         near && (low < -0.3 * period || low >= -0.01 * period)
     })
 }
 
-/// The values as a continuous signal: directions without jumps, gaps held, spikes out.
+/// Returns the values as a continuous signal: directions unwrapped, gaps held, spikes replaced.
 pub(crate) fn continuous(values: &[f64], summary: &Summary) -> Vec<f64> {
     let period = summary.period.map(|(period, _)| period);
     let mut values: Vec<f64> = match period {
@@ -169,7 +173,7 @@ pub(crate) fn continuous(values: &[f64], summary: &Summary) -> Vec<f64> {
     values
 }
 
-/// A direction without jumps; averages across its period become gaps.
+/// Returns a direction without jumps; averages across the wrap become gaps.
 fn unwrapped(values: &[f64], period: f64) -> Vec<f64> {
     let wrap = |step: f64| step - (step / period).round() * period;
     let mut out = vec![f64::NAN; values.len()];
@@ -178,6 +182,8 @@ fn unwrapped(values: &[f64], period: f64) -> Vec<f64> {
     out[start] = sum;
     let mut k = start + 1;
     while k < values.len() {
+        // If the next value is far, it may be an average across the wrap: look ahead for a value
+        // near the last one, and skip those between; without one the step is real.
         let far = |at: usize| !(wrap(values[at] - before).abs() <= 0.12 * period);
         let end = values.len().min(k + AVERAGED);
         let at = if far(k) { (k..end).find(|&at| !far(at)).unwrap_or(k) } else { k };
@@ -200,6 +206,7 @@ fn hold(values: &mut [f64]) {
     }
 }
 
+/// Replaces values far from the median of five neighbours by that median.
 fn despike(values: &mut [f64]) {
     let n = values.len();
     if n < 20 {
@@ -213,7 +220,7 @@ fn despike(values: &mut [f64]) {
     let medians: Vec<f64> = (2..n - 2).map(around).collect();
     let mut apart: Vec<f64> = (2..n - 2).map(|k| (values[k] - medians[k - 2]).abs()).collect();
     apart.sort_by(f64::total_cmp);
-    // A column that mostly stands still has no scatter of its own: then its largest moves count.
+    // A column that is mostly constant has no scatter of its own: then its largest moves count.
     let scatter = (1.4826 * quantile(&apart, 0.5)).max(quantile(&apart, 0.99));
     if scatter <= 0.0 {
         return;

@@ -7,10 +7,10 @@ use crate::role::{Role, Side};
 use crate::rudder::lagged;
 use crate::signals::Signals;
 
-/// What the vocabulary calls them.
+/// Name of thruster commands in the vocabulary.
 const NAME: &str = "thruster command";
 
-/// Finds the pair among columns that a header names so.
+/// Finds the pair among columns whose headers name a thruster command of either side.
 pub(crate) fn find(
     own: &[OwnEvidence],
     signals: &Signals,
@@ -26,13 +26,14 @@ pub(crate) fn find(
     let (left, right) = (&signals.continuous[port], &signals.continuous[starboard]);
     let difference: Vec<f64> = left.iter().zip(right).map(|(a, b)| a - b).collect();
     let mean: Vec<f64> = left.iter().zip(right).map(|(a, b)| 0.5 * (a + b)).collect();
+    // Correlation with the canonical sign of the other column, at the best lag.
     let with = |role: Role, values: &[f64]| {
         let (at, factor) = of.find(role)?;
         Some(factor.signum() * lagged(values, &signals.continuous[at]))
     };
     let yaw = [&difference, &mean].map(|values| with(Role::R, values).unwrap_or(0.0));
     let speed = [&difference, &mean].map(|values| with(Role::U, values).unwrap_or(0.0));
-    // Where one side counts the other way, it is the sum that steers.
+    // If one side has the opposite sign, the sum steers.
     let is_opposed = yaw[1].abs() > yaw[0].abs() && speed[0].abs() > speed[1].abs();
     let (steers, drives) = if is_opposed { (1, 0) } else { (0, 1) };
     Some(ThrusterPair {

@@ -4,13 +4,13 @@ use crate::data::ColumnData;
 use crate::own::OwnEvidence;
 use crate::role::{Kind, Role, Unit};
 
-/// Seconds between samples that recorders usually have, and the scatter of their logarithm: from
-/// some 100 Hz to one a minute lies within two standard deviations.
+/// Usual interval between samples, s, and the standard deviation of its natural logarithm: from
+/// about 100 Hz to one sample a minute lies within two standard deviations.
 const INTERVAL_S: f64 = 0.5;
 const SCATTER: f64 = 2.1;
-/// Log odds below the best with which a unit is still looked at.
+/// Log odds below the best within which a unit is considered.
 const CONSIDERED: f64 = 12.0;
-/// Seconds since 1970 between which a number is one of those: years 2001 to 2065.
+/// Range of numbers that are read as seconds since 1970: years 2001 to 2065.
 const UNIX: std::ops::Range<f64> = 1.0e9..3.0e9;
 
 /// A unit of time and its log odds.
@@ -21,7 +21,7 @@ pub(crate) struct TimeUnit {
     pub odds: f64,
 }
 
-/// The column that most likely is time.
+/// Returns the column that most likely is time.
 pub(crate) fn column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usize> {
     let scored = own.iter().zip(columns).enumerate().filter_map(|(at, (own, column))| {
         let written = if column.written_time.is_some() { 8.0 } else { 0.0 };
@@ -30,16 +30,18 @@ pub(crate) fn column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usiz
         if !runs {
             return None;
         }
+        // Recorders sample at regular intervals, and mostly write time in the first column.
         let regular = 3.0 * summary.regular + 4.0 * summary.steady;
         let counter = if summary.is_counter { -5.0 } else { 0.0 };
         let first = if at == 0 { 1.0 } else { 0.0 };
+        // A name of another quantity counts against time, up to a limit.
         let named = own.named(Role::Time) - own.none().min(6.0);
         Some((at, named + written + regular + counter + first))
     });
     scored.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
 }
 
-/// Units that the column may be in, best first.
+/// Returns the units in which the column may be, best first, with log odds.
 pub(crate) fn units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
     let of = |unit: &Unit| {
         let interval_s = own.summary.step * unit.to_si;
@@ -57,7 +59,7 @@ pub(crate) fn units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
         let known = all.iter().find(|unit| unit.name == written);
         return known.map(|unit| TimeUnit { odds: 0.0, ..of(unit) }).into_iter().collect();
     }
-    // Seconds are the rule: another unit has to explain more.
+    // Seconds are usual: another unit has to explain more.
     let mut units: Vec<TimeUnit> = all.iter().map(of).collect();
     units.iter_mut().skip(1).for_each(|unit| unit.odds -= 3.0);
     units.sort_by(|a, b| b.odds.total_cmp(&a.odds));

@@ -1,4 +1,4 @@
-//! Positions and heading against velocities: which axis is north, units, signs, ground or water.
+//! Relations of positions and heading with velocities: north axis, units, signs, ground or water.
 
 use crate::hypothesis::Assignment;
 use crate::relation::{Fit, Observed, PER_FOLD, Relation, odds_of};
@@ -7,21 +7,22 @@ use crate::signals::Signals;
 
 /// Mean radius of the earth, m.
 const EARTH: f64 = 6.371e6;
-/// Part of the squares that positions leave at best: antennas stand apart from the log.
+/// Fraction of the squares that positions leave unexplained at best: antenna and log are at
+/// different places of the ship.
 const FLOOR: f64 = 2e-3;
-/// Log odds of a direction that a straight line would explain as well.
+/// Largest log odds of a direction that a straight line would explain as well.
 const STRAIGHT: f64 = 4.0;
-/// A current is slower than this part of the ship's speed.
+/// Largest speed of a current as a fraction of the ship's speed.
 const CURRENT: f64 = 0.4;
 
-/// Steps of a track along the ship and across it, over blocks of the finer scale.
+/// Steps of a track over the blocks of the finer scale, in earth-fixed and ship-fixed axes.
 #[derive(Debug, Clone)]
 pub(crate) struct Track {
     roles: (Role, Role),
     /// Displacements north and east, m.
     north: Vec<f64>,
     east: Vec<f64>,
-    /// Along the heading and to starboard, m, where there is a heading.
+    /// Displacements along the heading and to starboard, m, where there is a heading.
     ship: Option<(Vec<f64>, Vec<f64>)>,
     psi: Vec<f64>,
     /// Length of each step, m.
@@ -29,10 +30,11 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// Steps of the positions of an assignment; nothing where they stand still.
+    /// Computes the steps of the positions of an assignment; returns `None` if they do not move.
     pub(crate) fn new(signals: &Signals, of: &Assignment, roles: (Role, Role)) -> Option<Self> {
         let scale = signals.scales.last()?;
         let ((i, fi), (j, fj)) = (of.find(roles.0)?, of.find(roles.1)?);
+        // Local plane: metres per radian of latitude, and of longitude at the median latitude.
         let metres = match roles.0 {
             Role::Latitude => (EARTH, EARTH * (signals.summaries[i].median * fi).cos()),
             _ => (1.0, 1.0),
@@ -55,7 +57,7 @@ impl Track {
         (moved > 0.0).then_some(Self { roles, north, east, ship, psi, length })
     }
 
-    /// Its relations with heading, course, and velocities.
+    /// Returns the relations with heading, course and velocities.
     pub(crate) fn relations(&self, observed: Observed<'_>, of: &Assignment) -> Vec<Relation> {
         let mut all: Vec<Relation> = self.heading(observed).into_iter().collect();
         if let Some((along, across)) = &self.ship {
@@ -71,19 +73,20 @@ impl Track {
         all
     }
 
-    /// Sum of the log odds of its relations.
+    /// Returns the sum of the log odds of the relations of the track.
     pub(crate) fn odds(&self, observed: Observed<'_>, of: &Assignment) -> f64 {
         self.relations(observed, of).iter().map(|relation| relation.odds).sum()
     }
 
-    /// A ship moves where it points: what it moves across is the smaller part.
+    /// Relation of the track with the heading: a ship moves mainly along its heading.
     fn heading(&self, observed: Observed<'_>) -> Option<Relation> {
         let (along, across) = self.ship.as_ref()?;
         let (ahead, aside): (f64, f64) = (squares(along), squares(across));
         let part = aside / (ahead + aside);
         let astern: f64 = along.iter().filter(|step| **step < 0.0).map(|step| step * step).sum();
+        // A track that goes mostly astern counts against the heading.
         let backwards = if astern > 0.5 * ahead { 6.0 } else { 0.0 };
-        // Of directions at random half of the squares would lie across.
+        // With random directions half of the squares would lie across the heading.
         let line = self.off_line();
         let odds = (-PER_FOLD * (2.0 * part).max(1e-3).ln())
             .min(STRAIGHT - PER_FOLD * (part.max(1e-4) / line.max(1e-4)).ln())
@@ -95,7 +98,8 @@ impl Track {
         Some(Relation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
     }
 
-    /// The part of the squares that lies across the straight line that explains most.
+    /// Returns the fraction of the squares across the best straight line: the smaller eigenvalue of
+    /// the 2 by 2 moment matrix of the steps, divided by its trace.
     fn off_line(&self) -> f64 {
         let (nn, ee) = (squares(&self.north), squares(&self.east));
         let ne: f64 = self.north.iter().zip(&self.east).map(|(n, e)| n * e).sum();
@@ -122,7 +126,8 @@ impl Track {
         Some(Relation { roles, odds: fit.odds(FLOOR), figure })
     }
 
-    /// Speed through the water: the track's less a steady current, which two figures describe.
+    /// Relation of the track with the speed through the water: the track less a steady current of
+    /// two components.
     fn water(&self, observed: Observed<'_>, of: &Assignment, along: &[f64]) -> Option<Relation> {
         let (at, factor) = of.find(Role::UWater)?;
         let scale = observed.signals.scales.last()?;
@@ -130,6 +135,7 @@ impl Track {
         let factor = factor * of.time_factor;
         let seconds: Vec<f64> = scale.duration.iter().map(|t| t * of.time_factor).collect();
         let rest: Vec<f64> = along.iter().zip(integral).map(|(a, b)| a - factor * b).collect();
+        // Displacement by a current of 1 m/s north (c) and east (s), along the heading.
         let (c, s): (Vec<f64>, Vec<f64>) =
             self.psi.iter().zip(&seconds).map(|(psi, t)| (t * psi.cos(), t * psi.sin())).unzip();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -139,6 +145,7 @@ impl Track {
         if determinant <= 1e-9 * cc * ss {
             return None;
         }
+        // Least squares for the two components of the current.
         let north = (ss * cr - cs * sr) / determinant;
         let east = (cc * sr - cs * cr) / determinant;
         let left: f64 = rest
@@ -153,7 +160,7 @@ impl Track {
                 east.atan2(north).to_degrees().rem_euclid(360.0)
             )
         });
-        // Against a current alone, which explains a steady speed as well.
+        // Compared with a current alone, which explains a steady speed as well.
         let alone = dot(along, along)
             - (cc * dot(&s, along).powi(2) - 2.0 * cs * dot(&c, along) * dot(&s, along)
                 + ss * dot(&c, along).powi(2))

@@ -1,4 +1,4 @@
-//! Words in headers, by language: data of the zoo.
+//! Words in headers, by language, from the data files of the zoo.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -55,19 +55,19 @@ struct SignsFile {
     port_positive: Vec<String>,
 }
 
-/// What a phrase names.
+/// Meaning of a phrase.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Meaning {
     Channel(Role),
-    /// A quantity that no channel holds, as it is called in messages.
+    /// A quantity for which there is no channel, by its name in messages.
     Other(String),
 }
 
-/// A phrase and what it names.
+/// Phrase and its meaning.
 #[derive(Debug)]
 pub(crate) struct Phrase {
     pub words: Vec<String>,
-    /// Its words without anything between them.
+    /// The words, joined without a separator.
     pub joined: String,
     pub meaning: Meaning,
 }
@@ -78,21 +78,21 @@ pub(crate) struct Vocabulary {
     pub phrases: Vec<Phrase>,
     pub sides: Vec<(String, Side)>,
     pub passed_over: Vec<String>,
-    /// As written, in lower case, and the unit's name in manifests.
+    /// Spelling in lower case, and the name of the unit in manifests.
     pub units: Vec<(String, String)>,
     pub port_positive: Vec<String>,
 }
 
 static VOCABULARY: LazyLock<Vocabulary> = LazyLock::new(|| {
     let mut all = Vocabulary::default();
-    // A file that does not parse is found by the test below; it cannot change after the build.
+    // Errors are ignored here: the files are part of the build, and a test parses each of them.
     for file in FILES.iter().filter_map(|(_, text)| serde_yaml::from_str(text).ok()) {
         all.add(file);
     }
     all
 });
 
-/// The vocabulary of all languages.
+/// Returns the vocabulary of all languages.
 pub(crate) fn vocabulary() -> &'static Vocabulary {
     &VOCABULARY
 }

@@ -1,9 +1,9 @@
-//! Log odds of an assignment as a whole: which quantities come together.
+//! Log odds of the set of assigned quantities: which of them occur together.
 
 use crate::hypothesis::Assignment;
 use crate::role::Role;
 
-/// Log odds of quantities without their companion.
+/// Log odds of a quantity without its companion.
 const ALONE: [(Role, Role, f64); 16] = [
     (Role::X, Role::Y, -8.0),
     (Role::Y, Role::X, -8.0),
@@ -23,7 +23,7 @@ const ALONE: [(Role, Role, f64); 16] = [
     (Role::P, Role::Phi, -1.0),
 ];
 
-/// Log odds of quantities that are seldom in one recording.
+/// Log odds of two quantities that are seldom in one recording.
 const TOGETHER: [(Role, Role, f64); 6] = [
     (Role::Delta, Role::DeltaS, -6.0),
     (Role::Delta, Role::DeltaP, -6.0),
@@ -33,7 +33,7 @@ const TOGETHER: [(Role, Role, f64); 6] = [
     (Role::V, Role::VEast, -2.0),
 ];
 
-/// Quantities that one recorder writes in one unit, and the log odds of two.
+/// Quantities that a recorder usually writes in the same unit, and the log odds of different units.
 const ONE_UNIT: [(Role, Role, f64); 13] = [
     (Role::U, Role::V, -3.5),
     (Role::X, Role::Y, -6.0),
@@ -50,7 +50,7 @@ const ONE_UNIT: [(Role, Role, f64); 13] = [
     (Role::Phi, Role::P, -2.0),
 ];
 
-/// Log odds for what every recording of manoeuvres has, under any of its names.
+/// Log odds of quantities that every recording of manoeuvres has, under any of their names.
 const NEEDED: [(&[Role], f64); 4] = [
     (&[Role::Delta, Role::DeltaS, Role::DeltaP], 3.0),
     (&[Role::N, Role::NS, Role::NP], 3.5),
@@ -58,14 +58,14 @@ const NEEDED: [(&[Role], f64); 4] = [
     (&[Role::U, Role::Speed, Role::X, Role::Latitude, Role::VNorth], 3.0),
 ];
 
-/// Log odds of the quantities that are assigned, as a set.
+/// Returns the log odds of the set of assigned quantities.
 pub(crate) fn odds(of: &Assignment) -> f64 {
     let alone = ALONE.iter().filter(|(one, other, _)| of.has(*one) && !of.has(*other));
     let together = TOGETHER.iter().filter(|(one, other, _)| of.has(*one) && of.has(*other));
     let needed = NEEDED.iter().filter(|(roles, _)| roles.iter().any(|role| of.has(*role)));
     let unit = |role: Role| {
         let what = of.columns.iter().flatten().find(|what| what.role == role);
-        // Degrees with degrees a second, radians with radians a second.
+        // Degrees match degrees per second, radians match radians per second.
         what.map(|what| what.unit.name.split("/s").next().unwrap_or_default())
     };
     let mixed = ONE_UNIT.iter().filter(|(one, other, _)| match (unit(*one), unit(*other)) {

@@ -1,6 +1,6 @@
-//! A header as words.
+//! Splitting of headers into words.
 
-/// Letters with marks, as headers are written without them.
+/// Letters with marks, and their usual transcription in headers.
 const PLAIN: [(char, &str); 33] = [
     ('ä', "ae"),
     ('ö', "oe"),
@@ -37,12 +37,14 @@ const PLAIN: [(char, &str); 33] = [
     ('ÿ', "y"),
 ];
 
-/// Words in lower case, without marks; a change from a small letter to a capital one begins a word.
+/// Splits a text into words in lower case without marks; a change from a small to a capital letter
+/// begins a word.
 pub(crate) fn words(text: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word = String::new();
     let mut before = ' ';
     for letter in text.chars() {
+        // `yawRate` is two words.
         let begins = before.is_lowercase() && letter.is_uppercase();
         if (begins || !letter.is_alphanumeric()) && !word.is_empty() {
             words.push(std::mem::take(&mut word));
@@ -54,6 +56,7 @@ pub(crate) fn words(text: &str) -> Vec<String> {
     }
     words.push(word);
     words.retain(|word| !word.is_empty());
+    // A bound on the work for texts that are no headers.
     words.truncate(20);
     words
 }
@@ -67,7 +70,7 @@ fn plain(letter: char, word: &mut String) {
     }
 }
 
-/// Whether a text is written in letters that are not set apart by spaces.
+/// Returns true if the script of a text does not separate words by spaces.
 pub(crate) fn is_ideographic(text: &str) -> bool {
     text.chars().any(|letter| matches!(letter, '\u{1100}'..='\u{11ff}' | '\u{2e80}'..='\u{9fff}' | '\u{ac00}'..='\u{d7af}'))
 }

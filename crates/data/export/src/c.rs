@@ -1,4 +1,4 @@
-//! One file of plain C: no allocation, no input or output, no state of its own.
+//! Export as one file of plain C: no allocation, no input or output, no state of its own.
 
 use sistership_formula::Function;
 
@@ -9,7 +9,7 @@ use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
 use crate::{header, range, rates, wrapped};
 
-/// C99.
+/// C99 source file.
 #[derive(Debug)]
 pub struct C;
 
@@ -32,6 +32,7 @@ impl Language for C {
         if value.is_infinite() {
             return if value > 0.0 { "INFINITY" } else { "(-INFINITY)" }.to_owned();
         }
+        // Brackets, so that a sign never follows another operator; `{:?}` is exact to the last bit.
         if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
     }
 
@@ -53,6 +54,7 @@ impl Language for C {
 
     fn call(&self, of: Function, arguments: &[&str]) -> String {
         let name = match of {
+            // C has no sign function.
             Function::Sign => return format!("(({0} > 0.0) - ({0} < 0.0))", arguments[0]),
             Function::Abs => "fabs",
             Function::Min => "fmin",
@@ -67,6 +69,7 @@ impl Language for C {
     }
 
     fn assign(&self, name: &str, terms: &[String]) -> String {
+        // Rates are members of a structure; all other names are defined here.
         let kind = if name.starts_with("rate->") { "" } else { "const double " };
         wrapped::sum(&format!("    {kind}{name} = "), terms, "\n       ") + ";"
     }
@@ -95,31 +98,37 @@ impl Language for C {
 const SOLVE: &str = include_str!("../templates/solve.c");
 const STEP: &str = include_str!("../templates/step.c");
 
+/// Complete source file.
 fn text(plan: &Plan) -> String {
     let lines = header::lines(plan);
+    // The end mark of a comment inside the text would end the comment.
     let comment = lines.iter().flat_map(|line| wrapped::comment(" *", &line.replace("*/", "* /")));
     let mut text =
         format!("/*\n{}\n */\n#include <math.h>\n\n", comment.collect::<Vec<_>>().join("\n"));
     text.push_str(&types(plan));
     text.push_str(&values(plan));
+    // The solver is only needed if the mass matrix changes with the motion.
     if plan.listed().mobility.is_none() {
         text.push_str(SOLVE);
     }
     text.push_str(&rates_text(plan));
     text.push_str(&range_text(plan));
     text.push_str(STEP);
+    // Marks also occur in the generated parts, so they are replaced at the end.
     for (mark, by) in marks(plan) {
         text = text.replace(mark, &by);
     }
     text
 }
 
+/// Type definitions of states, inputs and coefficients.
 fn types(plan: &Plan) -> String {
     let member = |name: &str, remark: &str| format!("    double {name}; /* {remark} */\n");
     let states: String = STATES
         .iter()
         .map(|(name, unit, meaning)| member(name, &format!("{meaning}, {unit}")))
         .collect();
+    // The ordered rudder comes first among the inputs.
     let order = plan.gear.map(|_| member("delta_order", "ordered rudder, rad"));
     let outside = plan.outside.iter();
     let inputs: String = order
@@ -134,9 +143,11 @@ fn types(plan: &Plan) -> String {
     )
 }
 
+/// Values of the coefficients, and inputs and state of the approach.
 fn values(plan: &Plan) -> String {
     let value = |c: &Coefficient| format!("    {:?}, /* {} */\n", c.value, c.identifier);
     let values: String = plan.coefficients.iter().map(value).collect();
+    // Every input has its default value at the approach.
     let default = |o: &Outside| format!("    in.{} = {};\n", o.identifier, C.number(o.default));
     let order = plan.gear.map(|_| "    in.delta_order = 0.0;\n".to_owned());
     let inputs: String = order.into_iter().chain(plan.outside.iter().map(default)).collect();
@@ -150,6 +161,7 @@ fn values(plan: &Plan) -> String {
     )
 }
 
+/// Function of the rates of the states, with the steering gear.
 fn rates_text(plan: &Plan) -> String {
     let rudder = match &plan.gear {
         None => "    rate->delta = 0.0;".to_owned(),
@@ -178,6 +190,7 @@ fn rates_text(plan: &Plan) -> String {
     )
 }
 
+/// Function of the distance outside the range covered by trials.
 fn range_text(plan: &Plan) -> String {
     let Some(range::Distance { statements, result }) = range::alone(plan, &C) else {
         return String::new();
@@ -191,6 +204,7 @@ fn range_text(plan: &Plan) -> String {
     )
 }
 
+/// Marks of the templates with their replacements.
 fn marks(plan: &Plan) -> [(&'static str, String); 7] {
     let figure = |value: f64| format!("{value:?}");
     let order = match plan.gear {
@@ -202,8 +216,10 @@ fn marks(plan: &Plan) -> [(&'static str, String); 7] {
         ("@@speed", figure(plan.envelope.speed_m_s())),
         ("@@yaw", figure(plan.envelope.yaw_rate_rad_s())),
         ("@@roll", figure(plan.envelope.roll_rad())),
+        // Sixty ship lengths at the approach speed.
         ("@@duration", figure((60.0 * plan.lpp_m / plan.speed_m_s).ceil())),
         ("@@step", figure(plan.step_s())),
+        // Prefix of all names; the generated parts contain this mark, too.
         ("@_", format!("{}_", plan.identifier)),
     ]
 }

@@ -1,5 +1,5 @@
-//! What a model has learned beside its law, as formulas that add to the accelerations as effects
-//! do: so every format writes it as it writes the law.
+//! Learned corrections as formulas that add to the accelerations in the same way as effects, so
+//! that every format writes them like the law.
 
 use std::borrow::Cow;
 
@@ -13,22 +13,23 @@ use sistership_simulation::equations::{Coefficients, EquationsOfMotion};
 
 use crate::error::ExportError;
 
-/// The axes of the rates that a correction changes, and their places among those of a plant.
+/// Axes of the rates that a correction changes, with their indices among those of a plant.
 const CHANGED: [(Axis, usize); 3] = [(Axis::X, 0), (Axis::Y, 1), (Axis::N, 3)];
-/// The axes of a plant.
+/// Axes of a plant.
 const AXES: [Axis; 4] = [Axis::X, Axis::Y, Axis::K, Axis::N];
 
-/// A law, in the dress of a model's effects, with what the model has learned beside it.
+/// Returns a law with effects, with the formulas of the model's learned correction added.
 ///
 /// # Errors
-/// The weights are not attached, or the correction is told accelerations that are only solved for
-/// after all else.
+/// Returns an error if the weights are not attached, or if the correction depends on accelerations
+/// that are only solved for after all other values.
 pub fn corrected(model: &Model, law: Law) -> Result<Law, ExportError> {
     let Some(learned) = attached(model)? else { return Ok(law) };
     let AdditionFormulas { values, added } = learned.formulas();
     let mut told = told(model, &law, &values, &added)?;
     told.extend(values);
     let mut law = law;
+    // Values are defined before the additions that use them.
     told.into_iter().for_each(|(name, expr)| law.add_value(name, expr));
     for ((axis, _), expr) in CHANGED.into_iter().zip(added) {
         law.dressing.accelerations.extend(expr.map(|expr| (axis, expr)));
@@ -36,10 +37,11 @@ pub fn corrected(model: &Model, law: Law) -> Result<Law, ExportError> {
     Ok(law)
 }
 
+/// Named formulas, in the order of their definition.
 type Values = Vec<(String, Expr)>;
 
-/// What a correction is told beside states and inputs: inputs that the law does not have are
-/// nothing, and rates are those of the law.
+/// Formulas of the inputs of a correction other than states and inputs of the law: inputs that the
+/// law does not have are zero, and rates are those of the law.
 fn told(
     model: &Model,
     law: &Law,
@@ -50,6 +52,7 @@ fn told(
         let formulas = values.iter().map(|(_, expr)| expr).chain(added.iter().flatten());
         formulas.into_iter().any(|expr| expr.names().contains(name))
     };
+    // The correction reads zero for a rudder or propeller that the law does not have.
     let absent = |name: &&str| !law.inputs.contains_key(*name);
     let nothing = |name: &str| (name.to_owned(), Expr::Number(0.0));
     let mut told: Values = ["delta", "n"].into_iter().filter(absent).map(nothing).collect();
@@ -59,11 +62,12 @@ fn told(
     Ok(told)
 }
 
-/// The rates that the law gives, as formulas: rows of the inverse mass matrix times forces.
+/// Rates of the law as formulas: rows of the inverse mass matrix times forces.
 fn law_rates(model: &Model, law: &Law) -> Result<Values, ExportError> {
     let equations = EquationsOfMotion::of_law(model, Cow::Borrowed(law));
     let plant = Plant::of(&equations, Coefficients::Names)?;
     let changing = || ExportError::Correction { model: model.name.clone(), law: law.name.clone() };
+    // Only a constant mass matrix has been inverted when the formulas are written.
     let mobility = plant.listed().mobility.ok_or_else(changing)?;
     let mut rates = Values::new();
     for (name, (axis, row)) in LAW_RATES.into_iter().zip(CHANGED) {
@@ -78,6 +82,7 @@ fn law_rate(
 ) -> Result<Expr, PlantError> {
     let mut rate = equations.addition(axis).unwrap_or(Expr::Number(0.0));
     for (other, factor) in AXES.into_iter().zip(mobility) {
+        // An axis that the law lacks has no force.
         if *factor != 0.0 && equations.axes().contains(&other) {
             let force = equations.force(other, Coefficients::Names)?;
             let part = Expr::Number(*factor).times(force);

@@ -1,44 +1,44 @@
-//! Why a model cannot be exported.
+//! Errors of an export.
 
 use sistership_simulation::PlantError;
 
-/// Why a model cannot be exported.
+/// Error of an export.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// What it has learned follows accelerations that exports do not have.
+    /// The learned correction depends on accelerations that exports do not have.
     #[error(
         "`{model}` has a learned correction that is told the accelerations of the law `{law}`, \
          whose masses change with the motion: exports solve such a law after all else; train a \
          parallel correction, or export the model without `branch`"
     )]
     Correction {
-        /// The model.
+        /// Name of the model.
         model: String,
-        /// Its law.
+        /// Name of its law.
         law: String,
     },
-    /// An effect delays an input that no steering gear takes.
+    /// An effect delays an input that has no steering gear.
     #[error("`{model}` carries a lag on `{input}`; exports know lags of the rudder only")]
     Lag {
-        /// The model.
+        /// Name of the model.
         model: String,
-        /// The input behind the lag.
+        /// Delayed input.
         input: String,
     },
-    /// An effect keeps an input from what was ordered that no steering gear takes.
+    /// An effect puts a dead band on an input that has no steering gear.
     #[error("`{model}` carries a dead band on `{input}`; exports know that of the rudder only")]
     Band {
-        /// The model.
+        /// Name of the model.
         model: String,
-        /// The input with the band.
+        /// Input with the dead band.
         input: String,
     },
     /// An effect of the model cannot be used.
     #[error("{field}: {message}")]
     Effect {
-        /// The field of the model.
+        /// Field of the model.
         field: String,
-        /// What is wrong with it.
+        /// Fault of the field.
         message: String,
     },
     /// The equations of motion cannot be set up.

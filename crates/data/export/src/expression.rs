@@ -1,4 +1,4 @@
-//! One operation of the tape as an expression of a language.
+//! Operations of the tape as expressions of a language.
 
 use sistership_formula::{Comparison, Function};
 use sistership_simulation::tape::{Instruction, Op, Slot};
@@ -6,46 +6,47 @@ use sistership_simulation::tape::{Instruction, Op, Slot};
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Operand, Plan};
 
-/// How a language spells what a tape does. Operands are names or numbers, never sums.
+/// Syntax of a language for the operations of a tape. Operands are names or numbers, never sums.
 pub trait Language {
-    /// A number, to the last bit.
+    /// Literal of a number, exact to the last bit.
     fn number(&self, value: f64) -> String;
 
-    /// A state, by its place in the state vector.
+    /// Name of a state, by its index in the state vector.
     fn state(&self, place: usize) -> String;
 
-    /// Something from outside.
+    /// Name of an external input.
     fn outside(&self, outside: &Outside) -> String;
 
-    /// A coefficient.
+    /// Name of a coefficient.
     fn coefficient(&self, coefficient: &Coefficient) -> String;
 
-    /// `a / b`, which may be infinite or not a number.
+    /// Quotient `a / b`, which may be infinite or not a number.
     fn quotient(&self, a: &str, b: &str) -> String {
         format!("{a}/{b}")
     }
 
-    /// `a^b`
+    /// Power `a^b`.
     fn power(&self, a: &str, b: &str) -> String;
 
-    /// A function of one or two arguments.
+    /// Call of a function of one or two arguments.
     fn call(&self, function: Function, arguments: &[&str]) -> String;
 
-    /// The third where the first compares so with the second, else the fourth.
+    /// Conditional expression of four operands: the third if the comparison of the first two holds,
+    /// otherwise the fourth.
     fn choice(&self, comparison: &str, operands: [&str; 4]) -> String;
 
-    /// A statement that gives a name a sum.
+    /// Statement that assigns a sum to a name.
     fn assign(&self, name: &str, terms: &[String]) -> String;
 
-    /// Statements that solve `M a = F` for `a_u, a_v, a_p, a_r`, where masses change with the
-    /// motion; `mass` has the rows of `M`.
+    /// Statements that solve `M a = F` for `a_u, a_v, a_p, a_r`, for masses that change with the
+    /// motion; `mass` holds the rows of `M`.
     fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String>;
 
-    /// What the rate of a state is called where it is assigned.
+    /// Target of an assignment to the rate of a state.
     fn rate(&self, place: usize) -> String;
 }
 
-/// The sign of a comparison.
+/// Symbol of a comparison.
 pub fn comparison(of: Comparison) -> &'static str {
     match of {
         Comparison::Less => "<",
@@ -55,7 +56,7 @@ pub fn comparison(of: Comparison) -> &'static str {
     }
 }
 
-/// The name of a function in most languages.
+/// Name of a function in most languages.
 pub fn function(of: Function) -> &'static str {
     match of {
         Function::Sin => "sin",
@@ -74,7 +75,7 @@ pub fn function(of: Function) -> &'static str {
     }
 }
 
-/// The result of an instruction as an operand: a name, or a number.
+/// Result of an instruction as an operand: a name, or a number.
 pub fn operand(plan: &Plan, language: &dyn Language, slot: Slot) -> String {
     match plan.listed().tape.instructions()[slot as usize] {
         Instruction::Op(Op::Constant(value)) => language.number(value),
@@ -87,14 +88,14 @@ pub fn operand(plan: &Plan, language: &dyn Language, slot: Slot) -> String {
     }
 }
 
-/// What an instruction calculates, as terms of a sum; none where its result is an operand by
-/// itself.
+/// Terms of the sum that an instruction calculates; `None` if its result is an operand by itself.
 pub fn terms(plan: &Plan, language: &dyn Language, slot: Slot) -> Option<Vec<String>> {
     let listed = plan.listed();
     let at = |slot: Slot| operand(plan, language, slot);
     match listed.tape.instructions()[slot as usize] {
         Instruction::Op(Op::Constant(_) | Op::Input(_)) => None,
         Instruction::Op(op) => Some(vec![expression(language, op, &at)]),
+        // A fused sum of products: first + a1 b1 + a2 b2 + ...
         Instruction::Products { first, from, to } => {
             let pairs = &listed.tape.terms()[from as usize..to as usize];
             let products = pairs.iter().map(|&[a, b]| format!("{}*{}", at(a), at(b)));
@@ -105,6 +106,7 @@ pub fn terms(plan: &Plan, language: &dyn Language, slot: Slot) -> Option<Vec<Str
 
 fn expression(language: &dyn Language, op: Op, at: &dyn Fn(Slot) -> String) -> String {
     match op {
+        // Never reached from the list of terms: these results are operands.
         Op::Constant(_) | Op::Input(_) => String::new(),
         Op::Negate(a) => format!("-{}", at(a)),
         Op::Add(a, b) => format!("{} + {}", at(a), at(b)),

@@ -1,19 +1,19 @@
-//! A format: one file each.
+//! Trait of the export formats; each format has its own file.
 
 use crate::error::ExportError;
 use crate::plan::Plan;
 
-/// A format in which a model can be written down.
+/// Format of an exported model.
 pub trait Format: std::fmt::Debug + Send + Sync {
-    /// Its name on the command line and in requests.
+    /// Name on the command line and in requests.
     fn name(&self) -> &'static str;
 
-    /// How the name of its file ends.
+    /// Extension of the file name.
     fn extension(&self) -> &'static str;
 
-    /// The file.
+    /// Returns the content of the file.
     ///
     /// # Errors
-    /// Says why the model cannot be written in this format.
+    /// Returns an error with the reason why the model cannot be written in this format.
     fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError>;
 }

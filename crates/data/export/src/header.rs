@@ -1,10 +1,11 @@
-//! What the first lines of every export say: what it is, its units and signs, its sources.
+//! Header of every export: provenance, units, signs and sources.
 
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
 
-/// All that a reader must know before the code: provenance, units, signs, inputs, coefficients.
+/// Lines that a reader needs before the code: provenance, units, signs, inputs, coefficients.
 pub fn lines(plan: &Plan) -> Vec<String> {
+    // Provenance first, so that a reader sees the model's status at once.
     let mut lines = plan.provenance.clone();
     lines.push(String::new());
     lines.push(
@@ -34,9 +35,11 @@ pub fn lines(plan: &Plan) -> Vec<String> {
     lines
 }
 
+/// Line of the steering gear, if the law has one rudder.
 fn gear(plan: &Plan) -> Option<String> {
     let gear = plan.gear.as_ref()?;
     let band = match plan.band_rad {
+        // Most gears have no dead band.
         0.0 => String::new(),
         band => format!(", dead band {:.2} deg to either side", band.to_degrees()),
     };
@@ -49,6 +52,7 @@ fn gear(plan: &Plan) -> Option<String> {
     ))
 }
 
+/// Range of an input in words.
 fn range([low, high]: [Option<f64>; 2]) -> Option<String> {
     match (low, high) {
         (Some(low), Some(high)) => Some(format!("trials covered {low:.4} to {high:.4}")),
@@ -58,7 +62,7 @@ fn range([low, high]: [Option<f64>; 2]) -> Option<String> {
     }
 }
 
-/// A coefficient's unit, source and standard error.
+/// Unit, source and standard error of a coefficient.
 pub fn remark(coefficient: &Coefficient) -> String {
     let Coefficient { name, unit, source, standard_error, .. } = coefficient;
     let error =

@@ -1,15 +1,16 @@
-//! Names that every language takes.
+//! Identifiers that are valid in every language.
 
 use std::collections::BTreeSet;
 
-/// A name of letters, digits and underscores for any text: `X_v|v|` is `X_v_abs_v`,
-/// `mariner/abkowitz` is `mariner_abkowitz`.
+/// Identifier of letters, digits and underscores for any text: `X_v|v|` becomes `X_v_abs_v`,
+/// `mariner/abkowitz` becomes `mariner_abkowitz`.
 pub fn identifier(text: &str) -> String {
     let mut name = String::new();
     let mut inside = false;
     for letter in text.chars() {
         match letter {
             '|' => {
+                // Bars come in pairs, as in `v|v|`.
                 inside = !inside;
                 name.push_str(if inside { "_abs_" } else { "_" });
             }
@@ -22,19 +23,21 @@ pub fn identifier(text: &str) -> String {
     while name.contains("__") {
         name = name.replace("__", "_");
     }
+    // An identifier must begin with a letter in every language.
     if name.starts_with(|first: char| !first.is_ascii_alphabetic()) {
         name.insert_str(0, "m_");
     }
     name
 }
 
-/// The names of several texts, each once.
+/// Identifiers of several texts, made unique by a number.
 pub fn identifiers<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = BTreeSet::new();
     let one = |text: &'a str| {
         let plain = identifier(text);
         let mut name = plain.clone();
         let mut number = 2;
+        // Different texts may have the same identifier.
         while !taken.insert(name.clone()) {
             name = format!("{plain}_{number}");
             number += 1;

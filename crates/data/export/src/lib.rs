@@ -1,7 +1,7 @@
-//! Models written down for other tools: one trait, one file a format.
+//! Export of models for other tools: one trait, and one file for each format.
 //!
-//! What is written is the tape that our own simulation evaluates, so that every law of the zoo,
-//! with the effects that a model carries, can be exported, and says the same elsewhere.
+//! The exported operations are the tape that the simulation evaluates, so that every law of the
+//! zoo, with the effects of a model, can be exported, and gives the same results in other tools.
 
 mod c;
 mod correction;

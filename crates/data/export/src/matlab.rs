@@ -1,5 +1,5 @@
-//! One function of MATLAB (and Octave) in the style of the Marine Systems Simulator: a structure,
-//! and the rates of the states by it.
+//! Export as one function of MATLAB (and Octave) in the style of the Marine Systems Simulator: a
+//! structure of the model, and the rates of the states.
 
 use sistership_formula::Function;
 
@@ -10,7 +10,7 @@ use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
 use crate::{header, range, rates, wrapped};
 
-/// MATLAB R2016b and later, Octave 6 and later.
+/// Function file for MATLAB R2016b and later, Octave 6 and later.
 #[derive(Debug)]
 pub struct Matlab;
 
@@ -57,6 +57,7 @@ impl Language for Matlab {
     }
 
     fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+        // MATLAB has no conditional expression; the template defines the function `choice`.
         format!("choice({a} {comparison} {b}, {c}, {d})")
     }
 
@@ -68,6 +69,7 @@ impl Language for Matlab {
         let rows: Vec<String> = mass.iter().map(|row| row.join(", ")).collect();
         let mut lines =
             vec![format!("a = [{}] \\ [{}];", rows.join("; ...\n    "), forces.join("; "))];
+        // Indices of MATLAB start at 1.
         let names = ["a_u", "a_v", "a_p", "a_r"].into_iter().enumerate();
         lines.extend(names.map(|(k, name)| format!("{name} = a({});", k + 1)));
         lines
@@ -80,6 +82,7 @@ impl Language for Matlab {
 
 const TEMPLATE: &str = include_str!("../templates/model.m");
 
+/// Complete function file.
 fn text(plan: &Plan) -> String {
     let mut help = vec!["Time derivative of the state of a ship manoeuvring model.".to_owned()];
     help.extend(header::lines(plan));
@@ -100,7 +103,7 @@ fn text(plan: &Plan) -> String {
         .replace("@@model", &plan.identifier)
 }
 
-/// Not a number where nobody knows what trials covered.
+/// Statements of the distance outside the range covered by trials; NaN if that range is not known.
 fn range_text(plan: &Plan) -> String {
     let Some(range::Distance { mut statements, result }) = range::beside(plan, &Matlab) else {
         return format!("{} = NaN;", range::NAME);
@@ -109,16 +112,19 @@ fn range_text(plan: &Plan) -> String {
     statements.join("\n")
 }
 
+/// Names of the inputs, in the order of the input vector.
 fn names(plan: &Plan) -> Vec<String> {
     let order = plan.gear.map(|_| "delta_order".to_owned());
     order.into_iter().chain(plan.outside.iter().map(|o| o.identifier.clone())).collect()
 }
 
+/// Statements that assign the input vector to names.
 fn unpack(plan: &Plan) -> String {
     let one = |(k, name): (usize, String)| format!("{name} = ui({});", k + 1);
     names(plan).into_iter().enumerate().map(one).collect::<Vec<_>>().join("\n")
 }
 
+/// Statements of the steering gear; element 9 of the state is the rudder.
 fn rudder(plan: &Plan) -> &'static str {
     match plan.gear {
         None => "xdot(9) = 0;",
@@ -131,6 +137,7 @@ fn rudder(plan: &Plan) -> &'static str {
     }
 }
 
+/// Statements that fill the structure of the model.
 fn structure(plan: &Plan) -> String {
     let mut lines = vec![
         format!("model.name = '{}';", plan.name),
@@ -144,6 +151,7 @@ fn structure(plan: &Plan) -> String {
         format!("model.x = [{:?}; zeros(8, 1)]; % straight running", plan.speed_m_s),
     ];
     let inputs: Vec<String> = plan.outside.iter().map(|o| Matlab.number(o.default)).collect();
+    // The ordered rudder comes first among the inputs, as in the list of names.
     let order = plan.gear.map(|_| "0".to_owned());
     let inputs: Vec<String> = order.into_iter().chain(inputs).collect();
     lines.push(format!("model.ui = [{}]; % {}", inputs.join("; "), names(plan).join(", ")));

@@ -1,4 +1,4 @@
-//! A model of Modelica as text.
+//! Export as a Modelica model.
 
 use sistership_formula::Function;
 
@@ -9,7 +9,7 @@ use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
 use crate::{header, range, rates, wrapped};
 
-/// Modelica 3.4, without any library.
+/// Model file for Modelica 3.4, without any library.
 #[derive(Debug)]
 pub struct Modelica;
 
@@ -27,11 +27,12 @@ impl Format for Modelica {
     }
 }
 
-/// Modelica has no infinity: deep water is this, m.
+/// Depth of deep water, m, as Modelica has no infinity.
 const DEEP_M: f64 = 1e9;
 
 impl Language for Modelica {
     fn number(&self, value: f64) -> String {
+        // Infinity becomes the largest double.
         let value = value.clamp(-f64::MAX, f64::MAX);
         if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
     }
@@ -52,7 +53,8 @@ impl Language for Modelica {
         format!("{a}^{b}")
     }
 
-    /// Smaller, larger and sign are written as choices, which every tool knows.
+    /// Call of a function. Minimum, maximum and sign are written as conditional expressions, which
+    /// every tool supports.
     fn call(&self, of: Function, arguments: &[&str]) -> String {
         match (of, arguments) {
             (Function::Sign, [a]) => {
@@ -64,7 +66,7 @@ impl Language for Modelica {
         }
     }
 
-    /// Without events: what is compared moves smoothly through a choice.
+    /// Conditional expression without events: the compared values change smoothly at the switch.
     fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
         format!("if noEvent({a} {comparison} {b}) then {c} else {d}")
     }
@@ -78,6 +80,7 @@ impl Language for Modelica {
         let row = |(mass, force): (&[String; 4], &String)| {
             let terms: Vec<String> =
                 mass.iter().zip(unknown).map(|(factor, name)| format!("{factor}*{name}")).collect();
+            // Implicit equations F = M a; the tool solves them.
             self.assign(force, &terms)
         };
         mass.iter().zip(forces).map(row).collect()
@@ -88,6 +91,7 @@ impl Language for Modelica {
     }
 }
 
+/// Complete model file.
 fn text(plan: &Plan) -> String {
     let comment: Vec<String> =
         header::lines(plan).iter().flat_map(|line| wrapped::comment("  //", line)).collect();
@@ -149,7 +153,7 @@ fn range_equation(plan: &Plan) -> String {
     statements.join("\n")
 }
 
-/// Every name that an equation gives a value.
+/// Declarations of all names that an equation defines.
 fn locals(plan: &Plan) -> String {
     let listed = plan.listed();
     let slots = 0..listed.tape.len() as u32;
@@ -167,7 +171,8 @@ fn locals(plan: &Plan) -> String {
         .join("\n")
 }
 
-/// A gear without time constant has that of our own step, in which it reaches its order.
+/// Equation of the steering gear. A gear without time constant gets that of the simulation's step,
+/// within which it reaches its order.
 fn rudder(plan: &Plan) -> String {
     let Some(gear) = &plan.gear else { return "  der(delta) = 0.0;".to_owned() };
     let (limit, fastest) = (gear.limit_rad(), gear.rate_rad_s());

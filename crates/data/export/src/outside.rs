@@ -1,4 +1,4 @@
-//! What an exported model takes from outside, with unit, meaning and range.
+//! External inputs of an exported model, with unit, meaning and range.
 
 use sistership_model::effect::qualified;
 use sistership_model::validity::Region;
@@ -6,27 +6,27 @@ use sistership_model::{Model, law, particulars};
 
 use crate::identifier::identifier;
 
-/// Something that the model takes from outside.
+/// External input of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outside {
-    /// The law's name of it.
+    /// Name in the law.
     pub name: String,
-    /// The name that programs use.
+    /// Identifier in exported programs.
     pub identifier: String,
-    /// Its SI unit.
+    /// SI unit.
     pub unit: String,
-    /// What it is, with its sign.
+    /// Meaning and sign convention.
     pub meaning: String,
-    /// What it is where nobody says.
+    /// Default value.
     pub default: f64,
-    /// The range in which the model is believed, where one is known.
+    /// Range in which the model is valid, as far as it is known.
     pub range: [Option<f64>; 2],
 }
 
-/// The effect and the form by which a current acts on any law, and its parameters.
+/// Effect and form by which a current acts on any law, and its parameters.
 pub const CURRENT: (&str, &str, [&str; 2]) = ("current", "constant", ["north_m_s", "east_m_s"]);
 
-/// Names, units and meanings of what laws and effects commonly take.
+/// Names, identifiers, units and meanings of common inputs of laws and effects.
 const KNOWN: [(&str, &str, &str, &str); 9] = [
     ("n", "n", "1/s", "propeller revolutions, positive drives ahead"),
     ("depth", "depth", "m", "water depth; infinite for deep water"),
@@ -50,7 +50,7 @@ const KNOWN: [(&str, &str, &str, &str); 9] = [
 ];
 
 impl Outside {
-    /// An input of a model's law, as effects have dressed it.
+    /// Creates an input of a model's law with effects.
     pub fn of(model: &Model, name: &str, input: &law::Input) -> Self {
         if let Some(current) = Self::current(name, input) {
             return current;
@@ -63,6 +63,7 @@ impl Outside {
             None => (identifier(name), si(input), format!("`{name}` of the law")),
         };
         let default = match (name, input.default) {
+            // Propeller revolutions default to those of the model's approach.
             ("n", None) => model.revolutions_rps.unwrap_or(0.0),
             (_, default) => default.unwrap_or(0.0),
         };
@@ -70,8 +71,10 @@ impl Outside {
         Self { name: name.to_owned(), identifier, unit, meaning, default, range }
     }
 
+    /// Component of the current, if the input is one.
     fn current(name: &str, input: &law::Input) -> Option<Self> {
         let (effect, form, parameters) = CURRENT;
+        // The parameters of the effect are components to the north and to the east.
         let place = parameters.iter().position(|p| qualified(effect, form, p) == name)?;
         Some(Self {
             name: name.to_owned(),
@@ -84,6 +87,7 @@ impl Outside {
     }
 }
 
+/// SI unit of an input. A dimensionless one is an angle.
 fn si(input: &law::Input) -> String {
     match input.dimension.to_string().as_str() {
         "1" => "rad".to_owned(),
@@ -93,7 +97,7 @@ fn si(input: &law::Input) -> String {
     }
 }
 
-/// Deeper than the draught; elsewhere what the trials covered.
+/// Range of an input: for the depth more than the draught, otherwise the range covered by trials.
 fn range(model: &Model, name: &str) -> [Option<f64>; 2] {
     if name == "depth" {
         return [particulars::value(&model.particulars, "draught_m"), None];

@@ -1,4 +1,4 @@
-//! What every format writes down: the operations of a model's equations of motion, and names.
+//! Common content of all formats: the operations of a model's equations of motion, and names.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -20,35 +20,35 @@ use crate::identifier::{identifier, identifiers};
 use crate::outside::{CURRENT, Outside};
 use crate::subject::Subject;
 
-/// A coefficient of the model.
+/// Coefficient of the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coefficient {
-    /// Its name.
+    /// Name in the law.
     pub name: String,
-    /// The name that programs use.
+    /// Identifier in exported programs.
     pub identifier: String,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// Its SI unit; `1` in a prime system.
+    /// SI unit; `1` in a prime system.
     pub unit: String,
-    /// The key of its source.
+    /// Key of the source.
     pub source: String,
-    /// Its standard error, where one is known.
+    /// Standard error, if it is known.
     pub standard_error: Option<f64>,
 }
 
-/// What an input of the tape is.
+/// Kind of an input of the tape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operand {
-    /// A state, by its place in the state vector.
+    /// State, by its index in the state vector.
     State(usize),
-    /// Something from outside, by its place among [`Plan::outside`].
+    /// External input, by its index in the list of the plan.
     Outside(usize),
-    /// A coefficient, by its place among [`Plan::coefficients`].
+    /// Coefficient, by its index in the list of the plan.
     Coefficient(usize),
 }
 
-/// The states by name, unit and meaning, in the order of the state vector.
+/// States with name, unit and meaning, in the order of the state vector.
 pub const STATES: [(&str, &str, &str); 9] = [
     ("u", "m/s", "surge velocity over the ground"),
     ("v", "m/s", "sway velocity over the ground, to starboard"),
@@ -61,46 +61,46 @@ pub const STATES: [(&str, &str, &str); 9] = [
     ("delta", "rad", "rudder angle, positive turns the ship to starboard"),
 ];
 
-/// The place of the rudder among the states.
+/// Index of the rudder in the state vector.
 pub const DELTA: usize = 8;
 
-/// A model's equations of motion, ready to be written down.
+/// Equations of motion of a model, ready for export.
 #[derive(Debug)]
 pub struct Plan {
-    /// The model's name.
+    /// Name of the model.
     pub name: String,
-    /// The name that programs use.
+    /// Identifier in exported programs.
     pub identifier: String,
-    /// Lines that say what it is and where its figures come from.
+    /// Lines of provenance: the model, and the sources of its values.
     pub provenance: Vec<String>,
-    /// The SHA-256 of what was exported.
+    /// SHA-256 of the exported document.
     pub sha256: String,
-    /// What it takes from outside, besides the ordered rudder.
+    /// External inputs, except the ordered rudder.
     pub outside: Vec<Outside>,
-    /// Its coefficients.
+    /// Coefficients of the model.
     pub coefficients: Vec<Coefficient>,
-    /// What the inputs of the tape are.
+    /// Kinds of the inputs of the tape.
     pub operands: Vec<Operand>,
-    /// The steering gear, where the law has one rudder.
+    /// Steering gear, if the law has one rudder.
     pub gear: Option<Gear>,
     /// Half of the gear's dead band, rad: an order within it is not followed.
     pub band_rad: f64,
-    /// The range outside which a simulation is not believed.
+    /// Physical range outside which a simulation is not valid.
     pub envelope: Envelope,
-    /// Whether the law has roll.
+    /// True if the law has roll.
     pub has_roll: bool,
     /// Length between perpendiculars, m.
     pub lpp_m: f64,
-    /// The approach speed that the model belongs to, m/s.
+    /// Approach speed of the model, m/s.
     pub speed_m_s: f64,
     plant: Plant,
 }
 
 impl Plan {
-    /// Of a model, with a current as a further input.
+    /// Creates the plan of a model, with a current as an additional input.
     ///
     /// # Errors
-    /// Says why the model cannot be exported.
+    /// Returns an error with the reason why the model cannot be exported.
     pub fn new(subject: &Subject<'_>) -> Result<Self, ExportError> {
         let model = with_current(subject.model)?;
         let law = corrected(&model, dressed(&model, subject.law)?)?;
@@ -109,9 +109,12 @@ impl Plan {
         let is_known = |name: &str| known.iter().any(|known| known == name);
         let distance = model.validity.as_ref().map(|region| distance(region, &is_known));
         let plant = Plant::with_distance(&equations, Coefficients::Names, distance.as_ref())?;
+        // The ship of the original model: gear and envelope do not depend on the current.
         let ship = Ship::new(subject.model, subject.law)?;
         let delta = law.inputs.get_index_of("delta");
+        // Dead bands are stored by the index of the input.
         let band = plant.bands().iter().find(|(place, _)| Some(*place) == delta);
+        // The distance to the trials' range is part of the tape, so its inputs are kept, too.
         let outside = taken(&model, &law, &plant);
         let coefficients = coefficients(&model, subject.law)?;
         let operands = operands(&law, &outside, coefficients.len());
@@ -133,14 +136,15 @@ impl Plan {
         })
     }
 
-    /// The operations.
+    /// Operations of the equations of motion.
     pub fn listed(&self) -> Listed<'_> {
         self.plant.listed()
     }
 
-    /// The places of the states that move.
+    /// Indices of the states that are not constant.
     pub fn states(&self) -> impl Iterator<Item = usize> {
         let moves = |place: &usize| match place {
+            // Indices of roll rate and roll angle.
             3 | 4 => self.has_roll,
             &DELTA => self.gear.is_some(),
             _ => true,
@@ -148,19 +152,19 @@ impl Plan {
         (0..STATES.len()).filter(moves)
     }
 
-    /// The longest step by which our own manoeuvres are sailed, s: 0.1 s, or a fiftieth of the time
-    /// in which the ship sails its length.
+    /// Largest time step of the built-in manoeuvres, s: 0.1 s, or a fiftieth of the time in which
+    /// the ship travels its length.
     pub fn step_s(&self) -> f64 {
         0.1_f64.min(0.02 * self.lpp_m / self.speed_m_s)
     }
 }
 
-/// The current of the library of effects.
+/// Current effect of the library of effects.
 static CURRENT_EFFECT: LazyLock<Result<Effect, FileError>> = LazyLock::new(|| {
     Effect::parse("current.yaml", include_str!("../../../../models/effects/current.yaml"))
 });
 
-/// The model with a current at rest, where it carries none.
+/// Returns the model with a current of zero, if it has no current.
 fn with_current(model: &Model) -> Result<Model, ExportError> {
     let mut model = model.clone();
     let (name, form, parameters) = CURRENT;
@@ -181,7 +185,7 @@ fn with_current(model: &Model) -> Result<Model, ExportError> {
     Ok(model)
 }
 
-/// The law with the effects; the velocity of the current is an input.
+/// Returns the law with the model's effects; the velocity of the current becomes an input.
 fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
     let mut law = law
         .with_effects(model)
@@ -194,6 +198,7 @@ fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
     }
     let (effect, form, parameters) = CURRENT;
     for name in parameters.map(|parameter| qualified(effect, form, parameter)) {
+        // A current that the model already has becomes the default of the input.
         let Some(value) = law.dressing.parameters.remove(&name) else { continue };
         let dimension = law.parameters[&name].dimension;
         law.inputs.insert(name, Input { dimension, default: Some(value) });
@@ -201,11 +206,12 @@ fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
     Ok(law)
 }
 
-/// The inputs of the law but for the rudder; what no operation reads is left out.
+/// Inputs of the law except the rudder; inputs that no operation reads are omitted.
 fn taken(model: &Model, law: &Law, plant: &Plant) -> Vec<Outside> {
     use sistership_simulation::tape::{Instruction, Op};
     let first = sistership_model::law::STATES.len();
     let reads = |place: usize| {
+        // Inputs of the tape are the states, then the inputs of the law.
         let input = Instruction::Op(Op::Input((first + place) as u32));
         plant.listed().tape.instructions().contains(&input)
     };
@@ -216,8 +222,7 @@ fn taken(model: &Model, law: &Law, plant: &Plant) -> Vec<Outside> {
         .collect()
 }
 
-/// What each input of the tape is. An input that no operation reads stands for nothing: any operand
-/// does.
+/// Kind of each input of the tape. An input that no operation reads gets an arbitrary operand.
 fn operands(law: &Law, outside: &[Outside], coefficients: usize) -> Vec<Operand> {
     let states = sistership_model::law::STATES.len();
     let of_input = |name: &String| match outside.iter().position(|known| known.name == *name) {
@@ -231,6 +236,7 @@ fn operands(law: &Law, outside: &[Outside], coefficients: usize) -> Vec<Operand>
         .collect()
 }
 
+/// Coefficients of the model, with identifiers and units.
 fn coefficients(model: &Model, law: &Law) -> Result<Vec<Coefficient>, ExportError> {
     let names = identifiers(model.coefficients.keys().map(String::as_str));
     let one = |((name, quantity), identifier): ((&String, &Quantity), String)| {

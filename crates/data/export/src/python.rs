@@ -1,4 +1,5 @@
-//! One file of Python: the equations by plain floats, numpy for what a simulation returns.
+//! Export as one file of Python: the equations with plain floats, and numpy for the results of a
+//! simulation.
 
 use sistership_formula::Function;
 
@@ -9,7 +10,7 @@ use crate::outside::Outside;
 use crate::plan::{Coefficient, Plan, STATES};
 use crate::{header, range, rates, wrapped};
 
-/// Python 3.8 and later.
+/// Module for Python 3.8 and later.
 #[derive(Debug)]
 pub struct Python;
 
@@ -47,8 +48,10 @@ impl Language for Python {
         coefficient.identifier.clone()
     }
 
-    /// Python raises where other languages give an infinity; a number that is not zero is safe.
+    /// Quotient. Python raises an error where other languages give an infinity; a non-zero number
+    /// as divisor is safe.
     fn quotient(&self, a: &str, b: &str) -> String {
+        // Negative literals are in brackets.
         let safe = b.trim_matches(['(', ')']).parse::<f64>().is_ok_and(|number| number != 0.0);
         if safe { format!("{a}/{b}") } else { format!("_quotient({a}, {b})") }
     }
@@ -62,6 +65,8 @@ impl Language for Python {
         match of {
             Function::Abs | Function::Min | Function::Max => format!("{}({all})", function(of)),
             Function::Sign => format!("float(({all} > 0.0) - ({all} < 0.0))"),
+            // These raise an error outside their domain, where other languages return NaN or
+            // infinity.
             Function::Sqrt | Function::Log | Function::Exp => {
                 format!("_safe(math.{}, {all})", function(of))
             }
@@ -75,6 +80,7 @@ impl Language for Python {
 
     fn assign(&self, name: &str, terms: &[String]) -> String {
         let one = wrapped::sum(&format!("    {name} = "), terms, "");
+        // Brackets are only needed to continue a line.
         if one.len() <= 96 {
             return one;
         }
@@ -96,6 +102,7 @@ impl Language for Python {
 
 const TEMPLATE: &str = include_str!("../templates/model.py");
 
+/// Complete module.
 fn text(plan: &Plan) -> String {
     let lines = header::lines(plan);
     let lines: Vec<String> = lines
@@ -123,6 +130,7 @@ fn text(plan: &Plan) -> String {
     format!("{}\n{body}", lines.join("\n"))
 }
 
+/// Function of the distance outside the range covered by trials.
 fn range_text(plan: &Plan) -> String {
     let Some(range::Distance { statements, result }) = range::alone(plan, &Python) else {
         return String::new();

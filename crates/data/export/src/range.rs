@@ -1,4 +1,4 @@
-//! How far a motion is outside of what a model's trials covered, as an output of every export.
+//! Distance of a motion outside the range covered by trials, as an output of every export.
 
 use std::collections::BTreeSet;
 
@@ -7,31 +7,32 @@ use sistership_simulation::tape::{Instruction, Slot, Tape};
 use crate::expression::{Language, operand, terms};
 use crate::plan::Plan;
 
-/// The output's name.
+/// Name of the output.
 pub const NAME: &str = "outside_range";
-/// What it is.
+/// Description of the output in exported files.
 pub const MEANING: &str = "how far speeds, yaw rate, rudder and revolutions are outside of what \
     the trials covered, by half their range; 0 inside";
 
-/// The output: statements, and what it is by them.
+/// Statements of the output, and its result.
 pub struct Distance {
-    /// In the order in which each needs only earlier ones.
+    /// Statements in the order of their dependence.
     pub statements: Vec<String>,
-    /// The operand that it is.
+    /// Operand that holds the distance.
     pub result: String,
 }
 
-/// The distance without anything else of the model; none where nobody knows what trials covered.
+/// Distance with all statements that it needs; `None` if the range covered by trials is not known.
 pub fn alone(plan: &Plan, language: &dyn Language) -> Option<Distance> {
     let listed = plan.listed();
     let slots = needed(listed.tape, [listed.distance?]);
     Some(stated(plan, language, slots))
 }
 
-/// The distance after the statements of the rates.
+/// Distance after the statements of the rates, which are not repeated.
 pub fn beside(plan: &Plan, language: &dyn Language) -> Option<Distance> {
     let listed = plan.listed();
     let (own, others) = (needed(listed.tape, [listed.distance?]), others(plan));
+    // What the rates have calculated already is not repeated.
     Some(stated(plan, language, own.difference(&others).copied().collect()))
 }
 
@@ -43,7 +44,7 @@ fn stated(plan: &Plan, language: &dyn Language, slots: BTreeSet<Slot>) -> Distan
     Distance { statements, result: result.unwrap_or_default() }
 }
 
-/// The instructions that the rates of the states need.
+/// Instructions that the rates of the states need.
 pub fn others(plan: &Plan) -> BTreeSet<Slot> {
     let listed = plan.listed();
     let results = listed.forces.iter().chain(listed.mass.iter().flatten());
@@ -51,9 +52,10 @@ pub fn others(plan: &Plan) -> BTreeSet<Slot> {
     needed(listed.tape, results.copied().flatten())
 }
 
-/// The instructions that some need, themselves among them.
+/// Instructions that the given ones need, including themselves.
 fn needed(tape: &Tape, some: impl IntoIterator<Item = Slot>) -> BTreeSet<Slot> {
     let (mut all, mut open) = (BTreeSet::new(), some.into_iter().collect::<Vec<_>>());
+    // The set is in ascending order of slots, and every instruction reads earlier slots only.
     while let Some(slot) = open.pop() {
         if all.insert(slot) {
             open.extend(operands(tape, slot));

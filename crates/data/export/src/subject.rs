@@ -1,27 +1,28 @@
-//! What is exported, and where its figures come from.
+//! Subject of an export, and the provenance of its values.
 
 use sistership_model::estimated_particulars::estimated_words;
 use sistership_model::version::code_revision;
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model};
 
-/// What is exported.
+/// Model to be exported.
 #[derive(Debug, Clone)]
 pub struct Subject<'a> {
-    /// The model.
+    /// Model to be exported.
     pub model: &'a Model,
-    /// Its law.
+    /// Law of the model.
     pub law: &'a Law,
-    /// The version by name, `ship/number`, where it is one.
+    /// Name of the version, `ship/number`, if it is one.
     pub version: Option<String>,
-    /// The SHA-256 of the version's document, or of the model's.
+    /// SHA-256 of the version's document, or of the model's.
     pub sha256: String,
 }
 
 impl Subject<'_> {
-    /// Lines that say what it is and where its figures come from.
+    /// Lines of provenance: the model, and the sources of its values.
     pub fn provenance(&self) -> Vec<String> {
         let Self { model, law, version, sha256 } = self;
+        // A model outside the store has no version.
         let version =
             version.as_ref().map_or(String::new(), |version| format!(", version {version}"));
         let mut lines = vec![
@@ -37,6 +38,7 @@ impl Subject<'_> {
                 values.map(|(name, quantity)| format!("{name} {}", quantity.value)).collect();
             format!("Effect {} ({}): {}", effect.name, effect.form.name, values.join(", "))
         }));
+        // Parameters are constants of the tape; they are listed here with their sources.
         let folded = model.parameters.iter().map(|(name, quantity)| {
             let known = law.parameters.get(name);
             let about =
@@ -57,7 +59,7 @@ impl Subject<'_> {
     }
 }
 
-/// The wind and the depth that the trials of a refined model had; none of a model without trials.
+/// Wind and depth during the trials of a refined model; `None` for a model without trials.
 fn trials_environment(model: &Model) -> Option<String> {
     let environment = &model.validity.as_ref()?.environment;
     let ranges = environment.iter().map(|(name, [low, high])| format!("{name} {low} to {high}"));
@@ -84,6 +86,7 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
+/// Reliability of a model by its status.
 fn worth(status: Status) -> &'static str {
     match status {
         Status::Published => "as published",

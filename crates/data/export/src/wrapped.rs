@@ -1,9 +1,9 @@
-//! Long sums over several lines.
+//! Wrapping of long sums and comments over several lines.
 
-/// Longest line of generated code.
+/// Largest length of a line of generated code.
 const WIDTH: usize = 96;
 
-/// A sum over as many lines as it takes; `next` ends one line and begins another.
+/// Sum over as many lines as needed; `next` ends one line and begins another.
 pub fn sum(head: &str, terms: &[String], next: &str) -> String {
     let mut text = head.to_owned();
     let mut line = head.len();
@@ -11,6 +11,7 @@ pub fn sum(head: &str, terms: &[String], next: &str) -> String {
         let plus = if index == 0 { "" } else { " + " };
         if index > 0 && line + plus.len() + term.len() > WIDTH {
             text.push_str(next);
+            // The new line starts with the indentation after the line break.
             line = next.rsplit('\n').next().map_or(0, str::len);
         }
         text.push_str(plus);
@@ -20,13 +21,14 @@ pub fn sum(head: &str, terms: &[String], next: &str) -> String {
     text
 }
 
-/// A text of words over as many lines as it takes, each after a mark of comments; what it is
-/// indented by is kept.
+/// Comment over as many lines as needed, each after a comment mark; the indentation of the text is
+/// kept.
 pub fn comment(mark: &str, text: &str) -> Vec<String> {
     let indent = &text[..text.len() - text.trim_start().len()];
     let (mut lines, mut line) = (Vec::new(), format!("{mark}{indent}"));
     for word in text.split_whitespace() {
         if line.len() + 1 + word.len() > WIDTH && line.len() > mark.len() + indent.len() {
+            // Continued lines are indented further.
             lines.push(std::mem::replace(&mut line, format!("{mark}{indent}   ")));
         }
         line.push(' ');

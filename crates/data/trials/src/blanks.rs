@@ -1,8 +1,8 @@
-//! Text whose columns stand apart by blanks: every run of them becomes one tab.
+//! Text whose columns are separated by blanks: every run of blanks becomes one tab.
 
 use std::io::{self, Read};
 
-/// A reader that makes tabs of runs of blanks, where it is told to.
+/// Reader that replaces each run of blanks by a tab, if it is active.
 pub(crate) struct Blanks<R> {
     inner: R,
     is_active: bool,
@@ -15,11 +15,12 @@ impl<R: Read> Blanks<R> {
         Self { inner, is_active, begins: true, pending: false }
     }
 
-    /// Writes the bytes as they are to be read; returns how many there are.
+    /// Copies the bytes with blanks replaced; returns the number of bytes written.
     fn squeezed(&mut self, read: &[u8], out: &mut [u8]) -> usize {
         let mut count = 0;
         for &byte in read {
             match byte {
+                // Leading and trailing blanks of a line separate no columns, and are dropped.
                 b' ' | b'\t' => self.pending = !self.begins,
                 b'\n' | b'\r' => {
                     (self.pending, self.begins) = (false, true);
@@ -46,7 +47,7 @@ impl<R: Read> Read for Blanks<R> {
         if !self.is_active || out.len() < 2 {
             return self.inner.read(out);
         }
-        // A tab may be owed from before, so that one byte more may be written than is read.
+        // A tab may be pending from the previous call, so that one byte more is written than read.
         let mut taken = vec![0; out.len() - 1];
         loop {
             let read = self.inner.read(&mut taken)?;

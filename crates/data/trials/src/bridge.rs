@@ -1,5 +1,5 @@
-//! Short gaps of a channel, filled along the straight line between their ends; longer ones, whose
-//! rows are left out.
+//! Interpolation of short gaps of a channel along a straight line; rows in longer gaps are
+//! excluded.
 
 use sistership_model::trial::Channel;
 
@@ -7,14 +7,15 @@ use crate::findings::Findings;
 use crate::series::{is_angle, leave_out, shorter_way};
 use crate::table::{Table, Target};
 
-/// Longest gap that is filled where the manifest does not say, s. A straight line over T seconds
-/// misses a motion of period P by at most its amplitude times (pi T / P)^2 / 8: with 4 s a tenth of
-/// a yawing motion of 14 s, and rolls of small craft altogether, for which less is to be declared.
+/// Default longest gap that is filled, s. A straight line over T seconds misses a motion of period
+/// P by at most its amplitude times (pi T / P)^2 / 8: with 4 s a tenth of a yawing motion of 14 s,
+/// and the roll of small craft altogether, for which a shorter gap is to be declared.
 pub(crate) const BRIDGED_S: f64 = 4.0;
-/// Samples that are filled at most, so that a fast recording does not lose seconds unseen.
+/// Largest number of samples that are filled, so that a fast recording does not lose seconds
+/// unnoticed.
 const BRIDGED: usize = 40;
 
-/// Fills short gaps and leaves the rows of long ones out; says how many of each.
+/// Fills short gaps, excludes the rows of long ones, and reports the number of each.
 pub(crate) fn bridge(table: &mut Table, limit_s: f64, findings: &mut Findings) {
     let time = table.columns.iter().position(|column| column.target == Target::Time);
     let Some(t) = time.map(|at| table.values[at].clone()) else { return };
@@ -43,16 +44,16 @@ pub(crate) fn bridge(table: &mut Table, limit_s: f64, findings: &mut Findings) {
     leave_out(table);
 }
 
-/// Gaps that may be filled.
+/// Limits of the gaps that are filled.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     is_angle: bool,
     longest_s: f64,
-    /// Rate of change across a gap that is no jump.
+    /// Largest rate of change across a gap, above which it is a jump.
     fastest: f64,
 }
 
-/// m/s: a position that moves faster across a gap has jumped.
+/// m/s; a position that moves faster across a gap has jumped.
 const FASTEST: f64 = 40.0;
 
 fn fastest(target: Target) -> f64 {
@@ -62,7 +63,8 @@ fn fastest(target: Target) -> f64 {
     }
 }
 
-/// Fills gaps of one channel; how many were filled, and rows in gaps that stay open.
+/// Fills gaps of one channel; returns the number of filled gaps, and of rows in gaps that stay
+/// open.
 fn fill(t: &[f64], values: &mut [f64], bounds: Bounds) -> (usize, usize) {
     let (mut filled, mut open, mut k) = (0, 0, 0);
     while k < values.len() {
@@ -71,10 +73,12 @@ fn fill(t: &[f64], values: &mut [f64], bounds: Bounds) -> (usize, usize) {
             continue;
         }
         let end = (k..values.len()).find(|&at| values[at].is_finite()).unwrap_or(values.len());
+        // A gap at either end of the channel has no value on one side, and stays open.
         let inside = k > 0 && end < values.len() && end - k <= BRIDGED;
         let last = k.saturating_sub(1);
         let (from, duration) = (values[last], t.get(end).map_or(f64::NAN, |end| end - t[last]));
         let change = values.get(end).map_or(f64::NAN, |end| end - from);
+        // Interpolation of a wrapped direction must not pass through the other half of the circle.
         let change = if bounds.is_angle { shorter_way(change) } else { change };
         let is_near = change.abs() <= bounds.fastest * duration;
         if inside && duration > 0.0 && duration <= bounds.longest_s && is_near {

@@ -1,6 +1,6 @@
 //! Days of the Gregorian calendar, counted from 1 January 1970.
 
-/// Days before each month of a year that is no leap year.
+/// Number of days before each month of a common year.
 const BEFORE: [i64; 12] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334];
 /// Days from 1 January of the year 1 to 1 January 1970.
 const EPOCH: i64 = 719_162;
@@ -13,6 +13,7 @@ fn is_leap(year: i64) -> bool {
     year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)
 }
 
+/// Day number of 1 January, counted from 1 January 1970.
 fn start_of(year: i64) -> i64 {
     let past = year - 1;
     365 * past + past / 4 - past / 100 + past / 400 - EPOCH
@@ -23,10 +24,11 @@ fn start_of_month(year: i64, month: i64) -> i64 {
     start_of(year) + BEFORE[index] + i64::from(month > 2 && is_leap(year))
 }
 
-/// Years that are read: nothing was recorded before, and nanoseconds between them can be counted.
+/// Years that are read: no trial is older, and the nanoseconds between them fit 64 bits.
 const YEARS: std::ops::RangeInclusive<i64> = 1900..=2150;
 
-/// The day of a date; none for a date that there is not, or of another age.
+/// Returns the day of a date, counted from 1970; `None` for a date that does not exist or is out of
+/// range.
 pub(crate) fn day(year: i64, month: i64, of_month: i64) -> Option<i64> {
     if !YEARS.contains(&year) || !(1..=12).contains(&month) || of_month < 1 {
         return None;
@@ -36,8 +38,9 @@ pub(crate) fn day(year: i64, month: i64, of_month: i64) -> Option<i64> {
     (of_month <= next - start).then_some(start + of_month - 1)
 }
 
-/// Year, month and day of the month.
+/// Returns year, month and day of the month.
 pub(crate) fn date(day: i64) -> (i64, i64, i64) {
+    // Division by 366 never overestimates the year; the loop corrects the rest.
     let mut year = (day + EPOCH) / 366 + 1;
     while start_of(year + 1) <= day {
         year += 1;
@@ -46,7 +49,7 @@ pub(crate) fn date(day: i64) -> (i64, i64, i64) {
     (year, month, day - start_of_month(year, month) + 1)
 }
 
-/// `2024-05-01T12:00:03.25`, from nanoseconds since 1970.
+/// Formats nanoseconds since 1970 as `2024-05-01T12:00:03.25`.
 pub(crate) fn iso(instant: i64) -> String {
     let ((year, month, of_month), rest) = (date(instant.div_euclid(DAY)), instant.rem_euclid(DAY));
     let seconds = rest / SECOND;

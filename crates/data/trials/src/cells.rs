@@ -1,30 +1,30 @@
-//! Whether every row of a CSV file has as many cells as its header.
+//! Check that every row of a CSV file has as many cells as its header.
 //!
-//! A row with another count is an error: its numbers may stand under the wrong headings. There are
-//! two exceptions in which none can. One more empty cell at the end of *every* row (a separator
-//! that closes each line, the header's left out) is passed over, unless a decimal comma could
-//! explain it: that is where commas separate and no number has a point. And a row with too few
-//! cells is left out, with a warning, where the manifest says `missing: drop`.
+//! A row with another count is an error: its numbers may be under the wrong headings. There are two
+//! exceptions where they cannot be. One more empty cell at the end of *every* row (a separator that
+//! closes each line but not the header) is accepted, unless a decimal comma could explain it: that
+//! is where commas separate and no number has a point. And a row with too few cells is excluded,
+//! with a warning, if the manifest says `missing: drop`.
 
 use csv::ByteRecord;
 
 use crate::findings::Findings;
 
-/// Rows named in one message.
+/// Largest number of rows named in one message.
 const NAMED: usize = 5;
 
-/// What is to be done with a row.
+/// Result of the count of the cells of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Cells {
-    /// It is read.
+    /// The row is read.
     Fit,
-    /// It is not: it ends too early.
+    /// The row is not read: it has too few cells.
     Few(usize),
-    /// It is not: it has cells that no heading names.
+    /// The row is not read: it has cells without a heading.
     Many,
 }
 
-/// Rows of one kind: the first few, and how many.
+/// Rows with one kind of wrong count: the first few, their number, and the last.
 #[derive(Debug, Default)]
 struct Rows {
     first: Vec<(usize, usize)>,
@@ -40,7 +40,7 @@ pub(crate) struct Counter {
     exact: bool,
     point: bool,
     decimal_commas: usize,
-    /// Rows that are closed by one separator more than the header.
+    /// Rows with one more separator than the header.
     closed: Rows,
     few: Rows,
     many: Rows,
@@ -76,7 +76,7 @@ impl Rows {
 }
 
 impl Counter {
-    /// For a file with so many headings.
+    /// Creates a counter for a file with the given number of headings.
     pub(crate) fn new(separator: u8, width: usize) -> Self {
         let none = Rows::default;
         Self {
@@ -94,6 +94,7 @@ impl Counter {
     /// Counts one row.
     pub(crate) fn row(&mut self, row: usize, record: &ByteRecord) -> Cells {
         let count = record.len();
+        // A decimal point anywhere shows that commas are no decimal marks.
         self.point = self.point || record.as_slice().contains(&b'.');
         if count == self.width {
             self.exact = true;
@@ -103,6 +104,7 @@ impl Counter {
             self.few.add(row, count);
             return Cells::Few(count);
         }
+        // One empty cell more may be a separator at the end of every line.
         if count == self.width + 1
             && record.get(self.width).is_some_and(|cell| cell.trim_ascii().is_empty())
         {
@@ -115,8 +117,8 @@ impl Counter {
         Cells::Many
     }
 
-    /// Tells every row whose count is wrong; those with too few cells only where they are not left
-    /// out.
+    /// Reports every row with a wrong count; those with too few cells only if they are not
+    /// excluded.
     pub(crate) fn tell(&self, drops: bool, findings: &mut Findings) {
         if self.many.count > 0 {
             let what = match self.decimal_commas {
@@ -141,6 +143,7 @@ impl Counter {
     }
 
     fn is_closed_throughout(&self) -> bool {
+        // Only if every row is closed, and no decimal comma can explain the additional cell.
         let alone = !self.exact && self.few.count == 0 && self.many.count == 0;
         alone && (self.separator != b',' || self.point)
     }
@@ -161,15 +164,17 @@ impl Counter {
     }
 }
 
-/// Whether as many pairs of neighbours as there are cells too many are the halves of a decimal
-/// number.
+/// Returns true if at least as many pairs of neighbouring cells as there are excess cells are the
+/// two halves of a decimal number.
 fn is_decimal_comma(record: &ByteRecord, width: usize) -> bool {
+    // Integer part with an optional sign, then a fraction with an optional exponent.
     let digits = |cell: &[u8]| !cell.is_empty() && cell.iter().all(u8::is_ascii_digit);
     let whole =
         |cell: &[u8]| digits(cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell));
     let fraction =
         |cell: &[u8]| cell.split(|byte| matches!(byte, b'e' | b'E')).next().is_some_and(digits);
     let cells: Vec<&[u8]> = record.iter().map(<[u8]>::trim_ascii).collect();
+    // Pairs do not overlap: a matched pair takes two cells.
     let (mut pairs, mut k) = (0, 0);
     while k + 1 < cells.len() {
         let pair = whole(cells[k]) && fraction(cells[k + 1]);

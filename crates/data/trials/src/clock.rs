@@ -1,5 +1,5 @@
-//! The time column: seconds, serial days, or dates and times of day; all become seconds since the
-//! first row.
+//! Conversion of the time column: seconds, serial days, or dates and times of day, to seconds since
+//! the first row.
 
 use crate::calendar::{SECOND, iso};
 use crate::findings::Findings;
@@ -8,36 +8,37 @@ use crate::open_dates::OpenDates;
 use crate::stamp::{Date, Order, Stamp, stamp};
 use crate::table::{Column, Start, Table, Target};
 
-/// Hours that a time of day must fall by for it to be another day's; less is a row out of order.
+/// Decrease of a time of day, ns, from which the row belongs to the next day; with less it is out
+/// of order.
 const MIDNIGHT: i64 = 12 * 3600 * SECOND;
 /// Seconds of a day.
 const DAY_S: f64 = 86_400.0;
-/// What Excel and MATLAB count days from, in days since 1970.
+/// Origin of the day numbers of Excel and of MATLAB, in days since 1970.
 const EXCEL: f64 = -25_569.0;
 const MATLAB: f64 = -719_529.0;
-/// Days between which a column is taken for Excel's (years 1954 to 2118), and its longest step on
-/// average, days: seconds since midnight are as large, but not as close.
+/// Range of numbers that may be days of Excel (years 1954 to 2118), and their largest average step,
+/// days: seconds since midnight are as large, but further apart.
 const SERIAL: std::ops::Range<f64> = 20_000.0..80_000.0;
 const SERIAL_STEP: f64 = 0.002;
 
-/// Units of a time column that are written as text, in a column declared so or found so.
+/// Units of a time column that is written as text, whether declared or detected.
 const WRITTEN: [&str; 5] = ["auto", "timestamp", "day/month/year", "month/day/year", "hh:mm:ss"];
 
-/// Reads the cells of the time column, in the order of the file.
+/// Reader of the cells of the time column, in the order of the file.
 #[derive(Debug, Default)]
 pub(crate) struct Clock {
     unit: String,
-    /// What the first cell was.
+    /// Form of the first cell, which all others must share.
     form: Option<Form>,
-    /// The first day, which others are counted from to keep the numbers small.
+    /// First day; days are counted from it to keep the numbers small.
     first_day: i64,
-    /// Time of day of the row before, and midnights since the first.
+    /// Time of day of the previous row, ns, and midnights since the first row.
     before: i64,
     midnights: i64,
     open: OpenDates,
-    /// The first row's number in SI units, where rows are told one by one.
+    /// Number of the first row in SI units, where rows are converted one by one.
     origin: Option<f64>,
-    /// Of a table whose time has been counted.
+    /// Start of a table whose time is already in seconds.
     counted: Option<Start>,
 }
 
@@ -50,13 +51,13 @@ enum Form {
 }
 
 impl Clock {
-    /// For the columns of a file, one of which is time.
+    /// Creates the clock for the columns of a file, one of which is time.
     pub(crate) fn of(columns: &[Column]) -> Self {
         let time = columns.iter().find(|column| column.target == Target::Time);
         Self { unit: time.map_or(String::new(), |column| column.unit.clone()), ..Self::default() }
     }
 
-    /// Of a table whose time has been counted.
+    /// Creates the clock of a table whose time is already in seconds.
     pub(crate) fn counted(start: Option<Start>) -> Self {
         Self { counted: start, ..Self::default() }
     }
@@ -65,18 +66,20 @@ impl Clock {
         WRITTEN.contains(&self.unit.as_str())
     }
 
-    /// The number that stands for a cell: as written, or seconds since the first row's midnight.
+    /// Converts a cell to a number: as written, or seconds since midnight of the first row's day.
     pub(crate) fn cell(&mut self, row: usize, cell: &[u8]) -> Result<f64, Fault> {
         let plain = number(cell);
         if !self.is_written() || matches!(plain, Err(Fault::Empty | Fault::NotANumber)) {
             return plain;
         }
         let stamp = std::str::from_utf8(cell).ok().and_then(|text| stamp(text, self.order()));
+        // With unit `auto` a plain number wins over a date such as 20240501.
         let form = match (&plain, stamp) {
             (Ok(_), _) if self.unit == "auto" => Form::Number,
             (_, Some(stamp)) => Form::of(stamp),
             _ => return Err(Fault::NoTime(shown(cell))),
         };
+        // All cells must have the form of the first.
         let first = self.form.is_none();
         let fits = form == *self.form.get_or_insert(form);
         if !fits || (self.unit == "hh:mm:ss" && form != Form::OfDay) {
@@ -97,6 +100,7 @@ impl Clock {
         let day = match stamp.date {
             Date::Known(day) => day,
             Date::Either(date) => self.open.slot(row, date),
+            // A time of day without a date: a large decrease means that midnight has passed.
             Date::Absent => {
                 self.midnights += i64::from(!first && self.before - stamp.of_day > MIDNIGHT);
                 self.before = stamp.of_day;
@@ -109,19 +113,20 @@ impl Clock {
         stamp.seconds(day - self.first_day)
     }
 
-    /// Seconds as the table will have them, of a number in SI units; nothing where only the whole
-    /// column tells. Called for every row from the first on.
+    /// Returns the time in the table, s, of a number in SI units; `None` if it depends on the whole
+    /// column. To be called for every row, from the first on.
     pub(crate) fn since_start(&mut self, value: f64) -> Option<f64> {
         let origin = *self.origin.get_or_insert(value);
         match self.form.unwrap_or(Form::Number) {
             Form::OpenDate { .. } => None,
+            // Numbers in the range of Excel's days are only known from the whole column.
             Form::Number if self.unit == "auto" => (!SERIAL.contains(&origin)).then_some(value),
             Form::Number if !is_serial(&self.unit) => Some(value),
             _ => Some(value - origin),
         }
     }
 
-    /// Whether only the whole column tells what its times are.
+    /// Returns true if the times can only be read once the whole column is known.
     pub(crate) fn is_open(&self) -> bool {
         match self.form {
             Some(Form::OpenDate { .. }) => true,
@@ -133,7 +138,7 @@ impl Clock {
         }
     }
 
-    /// What time zero is in the calendar, once the first row was told.
+    /// Returns the calendar time of time zero, once the first row is read.
     pub(crate) fn start(&self) -> Option<Start> {
         self.counted.clone().or_else(|| self.calendar(self.origin?))
     }
@@ -143,6 +148,7 @@ impl Clock {
             Form::Dated { zoned } => Some(instant(self.first_day, first, zoned)),
             Form::OfDay => {
                 let mut start = instant(0, first, false);
+                // Only the time of day is known: the date is removed from the text.
                 start.text = start.text.split_off("1970-01-01T".len());
                 start.dated = false;
                 Some(start)
@@ -152,7 +158,8 @@ impl Clock {
         }
     }
 
-    /// Counts the table's time from the first row, and says what it was taken for.
+    /// Converts the time of the table to seconds since its first row, and reports the form that was
+    /// read.
     pub(crate) fn finish(&mut self, table: &mut Table, findings: &mut Findings) {
         let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
             return;
@@ -162,6 +169,7 @@ impl Clock {
             return;
         }
         let read = self.read_as(&header, values).and_then(|read| {
+            // Differences of extreme times may not be finite.
             let counted = values.iter().all(|value| value.is_finite());
             counted.then_some(read).ok_or_else(|| "holds times too far apart to be counted".into())
         });
@@ -177,8 +185,8 @@ impl Clock {
         }
     }
 
-    /// Turns the numbers into seconds since the first; says what they were, and what the first is
-    /// in the calendar.
+    /// Converts the numbers to seconds since the first; returns their form, and the calendar time
+    /// of the first.
     fn read_as(
         &mut self,
         header: &str,
@@ -217,7 +225,7 @@ impl Clock {
         mut first: f64,
     ) -> (&'static str, Option<Start>) {
         let is_auto = self.unit == "auto";
-        // Rows that were told one by one are seconds.
+        // Rows that were converted one by one are in seconds already.
         if is_auto && (self.origin.is_some() || !looks_serial(header, values)) {
             return ("seconds, as no unit is declared", None);
         }
@@ -229,7 +237,7 @@ impl Clock {
         self.days(first)
     }
 
-    /// What days or seconds of another calendar are, and the first of them.
+    /// Returns the name of the calendar in which days or seconds are counted, and the start.
     fn days(&self, first: f64) -> (&'static str, Option<Start>) {
         let (name, epoch) = match self.unit.as_str() {
             "matlab" => ("MATLAB's days", MATLAB),
@@ -237,7 +245,7 @@ impl Clock {
             _ => ("Excel's days", EXCEL),
         };
         let start = first + epoch * DAY_S;
-        // Beyond the years that are read nothing is said of it.
+        // Outside the years that are read, no start is given.
         let known = (-2.2e9..5.7e9).contains(&start);
         let start = known.then(|| instant(0, (start * 1e6).round() / 1e6, false));
         (name, start)
@@ -259,8 +267,7 @@ fn is_serial(unit: &str) -> bool {
     matches!(unit, "excel" | "matlab" | "unix")
 }
 
-/// Whether numbers without a unit can be nothing but Excel's days: header, size and distance all
-/// say so.
+/// Returns true if numbers without a unit can only be days of Excel, by header, size and step.
 pub(crate) fn looks_serial(header: &str, values: &[f64]) -> bool {
     let name = header.to_lowercase();
     let step = (values[values.len() - 1] - values[0]) / values.len() as f64;
@@ -269,13 +276,15 @@ pub(crate) fn looks_serial(header: &str, values: &[f64]) -> bool {
         && step < SERIAL_STEP
 }
 
-/// Seconds since a first, to so many parts of a second: what the form can tell apart.
+/// Subtracts the first value and rounds to the given number of parts of a second, the resolution of
+/// the form.
 fn from(values: &mut [f64], first: f64, parts: f64) {
     values.iter_mut().for_each(|value| *value = ((*value - first) * parts).round() / parts);
 }
 
 fn instant(day: i64, seconds: f64, zoned: bool) -> Start {
     let whole = seconds.floor();
+    // Rounded to microseconds, in nanoseconds.
     let fraction = ((seconds - whole) * 1e6).round() * 1e3;
     let nanoseconds = (whole as i64 + day * 86_400) * SECOND + fraction as i64;
     let text = format!("{}{}", iso(nanoseconds), if zoned { "Z" } else { "" });

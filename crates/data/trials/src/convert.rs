@@ -1,4 +1,4 @@
-//! The one place where a file's signs become the canonical ones.
+//! Conversion of the signs of a file to the canonical ones, done here only.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,7 +12,7 @@ use crate::pairs::means;
 use crate::recording::Recording;
 use crate::table::{Table, Target};
 
-/// Applies the conventions: rudder sign, wind direction, continuous heading.
+/// Converts a table to a recording, with rudder sign, wind direction and continuous heading.
 pub(crate) fn convert(
     name: &str,
     table: Table,
@@ -50,6 +50,8 @@ pub(crate) fn convert(
             Target::Unidentified(_) => {}
         }
     }
+    // Means of port and starboard are formed in the signs of the file, and converted like any
+    // channel.
     for (channel, mut values) in means(&mut recording, findings) {
         sign(channel, &mut values, mapping, &recording, findings);
         recording.trial.channels.insert(channel, values);
@@ -70,6 +72,8 @@ fn sign(
             values.iter_mut().for_each(|value| *value = -*value);
         }
         Channel::Psi => {
+            // The unit is checked before unwrapping, which would hide the jump of a heading in
+            // degrees.
             degree_wrap(values, recording, findings);
             if let (North::Magnetic, Some(variation)) = (declared.heading, declared.variation_deg) {
                 values.iter_mut().for_each(|value| *value += variation.to_radians());
@@ -85,8 +89,8 @@ fn sign(
     }
 }
 
-/// Removes jumps of more than half a turn. The first value stays, and so does a heading that is
-/// already continuous.
+/// Removes jumps of more than half a turn. The first value and a heading that is already continuous
+/// stay as they are.
 fn unwrap_heading(values: &mut [f64]) {
     let mut turns = 0.0;
     let mut before = values.first().copied().unwrap_or(0.0);
@@ -100,14 +104,15 @@ fn unwrap_heading(values: &mut [f64]) {
     }
 }
 
-/// Into [0, 2 pi).
+/// Wraps an angle into [0, 2 pi).
 fn wrap(angle: f64) -> f64 {
     let wrapped = angle.rem_euclid(TAU);
     // A tiny negative angle rounds up to a full turn.
     if wrapped >= TAU { 0.0 } else { wrapped }
 }
 
-/// A step of about 360 "rad" between two samples is a compass passing north in degrees.
+/// Reports a heading that jumps by about 360 "rad" between two samples: a compass in degrees that
+/// passes north.
 fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
     let jump =
         (1..values.len()).find(|&k| (300.0..=361.0).contains(&(values[k] - values[k - 1]).abs()));
@@ -123,7 +128,7 @@ fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// No wind direction needs two full turns in radians.
+/// Reports a wind direction of more than two turns, which must be in degrees.
 fn degree_wind(channel: Channel, values: &[f64], recording: &Recording, findings: &mut Findings) {
     if let Some(k) = values.iter().position(|value| value.abs() > 2.0 * TAU) {
         let message = format!(

@@ -19,30 +19,30 @@ use crate::stream;
 use crate::table::{Column, Table, Target, width};
 use crate::taker::{RowsFile, Taker, time_at};
 
-/// Bytes that are asked for at once while the header is looked for.
+/// Number of bytes that are read at a time in the search for the header.
 const CHUNK: u64 = 4096;
 
-/// Reads the mapped columns; nothing after errors that leave nothing to check.
+/// Reads the mapped columns; returns `None` after errors that prevent any check.
 ///
-/// A row's number is that of the line in which it starts, as an editor shows it: the first line is
-/// 1, blank lines count, and so do those within quoted cells.
+/// The number of a row is that of the line in which it starts, as an editor shows it: the first
+/// line is 1, and blank lines and those within quoted cells count.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
     stream::whole(CsvRows::open(input, mapping, findings)?, mapping, findings)
 }
 
-/// The rows of a CSV file whose header has been read.
+/// Rows of a CSV file whose header has been read.
 pub(crate) struct CsvRows<R> {
     reader: csv::Reader<Blanks<Chain<Cursor<Vec<u8>>, Metered<R>>>>,
     meter: Meter,
     columns: Vec<Column>,
     room: usize,
     cells: Reading,
-    /// Where and why it cannot be read on.
+    /// Row and reason at which reading stopped.
     stopped: Option<(usize, String)>,
 }
 
 impl<R: Read> CsvRows<R> {
-    /// Reads the header; nothing after errors.
+    /// Reads the header; returns `None` after errors.
     pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
         let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
         let start = start(&mut metered, &meter, mapping, findings)?;
@@ -50,6 +50,7 @@ impl<R: Read> CsvRows<R> {
         let whole = Cursor::new(layout::body(&start, &layout)).chain(metered);
         let mut reader = opened(whole, layout.separator);
         let headers = headers(&mut reader, mapping, findings)?;
+        // The header is no part of the first row's length.
         meter.reset();
         let columns = resolve_heading(heading(&headers, &layout), mapping, findings)?;
         let cells = Reading {
@@ -88,13 +89,14 @@ impl<R: Read> RowsFile for CsvRows<R> {
     }
 }
 
-/// The most rows that there can be, and the columns that are read; none where the header is no
-/// good.
+/// Returns an upper bound of the number of rows, and the number of columns that are read; `None` if
+/// the header is invalid.
 pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
     let (mut rows, mut before, mut start) = (1, 0, Vec::new());
     input.by_ref().take(mapping.limits.line_bytes as u64).read_to_end(&mut start).ok()?;
     let columns = columns(&start[..], mapping)?;
     let mut buffer = vec![0; 64 << 10];
+    // Every line end counts, `\r\n` once; quoted cells can only make the number of rows smaller.
     let mut count = |bytes: &[u8]| {
         for &byte in bytes {
             rows += usize::from(byte == b'\r' || (byte == b'\n' && before != b'\r'));
@@ -110,7 +112,7 @@ pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize,
     }
 }
 
-/// How many columns of the file that starts like this are read.
+/// Returns the number of columns that are read of a file with this start.
 fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
     let mut findings = Findings::default();
     let layout = layout::find(start, mapping);
@@ -131,8 +133,8 @@ fn heading<'a>(names: &'a [String], layout: &'a Layout) -> Heading<'a> {
     Heading { names, units: &layout.units, row: layout.lines + 1 }
 }
 
-/// The file up to the line below the header at least, however small the pieces are in which it
-/// comes.
+/// Reads the file at least up to the line below the header, however small the pieces that the
+/// reader returns.
 fn start(
     input: &mut impl Read,
     meter: &Meter,
@@ -158,7 +160,7 @@ fn start(
         {
             return Some(start);
         }
-        // Lines before the header are no row without an end.
+        // Lines before the header are complete rows for the limit of their length.
         if start[start.len() - read..].contains(&b'\n') {
             meter.reset();
         }
@@ -189,13 +191,13 @@ fn headers(
     None
 }
 
-/// What is learned row by row.
+/// State of reading that changes from row to row.
 struct Reading {
-    /// Lines of the file before those that are read; less than none where a header was made.
+    /// Number of lines before those that are read; negative if a header was added.
     shift: isize,
-    /// Rows that are read at most.
+    /// Largest number of rows that are read.
     most: usize,
-    /// Whether the first row is one of units.
+    /// True if the first row holds units.
     units: bool,
     /// The column of time.
     time: Option<Column>,
@@ -205,7 +207,7 @@ struct Reading {
 }
 
 impl Reading {
-    /// Gives every row away; stops with row and reason at what cannot be read on.
+    /// Passes every row to the sink; returns the row and the reason if reading cannot continue.
     fn rows(
         &mut self,
         reader: &mut csv::Reader<impl Read>,
@@ -214,6 +216,8 @@ impl Reading {
     ) -> Result<(), (usize, String)> {
         let mut record = ByteRecord::new();
         loop {
+            // The position before the record, for messages: after an error it no longer names the
+            // row.
             let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX);
             let next = next.saturating_add_signed(self.shift);
             let more = reader
@@ -233,7 +237,7 @@ impl Reading {
         }
     }
 
-    /// Gives a row away; false where that would be one too many.
+    /// Passes a row to the sink; returns false if it exceeds the number of rows.
     fn row<T: Taker>(&mut self, row: usize, record: &ByteRecord, taker: &mut T) -> bool {
         match self.counter.row(row, record) {
             Cells::Fit if T::TIMED => return self.timed(row, record, taker),
@@ -245,8 +249,9 @@ impl Reading {
         true
     }
 
-    /// Tells the time of a row, and gives it where it is wanted.
+    /// Converts the time of a row, and passes the row on if the sink accepts it.
     fn timed(&mut self, row: usize, record: &ByteRecord, taker: &mut impl Taker) -> bool {
+        // Taken out and put back, since `read_cell` borrows `self` mutably.
         let Some(column) = self.time.take() else { return true };
         let time = self.cell(row, record, &column);
         let si = time.as_ref().ok().map(|time| time * column.to_si);
@@ -276,8 +281,8 @@ impl Reading {
     }
 }
 
-/// The line in which the record that was just read starts. Its end is known: one line end after it,
-/// and those inside.
+/// Returns the line in which the record just read starts: its end is the current line, less one
+/// line end after it and those within it.
 fn line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
     let inside = record.as_slice().iter().filter(|&&byte| byte == b'\n').count();
     usize::try_from(reader.position().line()).unwrap_or(usize::MAX).saturating_sub(1 + inside)

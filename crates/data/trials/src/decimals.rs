@@ -1,10 +1,10 @@
-//! Numbers with a decimal comma, in files whose cells a comma does not separate.
+//! Numbers with a decimal comma, in files whose separator is not a comma.
 
 use std::borrow::Cow;
 
 use crate::findings::Findings;
 
-/// Which of the two marks a file has used so far, with the row of the first.
+/// Decimal marks that a file has used so far, with the row of the first of each.
 #[derive(Debug, Default)]
 pub(crate) struct Decimals {
     commas: bool,
@@ -14,10 +14,11 @@ pub(crate) struct Decimals {
 
 impl Decimals {
     pub(crate) fn new(separator: u8) -> Self {
+        // Where commas separate cells, they are no decimal marks.
         Self { commas: separator != b',', ..Self::default() }
     }
 
-    /// The cell with a point, where a comma can only be a decimal one.
+    /// Returns the cell with a decimal point, where a comma can only be a decimal mark.
     pub(crate) fn point<'a>(&mut self, row: usize, cell: &'a [u8]) -> Cow<'a, [u8]> {
         if !self.commas || !is_plain(cell) {
             return Cow::Borrowed(cell);
@@ -36,7 +37,7 @@ impl Decimals {
         }
     }
 
-    /// Says that commas were read as decimal ones, or that the file has points, too.
+    /// Reports that commas were read as decimal marks, or that the file has points, too.
     pub(crate) fn tell(&self, findings: &mut Findings) {
         match (self.comma, self.point) {
             (Some(comma), Some(point)) => {
@@ -56,7 +57,7 @@ impl Decimals {
     }
 }
 
-/// A number with one mark at most, and no two different ones: `1.234,5` stays what it is.
+/// Returns true for a number with exactly one mark: `1.234,5` is ambiguous and not changed.
 fn is_plain(cell: &[u8]) -> bool {
     let cell = cell.trim_ascii();
     let part = |byte: &u8| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' | b',' | b'.');

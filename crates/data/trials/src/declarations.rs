@@ -1,4 +1,4 @@
-//! What a manifest declares of its files beyond columns, signs and frames.
+//! Declarations of a manifest on its files, besides columns, signs and frames.
 
 use std::collections::BTreeMap;
 
@@ -8,80 +8,81 @@ use sistership_model::manifest::ColumnMapping;
 
 use crate::exclusion::Exclusion;
 
-/// Everything that the reader cannot know of a file unless it is declared.
+/// Properties of a file that the reader cannot know unless they are declared.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Declarations {
-    /// Columns that are not wanted, and not listed as left out.
+    /// Columns that are not needed, and not reported as unused.
     pub ignore: Vec<String>,
-    /// The sheet of a workbook; absent for the first that has a table.
+    /// Sheet of a workbook; by default the first that contains a table.
     pub sheet: Option<String>,
-    /// Which north headings and courses are counted from.
+    /// North reference of headings and courses.
     pub heading: North,
-    /// Magnetic variation, deg, positive to the east: what is added to a magnetic heading.
+    /// Magnetic variation, deg, positive to the east; it is added to a magnetic heading.
     pub variation_deg: Option<f64>,
-    /// What 100 % of a channel is.
+    /// Value of a channel at 100 %.
     pub maximum: BTreeMap<String, Maximum>,
-    /// Where positions were measured aboard.
+    /// Position of the antenna on board.
     pub antenna: Option<Antenna>,
-    /// Channels to be derived of position and heading where they were not measured: `u`, `v`, `r`.
+    /// Channels to be derived from position and heading where they were not measured: `u`, `v`,
+    /// `r`.
     pub derive: Vec<Derivable>,
-    /// What is left out of files as faulty.
+    /// Values and rows that are excluded as faulty.
     pub exclude: Vec<Exclusion>,
 }
 
-/// Which north a heading is counted from.
+/// North reference of a heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum North {
-    /// The geographic one.
+    /// Geographic north.
     #[default]
     True,
-    /// The one that a magnetic compass shows.
+    /// North of a magnetic compass.
     Magnetic,
 }
 
-/// A full value.
+/// Value of a channel at 100 %.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Maximum {
-    /// How much.
+    /// Value in the given unit.
     pub value: f64,
-    /// In which unit.
+    /// Unit of the value.
     pub unit: String,
 }
 
-/// Where an antenna stands.
+/// Position of an antenna on board.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Antenna {
-    /// Forward of midship, m.
+    /// Distance forward of midship, m.
     pub x_m: f64,
-    /// To starboard of the centre line, m.
+    /// Distance to starboard of the centre line, m.
     pub y_m: f64,
 }
 
-/// A channel that can be derived of others.
+/// Channel that can be derived from others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Derivable {
-    /// Surge velocity, of positions and heading.
+    /// Surge velocity, from positions and heading.
     U,
-    /// Sway velocity, of positions and heading.
+    /// Sway velocity, from positions and heading.
     V,
-    /// Yaw rate, of the heading.
+    /// Yaw rate, from the heading.
     R,
 }
 
-/// A file of one sensor.
+/// File of one sensor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorFile {
     /// Path, relative to the manifest.
     pub file: String,
-    /// Its columns, as of the manifest.
+    /// Columns of the file, as in the manifest.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub columns: BTreeMap<String, ColumnMapping>,
-    /// What is added to its time to have that of the trial's first file, s.
+    /// Offset, s, added to the time of the sensor to obtain the time of the trial's first file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clock_offset_s: Option<f64>,
 }

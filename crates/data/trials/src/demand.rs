@@ -1,4 +1,4 @@
-//! How much memory reading a trial takes, found before it is read.
+//! Estimate of the memory for reading a trial, before it is read.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -15,34 +15,34 @@ use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
 use crate::source::{Content, Source};
 
-/// Bytes that what a Parquet file says of itself takes in memory, by each that it has in the file:
-/// an assumption on the safe side, since numbers of a few bytes become fields of eight.
+/// Bytes in memory for each byte of the footer of a Parquet file: a conservative assumption, since
+/// numbers of a few bytes become fields of eight.
 const BY_FOOTER: u64 = 12;
-/// Bytes that a workbook takes, by each that it has when unpacked: shared strings of a few bytes
-/// take three times as many, and each number of twenty characters is one of eight bytes beside its
-/// row.
+/// Bytes in memory for each unpacked byte of a workbook: shared strings of a few bytes take three
+/// times as many, and a number of twenty characters becomes eight bytes and its row.
 const UNPACKED: u64 = 3;
-/// What every file takes: buffers, findings, counts of digits.
+/// Bytes for every file: buffers, findings, counts of digits.
 const EVERY: u64 = 1 << 20;
 
-/// What reading a trial takes.
+/// Memory for reading a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Demand {
-    /// Rows, at most.
+    /// Upper bound of the number of rows.
     pub rows: usize,
-    /// Columns that are kept, time among them.
+    /// Number of columns that are kept, time included.
     pub columns: usize,
     /// Bytes of memory, from opening the file to writing its samples.
     pub bytes: u64,
 }
 
-/// What [`demand`] itself takes, bytes.
+/// Returns the memory that [`memory_demand`] itself needs, bytes.
 ///
 /// # Errors
-/// The file cannot be read.
+/// Returns an error if the file cannot be read.
 pub fn measuring(path: &Path) -> io::Result<u64> {
     let mut file = File::open(path)?;
     let mut end = [0; 8];
+    // A Parquet file ends with the length of its footer (four bytes) and `PAR1`.
     let footer = match file.seek(SeekFrom::End(-8)).and_then(|_| file.read_exact(&mut end)) {
         Ok(()) if end.ends_with(b"PAR1") => {
             u64::from(u32::from_le_bytes([end[0], end[1], end[2], end[3]]))
@@ -52,11 +52,12 @@ pub fn measuring(path: &Path) -> io::Result<u64> {
     Ok(EVERY / 4 + BY_FOOTER * footer.min(crate::Limits::default().footer_bytes as u64))
 }
 
-/// What [`crate::read_trial`] takes of a file, and then [`crate::samples::write_parquet`]. Of a
-/// file that will be refused it says what finding this out takes.
+/// Returns the memory that [`crate::read_trial`] needs for a file, and then
+/// [`crate::samples::write_parquet`]. For a file that will be refused, it is the memory needed to
+/// find this out.
 ///
 /// # Errors
-/// The file cannot be read.
+/// Returns an error if the file cannot be read.
 pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     let (size, holding) = match Source::open("", path)?.content {
         Content::Csv(input) => {
@@ -65,7 +66,7 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
         Content::ParquetFile(file) => of_parquet(&file, mapping),
         Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
         Content::Workbook(mut input) => {
-            // What is damaged is refused before anything is unpacked.
+            // A damaged archive is refused before anything is unpacked, and needs no memory.
             let claimed = archive::claimed(&mut input).unwrap_or(0);
             (None, UNPACKED * claimed.min(mapping.limits.unpacked_bytes as u64))
         }
@@ -75,10 +76,10 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     };
     let (rows, columns) = size.unwrap_or_default();
     let rows = rows.min(mapping.limits.rows);
-    // Numbers, the row of each, whether the ship has way ahead, and one column more: the steps of
-    // time while their median is found, later a smoothed column before it takes the other's place.
+    // Per row: the numbers, the row number, the flag of way ahead, and one more column: first the
+    // steps of time for their median, later a smoothed column before it replaces the original.
     let row = 8 * columns as u64 + 5 + 8 + deriving(mapping);
-    // A column as it is compressed.
+    // A column in compressed form.
     let writing = 8 * rows.min(GROUP_ROWS) as u64;
     Ok(Demand {
         rows,
@@ -87,11 +88,11 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     })
 }
 
-/// As [`demand`], of a file with the sensors' that belong to the same trial: all are held until
-/// they are on one time base.
+/// Returns the memory for a file and the sensor files of the same trial, which are all in memory
+/// until they are on one time base.
 ///
 /// # Errors
-/// A file cannot be read.
+/// Returns an error if a file cannot be read.
 pub fn demand_of_trial(
     path: &Path,
     mapping: &Mapping,
@@ -100,15 +101,15 @@ pub fn demand_of_trial(
     let mut whole = demand(path, mapping)?;
     for (sensor, path) in sensors {
         let own = demand(path, &mapping.of_sensor(sensor))?;
-        // Its columns by its own rows, and once more by the trial's.
+        // The columns of the sensor once with its own rows, and once with the rows of the trial.
         whole.bytes += own.bytes + 8 * (own.columns * whole.rows) as u64;
         whole.columns += own.columns;
     }
     Ok(whole)
 }
 
-/// Bytes for each row that deriving channels takes: a state and its covariance, what is smoothed of
-/// three quantities, and values and variances of what comes of it.
+/// Returns the bytes for each row that the derivation of channels needs: a state and its
+/// covariance, the smoothed values of three quantities, and values and variances of the result.
 fn deriving(mapping: &Mapping) -> u64 {
     match mapping.declared.derive.len() as u64 {
         0 => 0,

@@ -1,4 +1,4 @@
-//! Surge, sway and yaw rate where they were not measured: rates of positions and heading.
+//! Derivation of surge, sway and yaw rate from positions and heading, where they were not measured.
 
 use std::ops::Range;
 
@@ -12,10 +12,10 @@ use crate::smoother::{Noise, Smoothed, choose, smooth};
 use crate::stats::quantile;
 use crate::water::is_water_only;
 
-/// Samples below which a stretch without a gap tells no rate.
+/// Minimum number of samples of a segment without gaps for its rates to be derived.
 const FEWEST: usize = 8;
 
-/// Derives what is declared and was not measured.
+/// Derives the yaw rate from the heading if it is declared and was not measured.
 pub(crate) fn yaw_rate(recording: &mut Recording, wanted: &[Derivable], findings: &mut Findings) {
     if !wanted.contains(&Derivable::R) || measured(recording, Channel::R, findings) {
         return;
@@ -28,14 +28,15 @@ pub(crate) fn yaw_rate(recording: &mut Recording, wanted: &[Derivable], findings
     insert(recording, Channel::R, rates.unzip(), noise, findings);
 }
 
-/// Derives `u` and `v` of the track, turned by the heading.
+/// Derives `u` and `v` from the track, rotated by the heading, if declared and not measured.
 pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findings: &mut Findings) {
     let pairs = [(Derivable::U, Channel::U), (Derivable::V, Channel::V)];
     let open: Vec<Channel> = pairs
         .into_iter()
         .filter(|&(name, channel)| {
             let is_wanted = wanted.contains(&name)
-                // One velocity over the ground beside one through the water would be no motion.
+                // One velocity over the ground and one through the water do not describe one
+                // motion, so that both are derived.
                 || (is_water_only(recording, channel) && derives_velocity(wanted));
             is_wanted && !measured(recording, channel, findings)
         })
@@ -65,13 +66,15 @@ fn derives_velocity(wanted: &[Derivable]) -> bool {
     wanted.iter().any(|name| matches!(name, Derivable::U | Derivable::V))
 }
 
-/// A velocity along the heading or across it, and its variance: that of the track's rates, and that
-/// of the heading.
+/// Returns a velocity along the heading or across it, and its variance from the rates of the track
+/// and from the heading.
 fn component(along: bool, x: Smoothed, y: Smoothed, psi: Smoothed) -> (f64, f64) {
     let (sin, cos) = psi.value.sin_cos();
     let (ahead, starboard) = (x.rate * cos + y.rate * sin, y.rate * cos - x.rate * sin);
     let (value, other, north, east) =
         if along { (ahead, starboard, cos, sin) } else { (starboard, ahead, sin, cos) };
+    // First-order propagation of variances; the derivative of one component with respect to psi is,
+    // up to its sign, the other component.
     let track = north * north * x.rate_variance + east * east * y.rate_variance;
     (value, track + other * other * psi.value_variance)
 }
@@ -85,7 +88,8 @@ fn measured(recording: &Recording, channel: Channel, findings: &mut Findings) ->
     is_measured
 }
 
-/// Ranges without a gap that are long enough; samples outside are left out of the recording.
+/// Returns the ranges without gaps that are long enough; samples outside are excluded from the
+/// recording.
 fn stretches(
     recording: &mut Recording,
     needed: &[Channel],
@@ -101,10 +105,11 @@ fn stretches(
         findings.error(None, None, message);
         return None;
     }
-    // Time out of order is told by its own check.
+    // Time that does not increase is reported by its own check.
     if recording.time().windows(2).any(|pair| pair[0] >= pair[1]) {
         return None;
     }
+    // Samples of short segments are removed, unless nothing would remain.
     let short = |range: &Range<usize>| range.len() < FEWEST;
     let segments = recording.trial.segments();
     let lost: usize =
@@ -158,6 +163,7 @@ fn insert(
         Channel::R => ("the heading", "rad"),
         _ => ("positions and heading", "m"),
     };
+    // Typical and largest standard deviation over the samples.
     let sd = |share| quantile(variance.iter().map(|variance| variance.sqrt()), share);
     let message = format!(
         "derived of {of}, not measured: a Rauch-Tung-Striebel smoother with white noise of \

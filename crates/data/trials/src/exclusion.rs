@@ -1,4 +1,4 @@
-//! What a manifest leaves out of a file, and why: values of a channel, or whole rows.
+//! Exclusion of values of a channel, or of whole rows, by a manifest, with the reason.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -12,39 +12,41 @@ use crate::findings::Findings;
 use crate::stretches::Stretch;
 use crate::table::{Table, Target};
 
-/// Values that are not used, as faulty.
+/// Values that are excluded as faulty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Exclusion {
-    /// The file, as its trial names it.
+    /// File, as named by its trial.
     pub file: String,
-    /// The channel (`psi`, `latitude`, ...); absent for whole rows.
+    /// Channel (`psi`, `latitude`, ...); by default whole rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channel: Option<String>,
     /// Rows of the file, such as `17, 204-209`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub rows: Option<RowRanges>,
-    /// From this time of the file, where no rows are named.
+    /// Start of the time of the file that is excluded, if no rows are named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<FileTime>,
-    /// To this time of the file.
+    /// End of the time of the file that is excluded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<FileTime>,
-    /// The reason.
+    /// Reason of the exclusion.
     pub why: String,
 }
 
 impl Exclusion {
-    /// Whether another names the same channel of the same file for the same reason.
+    /// Returns true if another exclusion names the same channel of the same file for the same
+    /// reason.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let same =
             (&self.file, &self.channel, &self.why) == (&other.file, &other.channel, &other.why);
         same && self.rows.is_some() && other.rows.is_some()
     }
 
-    /// Adds the rows of another.
+    /// Adds the rows of another exclusion.
     pub(crate) fn add(&mut self, other: &Self) {
+        // Merged row by row, since ranges of both may overlap.
         let mut rows: Vec<u32> = [self, other]
             .iter()
             .filter_map(|one| one.rows.as_ref())
@@ -55,7 +57,7 @@ impl Exclusion {
         self.rows = Some(RowRanges::of_rows(rows));
     }
 
-    /// How many values it takes out, in words: `43 values of psi: spikes`.
+    /// Returns the number of excluded values in words: `43 values of psi: spikes`.
     pub fn summary(&self) -> String {
         let count = self.rows.as_ref().map_or(0, RowRanges::count);
         let what = match &self.channel {
@@ -65,7 +67,7 @@ impl Exclusion {
         format!("{count} {what}: {}", self.why)
     }
 
-    /// What a check says of it.
+    /// Returns the finding that a check reports for these faults.
     pub(crate) fn remark(&self) -> Finding {
         let rows = self.rows.as_ref().map_or(String::new(), |rows| format!(" (rows {rows})"));
         let summary = self.summary();
@@ -116,7 +118,7 @@ impl fmt::Display for RowRanges {
 }
 
 impl RowRanges {
-    /// The ranges of rows in ascending order.
+    /// Returns the ranges of rows in ascending order.
     pub fn of_rows(rows: impl IntoIterator<Item = u32>) -> Self {
         let mut ranges: Vec<RangeInclusive<u32>> = Vec::new();
         for row in rows {
@@ -128,13 +130,13 @@ impl RowRanges {
         Self(ranges)
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     pub fn count(&self) -> usize {
         self.0.iter().map(|range| (range.end() - range.start()) as usize + 1).sum()
     }
 }
 
-/// Takes what is excluded out of a table: values become gaps, whole rows are removed.
+/// Applies exclusions to a table: excluded values become gaps, excluded rows are removed.
 pub(crate) fn exclude(table: &mut Table, exclusions: &[Exclusion], findings: &mut Findings) {
     let mut removed = vec![false; table.rows.len()];
     for exclusion in exclusions {
@@ -161,6 +163,7 @@ pub(crate) fn exclude(table: &mut Table, exclusions: &[Exclusion], findings: &mu
             exclusion.channel.as_deref().map_or("rows".into(), |one| format!("values of {one}"));
         findings.warning(None, None, format!("{count} {what} excluded: {}", exclusion.why));
     }
+    // Rows are removed last, so that the indices of all exclusions refer to the same table.
     remove(table, &removed);
 }
 
@@ -169,9 +172,10 @@ fn position(table: &Table, channel: &str) -> Option<usize> {
     table.columns.iter().position(|column| column.target == target)
 }
 
-/// Samples that an exclusion means.
+/// Returns the ranges of samples that an exclusion refers to.
 fn places(table: &Table, exclusion: &Exclusion) -> Result<Vec<std::ops::Range<usize>>, String> {
     if let Some(rows) = &exclusion.rows {
+        // Row numbers of the file ascend, but rows may be missing: search instead of indexing.
         let at = |row: u32| table.rows.partition_point(|&known| known < row);
         return Ok(rows.0.iter().map(|range| at(*range.start())..at(range.end() + 1)).collect());
     }
@@ -179,6 +183,7 @@ fn places(table: &Table, exclusion: &Exclusion) -> Result<Vec<std::ops::Range<us
     let window = stretch.window(table.start.as_ref()).map_err(|fault| fault.to_string())?;
     let time = table.columns.iter().position(|column| column.target == Target::Time);
     let Some(t) = time.map(|at| &table.values[at]) else { return Ok(Vec::new()) };
+    // Single samples, since times need not be in order yet.
     let inside = (0..t.len()).filter(|&k| window.from_s <= t[k] && t[k] <= window.to_s);
     Ok(inside.map(|k| k..k + 1).collect())
 }
@@ -189,6 +194,7 @@ fn remove(table: &mut Table, removed: &[bool]) {
     }
     let kept = |k: usize| !removed.get(k).copied().unwrap_or(false);
     let mut k = 0;
+    // `retain` visits elements in order: a counter gives the index.
     let mut next = || {
         k += 1;
         kept(k - 1)

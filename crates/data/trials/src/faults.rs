@@ -1,4 +1,4 @@
-//! Faults of a table's values, as a manifest excludes them.
+//! Search for faults of the values of a table, in the form of exclusions of a manifest.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use crate::exclusion::{Exclusion, RowRanges};
 use crate::series::is_angle;
 use crate::table::{Table, Target};
 
-/// Channels and what is their measured rate.
+/// Channels and their measured rates.
 const RATES: [(&str, &str); 2] = [("psi", "r"), ("phi", "p")];
-/// Multiple of the usual largest magnitude that no instrument shows.
+/// Multiple of the usual largest magnitude above which a value is no reading.
 const IMPOSSIBLE: f64 = 3.0;
-/// Part of the largest magnitude that is usual at least, below which a distance is no fault.
+/// Fraction of the lower bound of the usual largest magnitude below which a distance is no fault.
 const LEAST: f64 = 0.1;
 
-/// Faults of every channel, each kind with its rows.
+/// Returns the faults of every channel, one exclusion for each kind of fault with its rows.
 pub(crate) fn find(file: &str, table: &Table) -> Vec<Exclusion> {
     let Some(t) = values_of(table, "t") else { return Vec::new() };
     let mut found: Vec<Exclusion> = Vec::new();
@@ -66,7 +66,7 @@ fn exclusion(
     }
 }
 
-/// Commands step as no ship does: nothing is a fault of theirs.
+/// Returns true for commands and depth, whose sudden steps are no faults.
 fn is_command(role: Role) -> bool {
     matches!(
         role,
@@ -74,6 +74,7 @@ fn is_command(role: Role) -> bool {
     )
 }
 
+/// Positions in a projected grid and headings over many turns may be large.
 fn impossible(role: Role) -> f64 {
     match role {
         Role::X | Role::Y => 1e8,

@@ -1,4 +1,4 @@
-//! Several files: which are trials, and which are sensors of a trial.
+//! Classification of several files into trials, and sensors of a trial.
 
 use std::path::{Path, PathBuf};
 
@@ -7,12 +7,12 @@ use crate::shape::Shape;
 /// A file of a set.
 #[derive(Debug, Clone)]
 pub(crate) struct SetFile {
-    /// As the manifest names it.
+    /// Name in the manifest.
     pub name: String,
     pub folder: PathBuf,
-    /// Its place among the shapes.
+    /// Index of its column set.
     pub shape: usize,
-    /// First and last time, s, of the calendar where it is known.
+    /// First and last time, s, of the calendar where that is known.
     pub span: Option<Span>,
 }
 
@@ -21,24 +21,26 @@ pub(crate) struct SetFile {
 pub(crate) struct Span {
     pub from_s: f64,
     pub to_s: f64,
-    /// Whether it is of the calendar.
+    /// True if the times are calendar times.
     pub is_dated: bool,
 }
 
-/// What a file is of.
+/// Role of a file in a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Part {
     Trial,
-    /// A sensor of the trial at this place among the files.
+    /// A sensor of the trial with this index among the files.
     SensorOf(usize),
 }
 
-/// What each file is. A file with all that a trial needs is one; of others, the one with most
-/// channels in each folder is the trial, and the rest are its sensors: of the trial whose clock
-/// theirs overlaps most, of equals the one that shares most parts of its name.
+/// Returns the role of each file. A file with everything that a trial needs is a trial. If there is
+/// none, the file with most channels in each folder is the trial. Other files are sensors: of the
+/// trial with the largest overlap in time, and among equals of the one that shares most parts of
+/// its name.
 pub(crate) fn parts(files: &[SetFile], shapes: &[Shape]) -> Vec<Part> {
     let complete = |file: &SetFile| shapes[file.shape].is_complete();
     let any = files.iter().any(complete);
+    // Without any complete file, a trial is spread over files: each folder has a base.
     let base = |file: &SetFile| match any {
         true => complete(file),
         false => Some(file.shape) == richest(files, shapes, &file.folder),
@@ -52,14 +54,14 @@ pub(crate) fn parts(files: &[SetFile], shapes: &[Shape]) -> Vec<Part> {
         .collect()
 }
 
-/// The shape with most channels among the files of a folder.
+/// Returns the column set with most channels among the files of a folder.
 fn richest(files: &[SetFile], shapes: &[Shape], folder: &Path) -> Option<usize> {
     let here = files.iter().filter(|file| file.folder == folder).map(|file| file.shape);
-    // Of equals the first.
+    // `max_by_key` returns the last of equals: reversed, it is the first.
     here.rev().max_by_key(|&shape| shapes[shape].channels())
 }
 
-/// The trial that a sensor belongs to.
+/// Returns the trial to which a sensor belongs.
 fn owner(files: &[SetFile], trials: &[usize], sensor: &SetFile) -> Option<usize> {
     let near: Vec<usize> =
         trials.iter().copied().filter(|&at| files[at].folder == sensor.folder).collect();
@@ -69,12 +71,12 @@ fn owner(files: &[SetFile], trials: &[usize], sensor: &SetFile) -> Option<usize>
     let parts = name_parts(&sensor.name);
     let shared =
         |at: usize| name_parts(&files[at].name).iter().filter(|part| parts.contains(part)).count();
-    // Clocks that all begin at zero tell nothing: then names do.
+    // Clocks that all begin at zero overlap alike: then the names decide.
     let alike = among.into_iter().filter(|&at| overlap(at) >= 0.95 * most);
     alike.rev().max_by_key(|&at| shared(at))
 }
 
-/// The part of the shorter span that both share; of clocks that cannot be compared, all.
+/// Returns the fraction of the shorter span that both share; 1 for clocks that cannot be compared.
 fn overlap(one: Option<Span>, other: Option<Span>) -> f64 {
     let (Some(one), Some(other)) = (one, other) else { return 1.0 };
     if one.is_dated != other.is_dated {
@@ -85,7 +87,7 @@ fn overlap(one: Option<Span>, other: Option<Span>) -> f64 {
     if shorter > 0.0 { (shared / shorter).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Runs of letters and of digits of a file's name without its ending.
+/// Returns the runs of letters and of digits of a file name without its extension.
 fn name_parts(file: &str) -> Vec<String> {
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let mut parts: Vec<String> = Vec::new();

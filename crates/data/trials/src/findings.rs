@@ -1,27 +1,27 @@
-//! Collects what the checks find, without drowning the reader in a thousand equal lines.
+//! Collection of findings of checks, with limits on repeated ones.
 
 use sistership_model::trial::Finding;
 
-/// Errors listed for one file.
+/// Largest number of errors listed for one file.
 const MAX_ERRORS: usize = 20;
-/// Warnings kept for one file.
+/// Largest number of warnings listed for one file.
 const MAX_WARNINGS: usize = 100;
-/// Rows listed for one and the same fault.
+/// Largest number of rows listed for the same fault.
 const MAX_ROWS: usize = 3;
 
-/// Whether a finding refuses the trial.
+/// Severity of a finding; an error refuses the trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Severity {
     Error,
     Warning,
 }
 
-/// Samples with the same fault: the first few with their rows, and how many there are.
+/// Samples with the same fault: the first few with their rows, and the total count.
 #[derive(Debug, Default)]
 pub(crate) struct Hits {
     first: Vec<(usize, usize)>,
     count: usize,
-    /// The row of the last.
+    /// Row of the last sample.
     last: Option<usize>,
 }
 
@@ -38,7 +38,7 @@ impl Hits {
     }
 }
 
-/// Everything found in one file so far.
+/// Findings on one file.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Findings {
     errors: Vec<Finding>,
@@ -77,6 +77,7 @@ impl Findings {
             Severity::Error => (&mut self.errors, &mut self.more_errors, MAX_ERRORS),
             Severity::Warning => (&mut self.warnings, &mut self.more_warnings, MAX_WARNINGS),
         };
+        // Beyond the limit findings are only counted.
         if list.len() < most {
             list.push(Finding { row, column: column.map(str::to_owned), message });
         } else {
@@ -84,7 +85,7 @@ impl Findings {
         }
     }
 
-    /// The same fault in several rows: the first few one by one, the rest as a count.
+    /// Adds a fault of several rows: the first few one by one, the rest as a count.
     pub(crate) fn rows(
         &mut self,
         severity: Severity,
@@ -105,13 +106,14 @@ impl Findings {
         }
     }
 
-    /// What was found in a further file, under its name.
+    /// Adds the findings on another file, each with the name of that file.
     pub(crate) fn absorb(&mut self, file: &str, other: Self) {
         let (errors, warnings) = other.finish();
         let errors = errors.into_iter().map(|finding| (Severity::Error, finding));
         for (severity, finding) in
             errors.chain(warnings.into_iter().map(|finding| (Severity::Warning, finding)))
         {
+            // The row is one of the other file, hence its name in the message.
             let Finding { row, column, message } = finding;
             self.add(severity, row, column.as_deref(), format!("{file}: {message}"));
         }
@@ -121,7 +123,7 @@ impl Findings {
         !self.errors.is_empty()
     }
 
-    /// Errors and warnings, each with a last line about those not listed.
+    /// Returns errors and warnings, each with a last line about those that are not listed.
     pub(crate) fn finish(mut self) -> (Vec<Finding>, Vec<Finding>) {
         for (list, more, what) in [
             (&mut self.errors, self.more_errors, "errors"),

@@ -1,4 +1,5 @@
-//! Course and speed over ground, and velocities north and east, become surge and sway velocity.
+//! Conversion of course and speed over ground, and of velocities north and east, to surge and sway
+//! velocity.
 
 use sistership_model::trial::Channel;
 
@@ -7,7 +8,7 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::table::Raw;
 
-/// Makes `u` and `v` of course, speed and heading, where they were not measured.
+/// Computes `u` and `v` from course, speed and heading, where they were not measured.
 pub(crate) fn velocities(
     recording: &mut Recording,
     antenna: Option<Antenna>,
@@ -35,6 +36,7 @@ pub(crate) fn velocities(
     let mut of = "of the antenna";
     match (antenna, recording.channel(Channel::R)) {
         (Some(antenna), Some(r)) => {
+            // Rigid-body motion: the antenna at (x, y) moves by (-r y, r x) relative to midship.
             for ((u, v), r) in u.iter_mut().zip(&mut v).zip(r) {
                 *u += r * antenna.y_m;
                 *v -= r * antenna.x_m;
@@ -51,7 +53,7 @@ pub(crate) fn velocities(
     recording.trial.channels.insert(Channel::V, v);
 }
 
-/// Makes `u` and `v` of velocities north and east, where they were not measured.
+/// Computes `u` and `v` from velocities north and east, where they were not measured.
 fn earth_fixed(recording: &mut Recording, findings: &mut Findings) {
     let given = (recording.raw.remove(&Raw::VNorth), recording.raw.remove(&Raw::VEast));
     if given == (None, None) {

@@ -1,22 +1,22 @@
-//! What a column of a file most likely is.
+//! Most likely content of a column of a file.
 
-/// What a column was taken for.
+/// Channel, unit and sign identified for a column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guess {
-    /// The file, as the manifest names it.
+    /// File, as named by the manifest.
     pub file: String,
-    /// The column's header; `#3` for the third of a file without one.
+    /// Header of the column; `#3` for the third of a file without a header.
     pub column: String,
-    /// The channel's name in manifests; absent for a column that is left out.
+    /// Name of the channel in manifests; `None` for a column that is not read.
     pub channel: Option<String>,
-    /// Its unit.
+    /// Unit of the column.
     pub unit: Option<String>,
-    /// Whether it counts the other way than the channel.
+    /// True if the sign of the column is opposite to that of the channel.
     pub reversed: bool,
-    /// Why.
+    /// Evidence as text.
     pub why: String,
-    /// Whether the evidence settles it; otherwise someone should look.
+    /// True if the evidence is sufficient; otherwise the user should confirm it.
     pub certain: bool,
-    /// Where a second reading is nearly as likely: which, and what answers it.
+    /// Question to the user if an alternative is nearly as likely, and how to answer it.
     pub question: Option<String>,
 }

@@ -1,5 +1,4 @@
-//! Where in a CSV file the table begins: lines above its header, the separator, a line of units
-//! below.
+//! Layout of a CSV file: lines above the header, separator, a row of units below the header.
 
 use csv::{ByteRecord, ReaderBuilder};
 
@@ -10,41 +9,43 @@ use crate::number::number;
 use crate::stamp::{Order, stamp};
 use crate::units::{is_unit, plain_unit};
 
-/// Lines among which the header is looked for.
+/// Number of lines in which the header is searched.
 const LINES: usize = 100;
-/// Known names that make a first line the header without a look at the others.
+/// Number of known names from which the first line is the header without a search.
 const CERTAIN: usize = 2;
 
-/// Where the table is.
+/// Location of the table in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Layout {
     pub separator: u8,
-    /// Bytes before the header's line.
+    /// Number of bytes before the line of the header.
     pub offset: usize,
-    /// Lines before it that are not blank throughout.
+    /// Number of lines before the header, blank ones included; 0 if the header is the first line
+    /// with text.
     pub lines: usize,
-    /// What stands below the header, where that is units.
+    /// Units in the row below the header, if there is one.
     pub units: Vec<String>,
-    /// For a table without a header, its number of columns; they are called `#1`, `#2`, ...
+    /// Number of columns of a table without a header; they are named `#1`, `#2`, ...
     pub headerless: Option<usize>,
 }
 
-/// A line that is not blank.
+/// Line that is not blank.
 #[derive(Clone, Copy)]
 struct Line<'a> {
     offset: usize,
-    /// Lines before it, blank ones too.
+    /// Number of lines before it, blank ones included.
     before: usize,
     bytes: &'a [u8],
     complete: bool,
 }
 
-/// Finds the table; the header is the line with most names that are mapped or canonical, or else
+/// Finds the table. The header is the line with most names that are mapped or canonical, or else
 /// the first.
 pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
     if mapping.unidentified.is_some() {
         return guess(start);
     }
+    // A mapping of `#3` refers to a column by its position: the file then has no header.
     let by_place = |name: &str| {
         name.trim().strip_prefix('#').is_some_and(|place| place.parse::<usize>().is_ok())
     };
@@ -68,13 +69,14 @@ pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
     }
     let (at, line) = best;
     let separator = separator(line.bytes);
+    // A line that is cut off at the end of `start` is no evidence of units.
     let below = lines(start).nth(at + 1).filter(|below| below.complete);
     let units = below.and_then(|below| units(&cells(below.bytes, separator)));
     let (offset, lines) = if at == 0 { (0, 0) } else { (line.offset, line.before) };
     Layout { separator, offset, lines, units: units.unwrap_or_default(), headerless: None }
 }
 
-/// A table of which the first lines hold numbers alone.
+/// Finds a table without a header, by its first lines that hold numbers only.
 fn headerless(start: &[u8]) -> Option<Layout> {
     let lines: Vec<Line> = lines(start).collect();
     let width = |line: &Line| cells(line.bytes, likely_separator(line.bytes)).len();
@@ -90,7 +92,7 @@ fn headerless(start: &[u8]) -> Option<Layout> {
     Some(Layout { separator, offset, lines: before, units: Vec::new(), headerless })
 }
 
-/// The table's text: from its header on, which is made for a table without one.
+/// Returns the text of the table from its header on; a table without a header is given one.
 pub(crate) fn body(start: &[u8], layout: &Layout) -> Vec<u8> {
     let text = &start[layout.offset..];
     let Some(count) = layout.headerless else { return text.to_vec() };
@@ -100,21 +102,20 @@ pub(crate) fn body(start: &[u8], layout: &Layout) -> Vec<u8> {
 }
 
 impl Layout {
-    /// Lines of the file before what is read, less that of a header that was made.
+    /// Returns the number of lines before those that are read, less the line of an added header.
     pub(crate) fn shift(&self) -> isize {
         let lines = isize::try_from(self.lines).unwrap_or(isize::MAX);
         lines - isize::from(self.headerless.is_some())
     }
 }
 
-/// How many names of the header are known.
+/// Returns the number of known names in the header.
 pub(crate) fn known_names(start: &[u8], mapping: &Mapping) -> usize {
     let offset = find(start, mapping).offset;
     lines(&start[offset..]).next().map_or(0, |line| known(line.bytes, mapping))
 }
 
-/// Where a table most likely is, of which nothing is known: its header stands above the first line
-/// of values.
+/// Finds the most likely table of an unknown file: its header is above the first line of values.
 pub(crate) fn guess(start: &[u8]) -> Layout {
     let canonical = Mapping::canonical();
     let lines: Vec<Line> = lines(start).collect();
@@ -124,7 +125,8 @@ pub(crate) fn guess(start: &[u8]) -> Layout {
     };
     let separator = likely_separator(lines[data].bytes);
     let width = |at: usize| cells(lines[at].bytes, separator).len();
-    // Words of a title stand apart by blanks as well: there a header has a name for each column.
+    // The words of a title are separated by blanks as well: there a header needs a name for each
+    // column.
     let most = usize::from(separator != b' ');
     let heads = data > 0 && width(data - 1).abs_diff(width(data)) <= most;
     if !heads && let Some(layout) = headerless(start) {
@@ -139,7 +141,8 @@ pub(crate) fn guess(start: &[u8]) -> Layout {
     Layout { separator, offset: header.offset, lines: header.before, units, headerless: None }
 }
 
-/// A comma may be a decimal one where something else separates.
+/// Returns the likely separator of a line; a comma may be a decimal mark if something else
+/// separates.
 fn likely_separator(line: &[u8]) -> u8 {
     let found = [b'\t', b';', b','].into_iter().find(|byte| line.contains(byte));
     let by_blanks = || {
@@ -149,14 +152,14 @@ fn likely_separator(line: &[u8]) -> u8 {
         cells.clone().count() > 1 && cells.all(point)
     };
     match found {
-        // Numbers with decimal commas, apart by blanks.
+        // Numbers with decimal commas, separated by blanks.
         Some(b',') if by_blanks() => b' ',
         None if line.trim_ascii().contains(&b' ') => b' ',
         found => found.unwrap_or(b','),
     }
 }
 
-/// Whether most of a line's cells are numbers or times.
+/// Returns true if most cells of a line are numbers or times.
 fn is_data(line: &[u8]) -> bool {
     let separator = likely_separator(line);
     let cells = cells(line, separator);
@@ -172,7 +175,7 @@ fn is_value(cell: &str, separator: u8) -> bool {
     number(&cell).is_ok() || is_time()
 }
 
-/// Whether more of the file could not change what [`find`] says.
+/// Returns true if more of the file could not change the result of [`find_table`].
 pub(crate) fn is_settled(start: &[u8], mapping: &Mapping) -> bool {
     let complete = lines(start).filter(|line| line.complete).take(LINES);
     let Some(first) = complete.clone().next() else { return false };
@@ -180,7 +183,7 @@ pub(crate) fn is_settled(start: &[u8], mapping: &Mapping) -> bool {
     count >= LINES || (count >= 2 && known(first.bytes, mapping) >= CERTAIN)
 }
 
-/// What follows the byte order mark, if there is one.
+/// Returns the text after the byte order mark, if there is one.
 fn text(start: &[u8]) -> &[u8] {
     start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start)
 }
@@ -202,7 +205,7 @@ fn unended(line: &[u8]) -> &[u8] {
     line.strip_suffix(b"\r").unwrap_or(line)
 }
 
-/// Comma, semicolon or tab: whichever the line holds most of outside quotes.
+/// Returns comma, semicolon or tab: the one that the line contains most often outside quotes.
 fn separator(line: &[u8]) -> u8 {
     let bare = |separator: u8| {
         let mut quoted = false;
@@ -212,7 +215,7 @@ fn separator(line: &[u8]) -> u8 {
         };
         line.iter().copied().filter(counts).count()
     };
-    // The last of equals wins, and a comma is the rule.
+    // `max_by_key` returns the last of equals, which makes the comma the default.
     let most = [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator));
     let separator = most.unwrap_or(b',');
     if bare(separator) == 0 && line.trim_ascii().contains(&b' ') { b' ' } else { separator }
@@ -225,12 +228,13 @@ fn cells(line: &[u8], separator: u8) -> Vec<String> {
     }
     let mut reader = ReaderBuilder::new().delimiter(separator).has_headers(false).from_reader(line);
     let mut record = ByteRecord::new();
-    // A line that cannot be split has no name in it.
+    // The error is ignored: a line that cannot be split contains no name.
     let _ = reader.read_byte_record(&mut record);
     record.iter().map(name).collect()
 }
 
-/// A header's text; what is not UTF-8 is Latin-1, in which every byte is a character.
+/// Returns the text of a header; bytes that are not UTF-8 are read as Latin-1, where every byte is
+/// a character.
 pub(crate) fn name(cell: &[u8]) -> String {
     std::str::from_utf8(cell).map_or_else(|_| latin_1(cell), str::to_owned).trim().to_owned()
 }
@@ -239,7 +243,7 @@ pub(crate) fn latin_1(bytes: &[u8]) -> String {
     bytes.iter().map(|&byte| char::from(byte)).collect()
 }
 
-/// How many names in the line are those of a column that would be read.
+/// Returns the number of cells of a line that name a column to be read.
 fn known(line: &[u8], mapping: &Mapping) -> usize {
     let is_known = |cell: &String| {
         names::canonical(cell).is_some()
@@ -249,7 +253,7 @@ fn known(line: &[u8], mapping: &Mapping) -> usize {
     cells(line, separator(line)).iter().filter(|cell| is_known(cell)).count()
 }
 
-/// The units in a line that holds nothing else.
+/// Returns the units of a line that holds nothing else.
 fn units(cells: &[String]) -> Option<Vec<String>> {
     let written: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
     let named = written.iter().filter(|cell| is_unit(cell)).count();

@@ -1,12 +1,13 @@
-//! Trial files in: CSV, Parquet, Excel, MATLAB 5 and NMEA 0183; units and signs converted once at
-//! the door, checked, optionally smoothed.
+//! Reader of trial files: CSV, Parquet, Excel, MATLAB 5 and NMEA 0183. Units and signs are
+//! converted once, on input; the data are checked and optionally smoothed.
 //!
-//! [`read_trial`] turns a [`Source`] into a [`Trial`](sistership_model::trial::Trial) in canonical
-//! units, or refuses it with findings that name row and column; [`read_in_full`] tells the variance
-//! of derived channels, too, and [`check`] the findings without the samples. [`load_path`] reads
-//! what a command line names: a manifest or a single file. [`propose`] writes a manifest for files,
-//! and [`lacking`] names what a law needs that a trial does not have. [`samples`] keeps trials as
-//! Parquet and writes them as CSV.
+//! [`read_trial`] converts a [`TrialFile`] to a [`Trial`](sistership_model::trial::Trial) in
+//! canonical units, or refuses it with findings that name row and column. [`read_in_full`] also
+//! returns the variance of derived channels, and [`check_source`] returns the findings without the
+//! samples. [`load_path`] reads a path of the command line, a manifest or a single file.
+//! [`propose_manifest`] writes a manifest for files, and [`missing_channels`] lists the channels
+//! that a law needs and a trial does not have. [`samples`] stores trials as Parquet and writes them
+//! as CSV.
 
 mod blanks;
 mod bridge;

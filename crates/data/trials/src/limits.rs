@@ -1,9 +1,9 @@
-//! How large a file may be.
+//! Limits on the size of a file.
 
-/// Bounds that keep a file from filling the memory of whoever reads it.
+/// Limits that keep a file from filling the memory of the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Rows of data that are held at a time; a file of which stretches are read may have more.
+    /// Rows of data in memory at a time; a file of which segments are read may have more.
     pub rows: usize,
     /// Columns, mapped or not.
     pub columns: usize,
@@ -11,13 +11,13 @@ pub struct Limits {
     pub line_bytes: usize,
     /// Bytes of one page of a Parquet file, as it is in memory.
     pub page_bytes: usize,
-    /// Bytes of what a Parquet file says of itself at its end.
+    /// Bytes of the footer of a Parquet file.
     pub footer_bytes: usize,
-    /// Bytes that a workbook or a MATLAB file may hold when it is unpacked.
+    /// Unpacked bytes of a workbook or a MATLAB file.
     pub unpacked_bytes: usize,
 }
 
-/// What is said of a file with more rows than are held.
+/// Returns the message on a file with more rows than the limit.
 pub(crate) fn too_many(most: usize) -> String {
     format!(
         "the file has more than the {most} rows that are read; split it, or let `sistership \

@@ -1,4 +1,4 @@
-//! What a command line names: a manifest, or one file.
+//! Reading of a path of the command line: a manifest, or one file.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,12 +17,12 @@ use crate::outcome::{CheckOutcome, Refusal};
 use crate::read::{Examined, StretchRequest, examine, stretches};
 use crate::source::Source;
 
-/// Trials read from a path.
+/// Trials read from a path, with the manifest.
 #[derive(Debug)]
 pub struct Loaded {
     /// The manifest, if the path named one.
     pub manifest: Option<Manifest>,
-    /// Each file's trial, in the manifest's order.
+    /// Trial of each file, in the order of the manifest.
     pub trials: Vec<Result<Trial, Refusal>>,
 }
 
@@ -30,8 +30,8 @@ pub struct Loaded {
 /// column names.
 ///
 /// # Errors
-/// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of
-/// the whole.
+/// Returns an error if the manifest is invalid or the path cannot be read. A single trial that is
+/// refused is no error of the whole.
 pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
     let (manifest, mut trials) = each(path, false, |name, examined| match examined {
         Ok(examined) => examined.trial(name),
@@ -40,16 +40,16 @@ pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
     if manifest.is_none()
         && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
     {
-        // Where the file lies on this machine must not become part of a version's recipe.
+        // The folder of the file on this machine must not become part of the recipe of a version.
         trial.name = name.to_string_lossy().into_owned();
     }
     Ok(Loaded { manifest, trials })
 }
 
-/// Checks what [`load_path`] would read, and keeps the outcomes only.
+/// Checks the files that [`load_path`] would read, and returns the outcomes only.
 ///
 /// # Errors
-/// As [`load_path`].
+/// Returns the errors of [`load_path`].
 pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
     let outcomes = each(path, true, |name, examined| match examined {
         Ok(examined) => examined.outcome(name),
@@ -64,10 +64,11 @@ pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
     Ok(outcomes.1)
 }
 
-/// Faults of the values of a manifest's files that it does not exclude yet, by file and channel.
+/// Returns faults of the values of a manifest's files that it does not exclude yet, by file and
+/// channel.
 ///
 /// # Errors
-/// As [`load_path`].
+/// Returns the errors of [`load_path`].
 pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
     let (manifest, mut listed) = listed(path)?;
     listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
@@ -79,6 +80,8 @@ pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
     for (trial, faults) in trials.zip(found) {
         for fault in faults {
             let fault = Exclusion { file: trial.file.clone(), ..fault };
+            // Segments of one file are checked separately; faults of the same kind become one
+            // entry.
             match all.iter_mut().find(|one| one.is_like(&fault)) {
                 Some(known) => known.add(&fault),
                 None => all.push(fault),
@@ -88,7 +91,7 @@ pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
     Ok(all)
 }
 
-/// A file that is to be read, and the sensors' that belong to it.
+/// File to be read, and the files of sensors that belong to it.
 struct Listed {
     name: String,
     path: PathBuf,
@@ -101,14 +104,15 @@ impl Listed {
         Source::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
     }
 
-    /// Whether both are stretches of one file, which is then read once.
+    /// Returns true if both are segments of one file, which is then read once.
     fn shares_file(&self, other: &Self) -> bool {
         let both = self.mapping.stretch.is_some() && other.mapping.stretch.is_some();
         both && self.path.components().eq(other.path.components())
     }
 }
 
-/// What `take` makes of each trial of a path, in the manifest's order; files are read side by side.
+/// Applies `take` to each trial of a path, and returns the results in the order of the manifest;
+/// files are read in parallel.
 fn each<T: Send>(
     path: &Path,
     seeks_faults: bool,
@@ -130,13 +134,15 @@ fn each_listed<T: Send>(
         let each = places.iter().zip(examined(&group));
         each.map(|(&k, examined)| (k, take(listed[k].name.clone(), examined))).collect()
     };
+    // One task per file (`with_max_len`), since files differ in size; sorted again afterwards so
+    // that the result does not depend on the order of completion.
     let mut all: Vec<(usize, T)> =
         by_file(listed).into_par_iter().with_max_len(1).flat_map_iter(taken).collect();
     all.sort_by_key(|(place, _)| *place);
     all.into_iter().map(|(_, taken)| taken).collect()
 }
 
-/// Places of what is read in one pass.
+/// Groups the indices of segments that are read in one pass.
 fn by_file(listed: &[Listed]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (place, this) in listed.iter().enumerate() {
@@ -148,8 +154,9 @@ fn by_file(listed: &[Listed]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// One file, or several stretches of one, which are read in one pass.
+/// Reads and checks one file, or several segments of one file in one pass.
 fn examined(group: &[&Listed]) -> Vec<io::Result<Examined>> {
+    // A single entry needs no distribution of rows.
     if let [alone] = group {
         return vec![alone.open().map(|source| examine(source, &alone.mapping))];
     }
@@ -157,6 +164,7 @@ fn examined(group: &[&Listed]) -> Vec<io::Result<Examined>> {
     let mut sources = match sources {
         Ok(sources) => sources.into_iter(),
         Err(error) => {
+            // `io::Error` cannot be cloned: each segment gets a copy of kind and message.
             let told = |_: &&Listed| Err(io::Error::new(error.kind(), error.to_string()));
             return group.iter().map(told).collect();
         }
@@ -171,7 +179,7 @@ fn examined(group: &[&Listed]) -> Vec<io::Result<Examined>> {
     stretches(content, requests.collect()).into_iter().map(Ok).collect()
 }
 
-/// What a path names: the files of a manifest, or one file.
+/// Returns the files named by a path: those of a manifest, or the file itself.
 fn listed(path: &Path) -> Result<(Option<Manifest>, Vec<Listed>), FileError> {
     let shown = path.display().to_string();
     if !is_manifest(path) {

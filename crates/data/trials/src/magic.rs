@@ -1,6 +1,6 @@
-//! What a file is by its first bytes, whatever its name says.
+//! Detection of the format of a file by its first bytes, independent of its name.
 
-/// How a file is read.
+/// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Csv,
@@ -8,11 +8,11 @@ pub(crate) enum Kind {
     Workbook,
     Matlab,
     Nmea,
-    /// Something that holds no table that is read here: what it is, and what to do.
+    /// A format that is not read here: its name, and advice.
     Other(&'static str),
 }
 
-/// Bytes that are looked at.
+/// Number of bytes that are examined.
 pub(crate) const LOOKED_AT: usize = 4096;
 
 const OTHERS: [(&[u8], &str); 18] = [
@@ -39,7 +39,7 @@ const OTHERS: [(&[u8], &str); 18] = [
     (b"TDSm", "a LabVIEW TDMS file; export it as CSV or Parquet"),
 ];
 
-/// Tells a file by its start.
+/// Returns the format of a file by its first bytes.
 pub(crate) fn kind(start: &[u8]) -> Kind {
     if start.starts_with(b"PAR1") {
         return Kind::Parquet;
@@ -56,6 +56,7 @@ pub(crate) fn kind(start: &[u8]) -> Kind {
     if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| start.starts_with(magic)) {
         return Kind::Other(what);
     }
+    // Known binary formats come first, so that the advice names them.
     if is_binary(start) {
         return Kind::Other(
             "binary, of a kind that is not known here; export it as CSV or Parquet",
@@ -64,21 +65,23 @@ pub(crate) fn kind(start: &[u8]) -> Kind {
     if is_nmea(start) { Kind::Nmea } else { Kind::Csv }
 }
 
-/// Whether one byte in sixteen is zero; text in UTF-16, which has more, begins with its mark.
+/// Returns true if more than one byte in sixteen is zero; text in UTF-16, which has more, begins
+/// with its mark.
 fn is_binary(start: &[u8]) -> bool {
     let marked = start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff");
     let zeros = start.iter().filter(|byte| **byte == 0).count();
     !marked && 16 * zeros > start.len()
 }
 
-/// Whether one of the first lines has a sentence such as `$GPGGA,...*47`, perhaps after a logger's
-/// own time.
+/// Returns true if one of the first lines contains a sentence such as `$GPGGA,...*47`, possibly
+/// after the logger's own time.
 fn is_nmea(start: &[u8]) -> bool {
     start.split(|&byte| byte == b'\n').take(20).any(|line| {
         let Some(at) = line.iter().position(|&byte| byte == b'$') else { return false };
         let sentence = line[at + 1..].trim_ascii_end();
         let Some((address, rest)) = sentence.split_at_checked(5) else { return false };
         let upper = address.iter().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit());
+        // Checksum: `*` and two hexadecimal digits at the end.
         let sum = sentence.len().checked_sub(3).map(|end| sentence[end]);
         upper && rest.first() == Some(&b',') && sum == Some(b'*')
     })

@@ -1,4 +1,4 @@
-//! Trial manifests: YAML in, checked manifest out.
+//! Reading and checking of trial manifests.
 
 use std::path::{Component, Path};
 
@@ -13,11 +13,12 @@ use crate::stretches::{self, same_file};
 use crate::table::Target;
 use crate::units::Kind;
 
-/// Reads a manifest with everything that it declares; `file_name` is only for messages.
+/// Reads a manifest with all its declarations; `file_name` is for messages only.
 ///
 /// # Errors
-/// Names line and field of everything that is wrong: the YAML, an unknown channel or unit, a path
-/// that leaves the folder, a file named twice, impossible smoothing, a declaration that cannot be.
+/// Returns line and field of everything that is wrong: the YAML, an unknown channel or unit, a path
+/// that leaves the folder, a file that is listed twice, impossible smoothing, an invalid
+/// declaration.
 pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
     let inside = |file: &ManifestFile| {
         let trials = outside(file).into_iter();
@@ -26,10 +27,10 @@ pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, F
     read(file_name, text, inside)
 }
 
-/// As [`read_manifest_file`], of a manifest on disk, which may name files beside its folder.
+/// Reads a manifest on disk, which may name files outside its folder.
 ///
 /// # Errors
-/// As [`read_manifest_file`].
+/// Returns the errors of [`read_manifest_file`].
 pub(crate) fn read_local_manifest(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
     read(file_name, text, |_| Vec::new())
 }
@@ -43,6 +44,7 @@ fn read(
         sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
     let file = ManifestFile::from(written);
     let manifest = &file.manifest;
+    // All problems are collected before any of them is reported.
     let problems = columns(&file)
         .chain(trials(manifest))
         .chain(sensors(&file))
@@ -50,6 +52,7 @@ fn read(
         .chain(conventions(manifest))
         .chain(exclusions(&file))
         .chain(declarations(&file.declarations));
+    // The line is found by a text near the problem, as parsing has lost the positions.
     let refused = |Problem { field, near, message }: Problem| FileError {
         file: file_name.to_owned(),
         line: line_of(text, &near),
@@ -63,7 +66,7 @@ fn read(
 
 struct Problem {
     field: String,
-    /// Text that stands in the line at fault.
+    /// Text by which the line of the problem is found.
     near: String,
     message: String,
 }
@@ -99,6 +102,7 @@ fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
             let (field, near) = (format!("trials[{index}].{field}"), trial.file.clone());
             return Some(Problem { field, near, message });
         }
+        // Several segments of one file may be listed, but the whole file only once.
         let twice = earlier.iter().any(|other| {
             same_file(&other.file, &trial.file) && !(other.is_stretch() && trial.is_stretch())
         });
@@ -128,7 +132,7 @@ fn sensors(file: &ManifestFile) -> impl Iterator<Item = Problem> {
     })
 }
 
-/// Trials whose file is not in the manifest's folder.
+/// Returns the trials whose file is outside the folder of the manifest.
 fn outside(file: &ManifestFile) -> Vec<Problem> {
     let trials = file.manifest.trials.iter().enumerate();
     trials
@@ -191,6 +195,7 @@ fn declarations(declared: &Declarations) -> impl Iterator<Item = Problem> {
     let is_angle = variation.is_none_or(|variation| (-180.0..=180.0).contains(&variation));
     let angle =
         (!is_angle).then(|| problem("variation_deg", "must be between -180 and 180".into()));
+    // No point of a ship is 1000 m from midship.
     let is_aboard = declared
         .antenna
         .is_none_or(|antenna| antenna.x_m.abs() < 1000.0 && antenna.y_m.abs() < 1000.0);
@@ -209,14 +214,15 @@ fn declarations(declared: &Declarations) -> impl Iterator<Item = Problem> {
     [heading, angle, antenna].into_iter().flatten().chain(maximum)
 }
 
-/// Whether a path names something below the folder on any system: a backslash or colon would mean
-/// more on Windows.
+/// Returns true if a path stays inside the folder on any system: a backslash or colon has a further
+/// meaning on Windows.
 fn stays_inside(path: &str) -> bool {
     let plain = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     !path.is_empty() && !path.contains(['\\', ':', '\0']) && Path::new(path).components().all(plain)
 }
 
 fn conventions(manifest: &Manifest) -> Option<Problem> {
+    // Negated comparison, so that NaN is refused.
     if let Some(limit) = manifest.conventions.bridge_s.filter(|limit| !(*limit >= 0.0)) {
         return Some(Problem {
             field: "conventions.bridge_s".into(),
@@ -233,8 +239,9 @@ fn conventions(manifest: &Manifest) -> Option<Problem> {
     })
 }
 
-/// The first line in which the text stands as a word of its own.
+/// Returns the first line that contains the text at the start of a word.
 fn line_of(text: &str, near: &str) -> Option<usize> {
+    // At the start of a word: `n:` must not be found within `column:`.
     let stands = |line: &str| {
         line.match_indices(near).any(|(at, _)| {
             line[..at]

@@ -1,4 +1,4 @@
-//! A manifest as it is written: what the model's type holds, and what the reader is told besides.
+//! Manifest in its written form: the manifest of the model, and the declarations for the reader.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,47 +13,47 @@ use crate::declarations::{Antenna, Declarations, Derivable, Maximum, North, Sens
 use crate::exclusion::Exclusion;
 use crate::mapping::Mapping;
 
-/// A manifest with everything that it declares.
+/// Manifest with all its declarations.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(into = "Written")]
 pub struct ManifestFile {
     /// Columns, conventions and files.
     pub manifest: Manifest,
-    /// What else is declared of all files.
+    /// Further declarations on all files.
     pub declarations: Declarations,
     /// For each trial, the further files that belong to it.
     pub sensors: Vec<Vec<SensorFile>>,
 }
 
-/// Trials of a ship: files, columns, signs, and what is left out as faulty.
-// `Manifest` refuses what it does not know, so that its fields stand here once more.
+/// Trials of a ship: files, columns, signs, and data excluded as faulty.
+// `Manifest` refuses unknown fields and cannot be flattened, so that its fields are repeated here.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Written {
     /// Always `trials`.
     kind: TrialsKind,
-    /// The ship that was tried; it may be left open, as `refine --ship` names it.
+    /// Ship of the trials; optional, as `refine --ship` can name it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     ship: String,
     /// Signs and frames of the files.
     #[serde(default)]
     conventions: TrialConventions,
-    /// Which north headings and courses are counted from.
+    /// North reference of headings and courses.
     #[serde(default, skip_serializing_if = "is_default")]
     heading: North,
-    /// Magnetic variation, deg, positive to the east: what is added to a magnetic heading.
+    /// Magnetic variation, deg, positive to the east; it is added to a magnetic heading.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     variation_deg: Option<f64>,
-    /// What 100 % of a channel is.
+    /// Value of a channel at 100 %.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     maximum: BTreeMap<String, Maximum>,
-    /// Where positions were measured aboard.
+    /// Position of the antenna on board.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     antenna: Option<Antenna>,
-    /// Channels to be derived of position and heading where they were not measured.
+    /// Channels to be derived from position and heading where they were not measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     derive: Vec<Derivable>,
-    /// The sheet of a workbook; by default the first that has a table.
+    /// Sheet of a workbook; by default the first that contains a table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sheet: Option<String>,
     /// Channel (`t`, `x`, `psi`, ...) to column; canonical column names need no mapping. `#3` is
@@ -61,39 +61,39 @@ pub(crate) struct Written {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, ColumnMapping>")]
     columns: indexmap::IndexMap<String, ColumnMapping>,
-    /// Columns that are not wanted, and not listed as left out.
+    /// Columns that are not needed, and not reported as unused.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     ignore: Vec<String>,
-    /// Values and rows that are left out as faulty.
+    /// Values and rows that are excluded as faulty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     exclude: Vec<Exclusion>,
-    /// The files, relative to the manifest.
+    /// Files, relative to the manifest.
     trials: Vec<WrittenTrial>,
 }
 
-/// A file, or a stretch of one.
+/// A file, or a segment of one.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenTrial {
     /// Path, relative to the manifest.
     file: String,
-    /// Where the stretch begins that is read; by default the file's first row.
+    /// Start of the segment that is read; by default the first row of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     from: Option<FileTime>,
-    /// Where it ends; by default the last row.
+    /// End of the segment; by default the last row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to: Option<FileTime>,
-    /// What was done.
+    /// Name of the manoeuvre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     manoeuvre: Option<String>,
     /// Water depth, m; by default deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     depth_m: Option<f64>,
-    /// The file's own columns, in place of those of the manifest.
+    /// Columns of this file, instead of those of the manifest.
     #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, ColumnMapping>")]
     columns: indexmap::IndexMap<String, ColumnMapping>,
-    /// Files of further sensors, which are put on the trial's times.
+    /// Files of further sensors, which are interpolated to the times of the trial.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     sensors: Vec<SensorFile>,
 }
@@ -113,7 +113,7 @@ impl JsonSchema for ManifestFile {
 }
 
 impl ManifestFile {
-    /// The mapping of one of its files.
+    /// Returns the mapping of one file of the manifest.
     pub fn mapping(&self, trial: &ManifestTrial) -> Mapping {
         let of_file = self.declarations.exclude.iter().filter(|one| one.file == trial.file);
         Mapping {
@@ -123,9 +123,9 @@ impl ManifestFile {
         }
     }
 
-    /// What it says of one of its trials.
+    /// Returns the manifest reduced to one of its trials.
     pub fn only(&self, index: usize) -> Self {
-        // Field by field: the other trials are not copied, of which an upload may have hundreds.
+        // Field by field, so that the other trials are not copied: an upload may have hundreds.
         let Manifest { kind, ship, conventions, columns, trials } = &self.manifest;
         let manifest = Manifest {
             kind: *kind,
@@ -141,10 +141,10 @@ impl ManifestFile {
         }
     }
 
-    /// The text of the file.
+    /// Returns the text of the file.
     ///
     /// # Errors
-    /// None that is known: its content is plain text and numbers.
+    /// No error is known: the content is plain text and numbers.
     pub fn to_yaml(&self) -> Result<String, serde_yaml::Error> {
         serde_yaml::to_string(&Written::from(self.clone()))
     }
@@ -192,6 +192,7 @@ impl From<Written> for ManifestFile {
 impl From<ManifestFile> for Written {
     fn from(file: ManifestFile) -> Self {
         let ManifestFile { manifest, declarations, sensors } = file;
+        // The list of sensors may be shorter than that of trials.
         let sensors = sensors.into_iter().chain(std::iter::repeat(Vec::new()));
         let trials = manifest.trials.into_iter().zip(sensors).map(|(trial, sensors)| {
             let ManifestTrial { file, from, to, manoeuvre, depth_m, columns } = trial;

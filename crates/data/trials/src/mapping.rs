@@ -1,4 +1,4 @@
-//! What is known of a file before it is opened.
+//! Knowledge of a file before it is opened.
 
 use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
@@ -7,49 +7,48 @@ use crate::exclusion::Exclusion;
 use crate::limits::Limits;
 use crate::stretches::Stretch;
 
-/// Which columns are which channels, in which signs, and how large the file may be.
+/// Mapping of columns to channels, with signs and limits on the size of the file.
 ///
-/// Columns that carry canonical names (with any unit suffix) need no entry.
+/// Columns with canonical names (with any unit suffix) need no entry.
 #[derive(Debug, Clone, Default)]
 pub struct Mapping {
-    /// Channel name (or `t`) and where it stands.
+    /// Channel name (or `t`) and its column.
     pub columns: Vec<(String, ColumnMapping)>,
     /// Signs and frames.
     pub conventions: TrialConventions,
-    /// What was sailed.
+    /// Manoeuvre of the trial.
     pub manoeuvre: Option<String>,
     /// Water depth where it is constant, m.
     pub depth_m: Option<f64>,
-    /// What else is declared of the file.
+    /// Further declarations on the file.
     pub declared: Declarations,
-    /// The stretch of the file that is read; absent for the whole.
+    /// Segment of the file that is read; `None` for the whole file.
     pub stretch: Option<Stretch>,
-    /// Bounds on the file.
+    /// Limits on the size of the file.
     pub limits: Limits,
-    /// Rows that room is made for before any is read, so that columns need not grow; see
+    /// Number of rows for which memory is reserved, so that columns need not grow; see
     /// [`crate::demand`].
     pub room: usize,
-    /// What is left out of the file, as faulty.
+    /// Values and rows that are excluded as faulty.
     pub exclude: Vec<Exclusion>,
-    /// Where columns are yet to be identified: the place and unit of a time that is written as
-    /// text. Every column is then read as it stands.
+    /// For columns that are yet to be identified: index and unit of a time that is written as text.
+    /// Every column is then read as it is.
     pub(crate) unidentified: Option<WrittenTime>,
-    /// Whether faults are looked for.
+    /// True if faults are searched.
     pub(crate) seeks_faults: bool,
 }
 
-/// A column of times that are written as text, if there is one: its place and unit.
+/// Column of times written as text, if there is one: its index and unit.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct WrittenTime(pub Option<(usize, &'static str)>);
 
 impl Mapping {
-    /// The mapping of a file whose columns have canonical names and whose signs are the canonical
-    /// ones.
+    /// Returns the mapping of a file with canonical column names and signs.
     pub fn canonical() -> Self {
         Self::default()
     }
 
-    /// The mapping of one file of a manifest.
+    /// Returns the mapping of one file of a manifest.
     pub fn of(manifest: &Manifest, trial: &ManifestTrial) -> Self {
         Self {
             columns: match trial.columns.is_empty() {
@@ -72,7 +71,7 @@ impl Mapping {
         }
     }
 
-    /// The mapping of a sensor's file that belongs to this one.
+    /// Returns the mapping of the file of a sensor that belongs to this file.
     pub(crate) fn of_sensor(&self, sensor: &SensorFile) -> Self {
         let columns = sensor.columns.iter();
         Self {

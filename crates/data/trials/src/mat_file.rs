@@ -1,4 +1,4 @@
-//! MATLAB 5 files: vectors, and the columns of matrices, by the names of their variables.
+//! MATLAB 5 files: vectors and the columns of matrices, named by their variables.
 
 use std::io::{self, Seek};
 
@@ -14,17 +14,17 @@ use crate::table::{Column, Table, Target, width};
 use crate::taker::Taker;
 use crate::workbook::ReadSeek;
 
-/// Columns of a matrix, and columns in all, that are offered.
+/// Largest number of columns of a matrix, and of columns of a file.
 const WIDE: usize = 200;
 const OFFERED: usize = 10_000;
 
-/// A column that a file has.
+/// Column of a file: a vector, or a column of a matrix.
 struct Offer {
     name: String,
     length: usize,
 }
 
-/// Reads the mapped columns; rows are counted from 1, as MATLAB does.
+/// Reads the mapped columns; rows are counted from 1, as in MATLAB.
 pub(crate) fn read(
     mut input: Box<dyn ReadSeek + '_>,
     mapping: &Mapping,
@@ -33,6 +33,7 @@ pub(crate) fn read(
     let columns = mapped(&mut input, mapping, findings)?;
     let limits = mapping.limits;
     let mut data: Vec<Option<Vec<f64>>> = vec![None; columns.len()];
+    // Columns are numbered in the order of the file, as in `list_variables`.
     let mut at = 0;
     let read = input.rewind().and_then(|()| {
         visit(&mut input, limits.unpacked_bytes as u64, &mut |mut array| {
@@ -41,6 +42,7 @@ pub(crate) fn read(
                 let count = length(&array);
                 match wanted {
                     Some(position) => data[position] = Some(array.numbers(count)?),
+                    // The numbers must be consumed to reach the next array.
                     None => array.skip(count)?,
                 }
                 at += 1;
@@ -66,7 +68,8 @@ pub(crate) fn read(
     Some(table)
 }
 
-/// Rows, and columns that are held at a time; nothing of a file that will be refused.
+/// Returns the number of rows and of columns in memory at a time; `None` for a file that will be
+/// refused.
 pub(crate) fn measure(
     mut input: Box<dyn ReadSeek + '_>,
     mapping: &Mapping,
@@ -74,11 +77,11 @@ pub(crate) fn measure(
     let offers = offers(&mut input, mapping.limits).ok()?;
     let columns = mapped(&mut input, mapping, &mut Findings::default())?;
     let rows = columns.iter().map(|column| offers[column.index].length).max()?;
-    // As it is read, and as it is in the table.
+    // Each column is in memory twice: as read, and in the table.
     Some((rows, 2 * width(&columns)))
 }
 
-/// The columns to read, which must be of one length.
+/// Returns the columns to read, which must be of equal length.
 fn mapped(
     input: &mut Box<dyn ReadSeek + '_>,
     mapping: &Mapping,
@@ -109,7 +112,7 @@ fn mapped(
     (!findings.has_errors()).then_some(columns)
 }
 
-/// Columns of the length that most have.
+/// Keeps the columns of the most frequent length.
 fn of_one_length(mut columns: Vec<Column>, offers: &[Offer]) -> Vec<Column> {
     let alike = |length: usize| offers.iter().filter(|other| other.length == length).count();
     let length = offers.iter().map(|offer| offer.length).max_by_key(|&length| alike(length));
@@ -117,7 +120,7 @@ fn of_one_length(mut columns: Vec<Column>, offers: &[Offer]) -> Vec<Column> {
     columns
 }
 
-/// The names of the columns that a file has.
+/// Returns the names of the columns of a file.
 pub(crate) fn names(mut input: Box<dyn ReadSeek + '_>, limits: Limits) -> io::Result<Vec<String>> {
     Ok(offers(&mut input, limits)?.into_iter().map(|offer| offer.name).collect())
 }
@@ -143,7 +146,8 @@ fn offers(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> io::Result<Vec<
     Ok(offers)
 }
 
-/// How many columns an array gives: a vector one, a matrix its own, a single number none.
+/// Returns the number of columns of an array: one of a vector, those of a matrix, none of a single
+/// number.
 fn offered(array: &Array) -> usize {
     match (array.rows, array.columns) {
         (0, _) | (_, 0) | (1, 1) => 0,

@@ -1,25 +1,26 @@
-//! A reader that gives up on rows without an end, and in which every line ends alike.
+//! Reader that refuses rows without an end, and normalises line ends.
 
 use std::cell::Cell;
 use std::io::{self, Read};
 use std::rc::Rc;
 
-/// Bytes handed out since the last complete row, shared with whoever counts the rows.
+/// Number of bytes returned since the last complete row, shared with the reader of rows.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Meter(Rc<Cell<usize>>);
 
 impl Meter {
-    /// A row is complete.
+    /// Marks the end of a row.
     pub(crate) fn reset(&self) {
         self.0.set(0);
     }
 }
 
-/// Passes bytes on until more than the limit (and one read) have gone by without a complete row.
+/// Reader that returns an error once more than the limit (and one read) is returned without a
+/// complete row.
 ///
-/// The limit is on what the CSV parser must hold in memory: a physical line, or a quoted cell whose
-/// quote never closes. Every line end (`\r\n`, `\r`, `\n`, also mixed) comes out as `\n`, and the
-/// last line has one, so that the parser's lines are the lines that a person counts.
+/// The limit bounds the memory of the CSV parser: a physical line, or a quoted cell whose quote
+/// never closes. Every line end (`\r\n`, `\r`, `\n`, also mixed) is returned as `\n`, and the last
+/// line has one, so that the lines of the parser are those that an editor shows.
 pub(crate) struct Metered<R> {
     inner: R,
     meter: Meter,
@@ -33,8 +34,9 @@ impl<R: Read> Metered<R> {
         (Self { inner, meter: meter.clone(), limit, last: b'\n' }, meter)
     }
 
-    /// Makes every line end in the buffer a `\n`; how many bytes are left.
+    /// Replaces every line end in the buffer by `\n`; returns the number of bytes that remain.
     fn line_ends(&mut self, bytes: &mut [u8]) -> usize {
+        // `\r\n` may be split between two reads: the last byte is remembered.
         let last = bytes.last().copied().unwrap_or(self.last);
         let before = std::mem::replace(&mut self.last, last);
         if before != b'\r' && !bytes.contains(&b'\r') {
@@ -67,6 +69,7 @@ impl<R: Read> Read for Metered<R> {
             let read = self.inner.read(buffer)?;
             self.meter.0.set(self.meter.0.get() + read);
             if read == 0 && !matches!(self.last, b'\n' | b'\r') && !buffer.is_empty() {
+                // End of file after a line without an end: supply the end once.
                 (buffer[0], self.last) = (b'\n', b'\n');
                 return Ok(1);
             }

@@ -1,18 +1,19 @@
-//! Column names that need no mapping: a channel's name and a unit suffix.
+//! Canonical column names, which need no mapping: the name of a channel and a unit suffix.
 
 use sistership_model::trial::Channel;
 
 use crate::table::{Raw, Target};
 use crate::units::Kind;
 
-/// Other names in use for a channel; a wind direction without more is where the wind comes from.
+/// Other common names of channels; a wind direction without a qualifier is where the wind comes
+/// from.
 const ALIASES: [(&str, Channel); 2] =
     [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
 
 const RAW_ALIASES: [(&str, Raw); 4] =
     [("lat", Raw::Latitude), ("lon", Raw::Longitude), ("cog", Raw::Course), ("sog", Raw::Speed)];
 
-/// Headers of time in use, whose unit is learned from the cells.
+/// Common headers of time, whose unit is detected from the cells.
 const TIMES: [&str; 9] = [
     "time",
     "timestamp",
@@ -25,13 +26,13 @@ const TIMES: [&str; 9] = [
     "utc time",
 ];
 
-/// Whether a header is one that time is commonly given.
+/// Returns true if the header is a common name of time.
 pub(crate) fn is_time(header: &str) -> bool {
     TIMES.iter().any(|known| header.eq_ignore_ascii_case(known))
 }
 
-/// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name
-/// followed by anything but a unit of its kind (`delta_ordered_rad`) is some other quantity.
+/// Returns the target and unit named by a header, such as `r_radps` or `wind_speed_kn`. The name of
+/// a channel followed by anything but a unit of its kind (`delta_ordered_rad`) is another quantity.
 pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
     let channels = Channel::all().map(|channel| (channel.name(), Target::Channel(channel)));
     let aliases = ALIASES.iter().map(|&(name, channel)| (name, Target::Channel(channel)));
@@ -44,8 +45,8 @@ pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
     })
 }
 
-/// The target that a bare name such as `psi` is, where the unit stands elsewhere and is one of its
-/// kind.
+/// Returns the target of a name without unit suffix, such as `psi`, if the unit given elsewhere is
+/// of its kind.
 pub(crate) fn with_unit(header: &str, unit: &str) -> Option<Target> {
     let target = Target::by_name(header)?;
     Kind::of(target).factor(unit).ok().map(|_| target)

@@ -1,4 +1,4 @@
-//! What a law needs of a trial that a file does not have, all of it at once.
+//! Channels that a law needs and a trial does not have, all of them at once.
 
 use std::fmt;
 
@@ -8,14 +8,14 @@ use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Trial};
 
-/// A channel that is missing.
+/// Channel that is missing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lack {
-    /// Its name in manifests, or that of an input which no channel holds.
+    /// Name in manifests, or that of an input for which there is no channel.
     pub name: String,
-    /// What the law needs it for.
+    /// Reason why the law needs it.
     pub why: &'static str,
-    /// What can be done.
+    /// Advice to the user.
     pub remedy: String,
 }
 
@@ -25,7 +25,7 @@ impl fmt::Display for Lack {
     }
 }
 
-/// Everything that the law needs and the trial does not have.
+/// Returns every channel that the law needs and the trial does not have.
 pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
     let state = "it is part of the state that a simulation starts from";
     let mut needed: Vec<(Channel, &'static str)> =
@@ -47,6 +47,7 @@ pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
             None => {}
         }
     }
+    // A channel may be needed for several reasons; only the first is reported.
     for (at, &(channel, why)) in needed.iter().enumerate() {
         let named_before = needed[..at].iter().any(|&(before, _)| before == channel);
         if !named_before && trial.channel(channel).is_none() {
@@ -56,7 +57,7 @@ pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
     lacks
 }
 
-/// An input that must be recorded: it has no default, and is no constant of the trial.
+/// Returns an input that must be recorded: it has no default, and is no constant of the trial.
 fn given_by(
     trial: &Trial,
     channel: Channel,

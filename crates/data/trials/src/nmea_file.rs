@@ -1,8 +1,8 @@
-//! NMEA 0183 logs: sentences of several instruments become series, and these one table.
+//! NMEA 0183 logs: sentences of several instruments become series, and these become one table.
 //!
-//! Only some sentences tell the time. A line without it lies between two that have it, and is taken
-//! to have come when its place between their lines says; where the log has its own time before each
-//! sentence, that is taken instead.
+//! Only some sentences contain the time. The time of a line without it is interpolated, by line
+//! numbers, between the lines before and after that have it. If the log has its own time before
+//! each sentence, that is used instead.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, BufReader, Read};
@@ -16,14 +16,14 @@ use crate::stamp::{Date, Order, stamp};
 use crate::table::{Column, Raw, Start, Table, Target};
 use crate::units::Kind;
 
-/// Time between two marks beyond which lines between them have no time, ns.
+/// Largest time between two marks, ns, for lines between them to have a time.
 const LONGEST: i64 = 5 * SECOND;
-/// Half a day: what is earlier by more is on the next day.
+/// Half a day, ns: a time that is earlier by more belongs to the next day.
 const MIDNIGHT: i64 = DAY / 2;
-/// Days that a log may go on; a clock that falls back more often is out of order.
+/// Largest number of days of a log; a clock that goes back more often is out of order.
 const DAYS: i64 = 1000;
 
-/// Reads every sentence that a trial can use.
+/// Reads every sentence that is of use for a trial.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
     let mut log = Log::default();
     if let Err(message) = lines(input, mapping, |row, text| log.line(row, text)) {
@@ -33,7 +33,8 @@ pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings)
     log.table(findings)
 }
 
-/// Which sentences at the start of a log hold what, as `GPGGA` holds `latitude`.
+/// Returns the sentences at the start of a log with their contents, such as `GPGGA` with
+/// `latitude`.
 pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
     let mut found = BTreeSet::new();
     for text in start.lines() {
@@ -46,7 +47,7 @@ pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
     found.into_iter().map(|(target, name)| (name, target)).collect()
 }
 
-/// Rows and columns at most.
+/// Returns upper bounds of the number of rows and of columns.
 pub(crate) fn measure(input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
     let mut rows = 0;
     lines(input, mapping, |row, _| {
@@ -54,8 +55,8 @@ pub(crate) fn measure(input: impl Read, mapping: &Mapping) -> Option<(usize, usi
         Ok(())
     })
     .ok()?;
-    // Of a line at most four readings are kept, with their times, before they are put on one time
-    // base.
+    // A line gives at most four readings, which are stored with their times before they are on one
+    // time base.
     Some((rows, 24))
 }
 
@@ -73,6 +74,7 @@ fn lines(
         if read == 0 {
             return Ok(());
         }
+        // The limit was reached before a line end.
         if read as u64 == most {
             return Err(format!("line {row} is longer than {most} bytes"));
         }
@@ -84,10 +86,10 @@ fn lines(
     Ok(())
 }
 
-/// What a series is made of: sentences of one kind from one talker, such as `HEHDT`.
+/// Origin of a series: sentences of one kind from one talker, such as `HEHDT`.
 type Origin = (Target, [u8; 5]);
 
-/// Lines that wait for the next mark at most.
+/// Largest number of lines that wait for the next mark.
 const PENDING: usize = 10_000;
 
 #[derive(Default)]
@@ -97,7 +99,7 @@ struct Readings {
     rows: Vec<u32>,
 }
 
-/// A line whose time is known once the next mark is.
+/// Line whose time is known at the next mark.
 struct Pending {
     row: usize,
     readings: Vec<(Origin, f64)>,
@@ -105,13 +107,14 @@ struct Pending {
 
 #[derive(Default)]
 struct Log {
-    /// The first mark, which time is counted from, and the last: line and ns, over midnights.
+    /// First mark, from which time is counted, and last mark: line and ns, continuous over
+    /// midnights.
     first: Option<i64>,
     last: Option<(usize, i64)>,
-    /// ns of the first mark's midnight since 1970.
+    /// Midnight of the day of the first mark, ns since 1970.
     midnight: Option<i64>,
     days: i64,
-    /// Whether lines have a time of their own.
+    /// True if the log has its own time before each sentence.
     own: bool,
     pending: Vec<Pending>,
     series: BTreeMap<Origin, Readings>,
@@ -134,6 +137,8 @@ impl Log {
 
     fn sentence(&mut self, row: usize, sentence: Sentence) {
         let own = stamp(sentence.before.trim().trim_end_matches([',', ';', ':']), Order::Open);
+        // The first sentence decides whether the log has times of its own; later ones must agree
+        // with it.
         let own = own.filter(|_| self.own || self.last.is_none());
         self.own = self.own || own.is_some();
         let of_day = match own {
@@ -159,7 +164,7 @@ impl Log {
             readings.map(|(target, value)| ((target, talker), value)).collect();
         match self.last {
             _ if readings.is_empty() => {}
-            // Without a mark before it, a line has no time.
+            // A line before the first mark has no time.
             None => self.timeless += 1,
             Some((_, now)) if of_day.is_some() => self.keep(row, now, readings),
             Some(_) if self.pending.len() == PENDING => self.timeless += 1,
@@ -167,7 +172,7 @@ impl Log {
         }
     }
 
-    /// A line whose time is known; those since the mark before get theirs.
+    /// Adds a line with a known time; the lines since the previous mark obtain theirs.
     fn mark(&mut self, row: usize, of_day: i64, midnight: Option<i64>) {
         let mut now = of_day + self.days * DAY;
         if let Some((_, last)) = self.last {
@@ -175,7 +180,7 @@ impl Log {
                 self.days += 1;
                 now += DAY;
             }
-            // Sentences of one fix tell the same time.
+            // Sentences of the same fix repeat its time.
             if now <= last {
                 return;
             }
@@ -189,6 +194,8 @@ impl Log {
                 self.timeless += pending.len();
             } else {
                 for Pending { row: at, readings } in pending {
+                    // Linear in line numbers: lines are assumed to arrive at a constant rate
+                    // between two marks.
                     let share = (at - line) as f64 / (row - line) as f64;
                     self.keep(at, last + (share * (now - last) as f64) as i64, readings);
                 }
@@ -201,6 +208,7 @@ impl Log {
         let t = (at - self.first.unwrap_or(at)) as f64 / SECOND as f64;
         for (origin, value) in readings {
             let series = self.series.entry(origin).or_default();
+            // A series must increase strictly in time for the interpolation that follows.
             if series.t.last().is_none_or(|&last| last < t) {
                 series.t.push(t);
                 series.values.push(value);
@@ -209,7 +217,7 @@ impl Log {
         }
     }
 
-    /// One series for each target: of the origin with most readings.
+    /// Selects one series for each target: that of the origin with most readings.
     fn chosen(&mut self, findings: &mut Findings) -> BTreeMap<Target, (String, Readings)> {
         let mut chosen: BTreeMap<Target, (String, Readings)> = BTreeMap::new();
         for ((target, origin), readings) in std::mem::take(&mut self.series) {
@@ -229,8 +237,8 @@ impl Log {
         self.timeless += self.pending.len();
         self.tell(findings);
         let mut chosen = self.chosen(findings);
-        // One rudder is reported as that to starboard, and the yaw rate is of the ship whatever
-        // reports it.
+        // A single rudder is reported as the starboard one, and the yaw rate is that of the ship,
+        // whichever talker reports it.
         let base = base(&chosen)?;
         let times = chosen.get(&base)?;
         let mut table = Table { rows: times.1.rows.clone(), ..Table::default() };
@@ -296,7 +304,7 @@ impl Log {
     }
 }
 
-/// The series whose times the table has: positions, or what was read most often.
+/// Returns the series whose times the table has: positions, or the series with most readings.
 fn base(chosen: &BTreeMap<Target, (String, Readings)>) -> Option<Target> {
     let latitude = Target::Raw(Raw::Latitude);
     if chosen.contains_key(&latitude) {

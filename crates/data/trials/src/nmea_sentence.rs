@@ -1,4 +1,4 @@
-//! NMEA 0183: what the sentences say that a trial can use, in canonical units.
+//! NMEA 0183 sentences: the values that are of use for a trial, in canonical units.
 
 use std::f64::consts::PI;
 
@@ -10,34 +10,36 @@ use crate::table::{Raw, Target};
 const KNOT: f64 = 1852.0 / 3600.0;
 const DEG: f64 = PI / 180.0;
 
-/// A sentence whose checksum is right.
+/// Sentence with a valid checksum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Sentence<'a> {
     pub talker: &'a str,
     pub kind: &'a str,
     fields: &'a str,
-    /// What stands before the sentence: the logger's own time, perhaps.
+    /// Text before the sentence, such as the logger's own time.
     pub before: &'a str,
 }
 
-/// What a line of a log is.
+/// Content of a line of a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Line<'a> {
     Sentence(Sentence<'a>),
     /// A sentence whose checksum is wrong or missing.
     Damaged,
-    /// Something else.
+    /// Any other line.
     Other,
 }
 
-/// Reads a line.
+/// Parses a line of a log.
 pub(crate) fn line(text: &str) -> Line<'_> {
     let Some((before, sentence)) = text.split_once('$') else { return Line::Other };
     let Some((body, sum)) = sentence.rsplit_once('*') else { return Line::Damaged };
     let wanted = sum.trim().get(..2).and_then(|sum| u8::from_str_radix(sum, 16).ok());
+    // The checksum is the exclusive or of all bytes between `$` and `*`.
     if wanted != Some(body.bytes().fold(0, |sum, byte| sum ^ byte)) {
         return Line::Damaged;
     }
+    // Addresses that begin with P are proprietary sentences without a talker.
     let (address, fields) = body.split_once(',').unwrap_or((body, ""));
     match (address.get(..2), address.get(2..)) {
         (Some(talker), Some(kind)) if kind.len() == 3 && !talker.starts_with('P') => {
@@ -48,7 +50,7 @@ pub(crate) fn line(text: &str) -> Line<'_> {
 }
 
 impl Sentence<'_> {
-    /// A field by its number, from 1; empty where it is missing.
+    /// Returns a field by its number, from 1; empty if it is missing.
     fn field(&self, number: usize) -> &str {
         self.fields.split(',').nth(number - 1).unwrap_or_default().trim()
     }
@@ -61,7 +63,7 @@ impl Sentence<'_> {
         self.field(number) == wanted
     }
 
-    /// Nanoseconds since midnight UTC, where the sentence says it.
+    /// Returns the nanoseconds since midnight UTC, if the sentence contains the time.
     pub(crate) fn of_day(&self) -> Option<i64> {
         let text = match self.kind {
             "GGA" | "RMC" | "ZDA" => self.field(1),
@@ -69,6 +71,7 @@ impl Sentence<'_> {
         };
         let digits = text.get(..6).filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()))?;
         let part = |from: usize| digits[from..from + 2].parse::<i64>().ok();
+        // Digits after `hhmmss`, such as `.25`.
         let fraction: f64 = format!("0{}", &text[6..]).parse().ok()?;
         let (hours, minutes, seconds) = (part(0)?, part(2)?, part(4)?);
         let fits = hours < 24 && minutes < 60 && seconds < 61 && (0.0..1.0).contains(&fraction);
@@ -76,7 +79,7 @@ impl Sentence<'_> {
         fits.then_some(((hours * 60 + minutes) * 60 + seconds) * SECOND + fraction)
     }
 
-    /// Nanoseconds of the day's midnight since 1970, where the sentence says it.
+    /// Returns midnight of the day in nanoseconds since 1970, if the sentence contains the date.
     pub(crate) fn midnight(&self) -> Option<i64> {
         let whole = |text: &str| text.parse::<i64>().ok();
         let day = match self.kind {
@@ -91,15 +94,16 @@ impl Sentence<'_> {
         day.map(|day| day * DAY)
     }
 
-    /// Degrees and minutes with their hemisphere, rad.
+    /// Returns an angle written as degrees and minutes with its hemisphere, rad.
     fn angle(&self, number: usize, negative: &str) -> Option<f64> {
         let value = self.number(number).filter(|value| *value >= 0.0)?;
+        // `4807.038` is 48 degrees and 7.038 minutes.
         let degrees = (value / 100.0).floor();
         let angle = (degrees + (value - 100.0 * degrees) / 60.0) * DEG;
         Some(if self.is(number + 1, negative) { -angle } else { angle })
     }
 
-    /// What a trial can use of it; nothing where it says that it is not valid.
+    /// Returns the readings that are of use for a trial; none if the sentence is marked invalid.
     pub(crate) fn readings(&self) -> Vec<(Target, f64)> {
         let channel = |channel, value: Option<f64>| value.map(|v| (Target::Channel(channel), v));
         let raw = |raw, value: Option<f64>| value.map(|v| (Target::Raw(raw), v));
@@ -111,6 +115,7 @@ impl Sentence<'_> {
             };
             [raw(Raw::Latitude, Some(latitude)), raw(Raw::Longitude, Some(longitude))]
         };
+        // Field numbers of each kind of sentence; status fields must be `A` (valid).
         let found: Vec<Option<(Target, f64)>> = match self.kind {
             "GGA" => position(2, !matches!(self.field(6), "" | "0")).into(),
             "RMC" if self.is(2, "A") => {
@@ -154,8 +159,8 @@ impl Sentence<'_> {
         found.into_iter().flatten().collect()
     }
 
-    /// Shafts are numbered from 0, which is the only one or in the middle; odd ones are to
-    /// starboard.
+    /// Returns the revolutions of a shaft. Shafts are numbered from 0, the only or the centre one;
+    /// odd ones are to starboard.
     fn shaft(&self) -> Option<(Target, f64)> {
         let revolutions = self.number(3)? / 60.0;
         match self.number(2)? as i64 {

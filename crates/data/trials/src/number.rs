@@ -1,11 +1,11 @@
-//! From the text of a cell to a number, or to what is wrong with the text.
+//! Conversion of the text of a cell to a number, or to the fault of the text.
 
 use std::fmt;
 
-/// Bytes of a cell that are shown.
+/// Largest number of bytes of a cell in a message.
 const SHOWN: usize = 40;
 
-/// Why a cell holds no number.
+/// Reason why a cell contains no number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Fault {
     Absent,
@@ -13,7 +13,7 @@ pub(crate) enum Fault {
     Empty,
     NotANumber,
     Text(String),
-    /// In a column of dates or times of day.
+    /// Text that is no time, in a column of dates or times of day.
     NoTime(String),
     OtherTime(String),
 }
@@ -32,12 +32,14 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The number in a cell: decimals with a point, perhaps an exponent, as `-1.5` or `1e-3`.
+/// Parses the number in a cell: decimals with a point, optionally an exponent, such as `-1.5` or
+/// `1e-3`.
 pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
     let text = cell.trim_ascii();
     if text.is_empty() {
         return Err(Fault::Empty);
     }
+    // Fast path; the general parser accepts the same numbers.
     if let Some(value) = plain(text) {
         return Ok(value);
     }
@@ -49,18 +51,18 @@ pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
     }
 }
 
-/// Digits that an f64 holds exactly, whatever they are.
+/// Number of decimal digits that an f64 holds exactly.
 const EXACT: usize = 15;
 const TENS: [f64; EXACT + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
-/// A short number without exponent: its digits and the power of ten are exact, so that their
-/// quotient is rounded once and is what the standard library gives (Clinger 1990, doi
-/// 10.1145/93542.93557). Most cells of a log are such.
+/// Parses a short number without exponent: its digits and the power of ten are exact, so that their
+/// quotient is rounded once and equals the result of the standard library (Clinger 1990, doi
+/// 10.1145/93542.93557). Most cells of a log are such numbers.
 #[inline]
 fn plain(text: &[u8]) -> Option<f64> {
     let digits = text.strip_prefix(b"-").unwrap_or(text);
-    // With a point there may be one byte more.
+    // A decimal point takes one byte more.
     if digits.len() > EXACT + 1 {
         return None;
     }
@@ -82,13 +84,13 @@ fn plain(text: &[u8]) -> Option<f64> {
     Some(if digits.len() < text.len() { -value } else { value })
 }
 
-/// A cell as it is shown in a message.
+/// Returns the text of a cell for a message, shortened if it is long.
 pub(crate) fn shown(cell: &[u8]) -> String {
     let text = cell.trim_ascii();
     String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned()
 }
 
-/// What to write instead, where the text shows what was meant.
+/// Returns advice if the text shows what was meant.
 fn remedy(text: &str) -> &'static str {
     let thousands =
         |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');

@@ -1,8 +1,8 @@
-//! Dates such as 05/01/2024, of which only the whole column tells which number is the month.
+//! Dates such as 05/01/2024, whose order of day and month is only known from the whole column.
 
 use crate::calendar::day;
 
-/// Two numbers of which one is the month, and the year.
+/// Date of two numbers, one of which is the month, and the year.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct OpenDate {
     pub first: i64,
@@ -10,21 +10,21 @@ pub(crate) struct OpenDate {
     pub year: i64,
 }
 
-/// Days that a date is kept apart from the next by, so that a zone can move its hours beyond
-/// midnight.
+/// Number of days between consecutive codes, so that a time zone can move the hours beyond midnight
+/// without reaching another code.
 const APART: i64 = 4;
 const DAY_S: f64 = 86_400.0;
 
-/// What the rows of a column have told of the order.
+/// Evidence of the rows of a column on the order of day and month.
 #[derive(Debug, Default)]
 pub(crate) struct OpenDates {
-    /// Rows in which the first or the second number is no month.
+    /// Row in which the first, and the second, number cannot be a month.
     first_is_day: Option<usize>,
     second_is_day: Option<usize>,
 }
 
 impl OpenDates {
-    /// A number for the date, in days, from which the date can be had back.
+    /// Returns a code for the date, in days, from which the date can be recovered.
     pub(crate) fn slot(&mut self, row: usize, date: OpenDate) -> i64 {
         if date.first > 12 {
             self.first_is_day.get_or_insert(row);
@@ -35,12 +35,14 @@ impl OpenDates {
         ((date.year * 100 + date.first) * 100 + date.second) * APART
     }
 
-    /// Turns seconds by such numbers into seconds by days; the day of the first.
+    /// Converts seconds that count codes to seconds that count days; returns the day of the first.
     pub(crate) fn days(&self, first_slot: i64, values: &mut [f64]) -> Result<i64, String> {
         let day_first = self.day_first()?;
         let first = known(first_slot / APART, day_first)?;
         let width = APART as f64 * DAY_S;
         for value in values {
+            // The offset by one day keeps times that a zone has moved to the day before in their
+            // own code.
             let slot = ((*value + DAY_S) / width).floor();
             let day = known(first_slot / APART + slot as i64, day_first)?;
             *value += (day - first) as f64 * DAY_S - slot * width;

@@ -1,4 +1,4 @@
-//! What is told of a file: a refusal, or the outcome of its checks.
+//! Result of reading a file: a refusal, or the outcome of its checks.
 
 use std::fmt;
 
@@ -7,12 +7,12 @@ use sistership_model::trial::{Finding, Trial};
 
 use crate::derived_channel::DerivedChannel;
 
-/// A trial that is not accepted, and everything that was found wrong with it.
+/// Refusal of a trial, with every error found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub struct Refusal {
-    /// The file's name as it was given.
+    /// Name of the file as given.
     pub file: String,
-    /// The errors, each with row and column where they could be told.
+    /// Errors, each with row and column where they are known.
     pub findings: Vec<Finding>,
 }
 
@@ -33,42 +33,43 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// A trial with what it has no place for.
+/// Trial with data that have no place in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialReading {
     /// The trial.
     pub trial: Trial,
-    /// What time zero is in the calendar, as `2024-05-01T12:00:03Z`, where the file says it.
+    /// Calendar time of time zero, such as `2024-05-01T12:00:03Z`, if the file contains it.
     pub start: Option<String>,
-    /// Channels that were not measured, with their variances.
+    /// Derived channels with their variances.
     pub derived: Vec<DerivedChannel>,
 }
 
-/// The outcome of checking one file; serialises as the `check` command prints it.
+/// Outcome of checking one file; serialised as the `check` command prints it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CheckOutcome {
-    /// The file's name as it was given.
+    /// Name of the file as given.
     pub file: String,
-    /// Rows of data that could be used.
+    /// Number of rows of data that can be used.
     pub rows: usize,
-    /// Time from the first to the last of them, s.
+    /// Time from the first to the last row, s.
     pub duration_s: f64,
-    /// What refuses the trial.
+    /// Errors, which refuse the trial.
     #[serde(serialize_with = "with_every_key")]
     pub errors: Vec<Finding>,
-    /// What is remarked without refusing it.
+    /// Warnings, which do not refuse the trial.
     #[serde(serialize_with = "with_every_key")]
     pub warnings: Vec<Finding>,
 }
 
 impl CheckOutcome {
-    /// Whether the trial is accepted.
+    /// Returns true if the trial is accepted.
     pub fn accepted(&self) -> bool {
         self.errors.is_empty()
     }
 }
 
-/// Scripts look for the keys `row` and `column`, so they are there even when a finding has none.
+/// Serialises findings with the keys `row` and `column` even if they are empty, as scripts expect
+/// them.
 fn with_every_key<S: Serializer>(findings: &[Finding], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(findings.iter().map(Entry::of))
 }

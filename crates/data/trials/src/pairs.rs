@@ -1,4 +1,4 @@
-//! Rudders and propellers of which a ship has two: a trial holds one, their mean.
+//! Rudders and propellers of twin-screw ships: a trial has one channel, their mean.
 
 use sistership_model::trial::Channel;
 
@@ -9,7 +9,8 @@ use crate::table::Raw;
 const PAIRS: [(Channel, Raw, Raw); 2] =
     [(Channel::Delta, Raw::DeltaS, Raw::DeltaP), (Channel::N, Raw::NS, Raw::NP)];
 
-/// The mean of each pair, in the file's own signs; says how far its sides were apart.
+/// Returns the mean of each pair, in the signs of the file; reports the largest difference of the
+/// sides.
 pub(crate) fn means(
     recording: &mut Recording,
     findings: &mut Findings,

@@ -1,4 +1,4 @@
-//! The values of a Parquet column as f64, some rows at a time.
+//! Values of a Parquet column as f64, read in batches.
 
 use parquet::basic::{ConvertedType, LogicalType};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -7,39 +7,41 @@ use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::reader::RowGroupReader;
 use parquet::schema::types::ColumnDescriptor;
 
-/// Rows that are decoded at a time.
+/// Number of rows that are decoded at a time.
 pub(crate) const BATCH: usize = 8192;
 
-/// Rows of a row group.
+/// Returns the number of rows of a row group.
 pub(crate) fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
     usize::try_from(group.metadata().num_rows())
         .map_err(|_| ParquetError::General("a row group has a negative number of rows".into()))
 }
 
-/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an
-/// integer beyond 2^53, which no f64 holds exactly.
+/// Column of a row group as f64, decoded in batches; a null becomes NaN, and so does an integer
+/// beyond 2^53, which an f64 does not hold exactly.
 pub(crate) struct Cells {
     reader: ColumnReader,
     full: i16,
     unsigned: bool,
     rows: usize,
     read: usize,
-    /// The rows last read; a null is NaN.
+    /// Values of the last batch; a null is NaN.
     pub values: Vec<f64>,
 }
 
 impl Cells {
     pub(crate) fn new(group: &dyn RowGroupReader, index: usize) -> ParquetResult<Self> {
         let descriptor = group.metadata().column(index).column_descr();
+        // The definition level of a value; 0 for columns without nulls.
         let (full, unsigned) = (descriptor.max_def_level(), is_unsigned(descriptor));
         let (reader, rows) = (group.get_column_reader(index)?, group_rows(group)?);
         Ok(Self { reader, full, unsigned, rows, read: 0, values: Vec::new() })
     }
 
-    /// Reads so many further rows.
+    /// Reads the next `count` rows.
     ///
     /// # Errors
-    /// The column is damaged, of another type, or not as long as the group says.
+    /// Returns an error if the column is damaged, of another type, or shorter than the group
+    /// declares.
     pub(crate) fn next(&mut self, count: usize) -> ParquetResult<()> {
         let (full, values) = (self.full, &mut self.values);
         values.clear();
@@ -65,6 +67,7 @@ impl Cells {
             _ => Err(ParquetError::General("a column is of an unexpected type".into())),
         }?;
         self.read += self.values.len();
+        // Fewer values than the group declares mean that the file is damaged.
         if records == count && self.values.len() == count {
             return Ok(());
         }
@@ -85,6 +88,7 @@ fn batch<T: DataType>(
     let (mut levels, mut present) = (Vec::new(), Vec::new());
     let (records, ..) = reader.read_records(count, Some(&mut levels), None, &mut present)?;
     let mut present = present.into_iter().map(to_f64);
+    // The reader returns non-null values only; definition levels give the places of nulls.
     match full {
         0 => values.extend(present),
         _ => values.extend(
@@ -102,7 +106,7 @@ fn is_unsigned(column: &ColumnDescriptor) -> bool {
         || matches!(column.converted_type(), C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64)
 }
 
-/// The integer as f64, or NaN where an f64 cannot tell it from its neighbours.
+/// Returns the integer as f64, or NaN if an f64 cannot distinguish it from its neighbours.
 fn exact(value: i128) -> f64 {
     if value.unsigned_abs() <= 1 << 53 { value as f64 } else { f64::NAN }
 }

@@ -1,4 +1,4 @@
-//! Parquet, by the low-level column readers: no Arrow.
+//! Parquet files, read by the low-level column readers without Arrow.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ use crate::stream;
 use crate::table::{Column, Table, width};
 use crate::taker::{RowsFile, Taker, time_at};
 
-/// Reads the mapped columns; nothing after errors that leave nothing to check.
+/// Reads the mapped columns; returns `None` after errors that prevent any check.
 ///
 /// Rows are counted as in a CSV file: the first row of data is row 2.
 pub(crate) fn read<R: ChunkReader + 'static>(
@@ -38,21 +38,22 @@ pub(crate) fn read<R: ChunkReader + 'static>(
     stream::whole(file, mapping, findings)
 }
 
-/// The rows of a Parquet file.
+/// Rows of a Parquet file.
 pub(crate) struct ParquetRows<R: ChunkReader + 'static> {
     reader: SerializedFileReader<R>,
     columns: Vec<Column>,
     clock: Clock,
     rows: usize,
     most: usize,
-    /// Why it cannot be read on.
+    /// Reason for which reading stopped.
     stopped: Option<String>,
 }
 
 impl<R: ChunkReader + 'static> ParquetRows<R> {
-    /// Reads what the file says of itself; nothing after errors. Rows are counted by who holds
-    /// them.
+    /// Reads the footer of the file; returns `None` after errors. The limit on rows is checked by
+    /// the sink that stores them.
     pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
+        // Segments of a file of any length are read; the sink limits the rows that it stores.
         let limits = Limits { rows: usize::MAX, ..mapping.limits };
         let Mapped { columns, rows, .. } = mapped(&input, mapping, limits, findings)?;
         let opened = guarded(|| SerializedFileReader::new(input)).map_err(|error| {
@@ -63,6 +64,7 @@ impl<R: ChunkReader + 'static> ParquetRows<R> {
     }
 
     fn groups(&mut self, taker: &mut impl Taker) -> ParquetResult<()> {
+        // Column readers of a row group advance together, one batch of rows at a time.
         let mut row = 1;
         for index in 0..self.reader.num_row_groups() {
             let group = self.reader.get_row_group(index)?;
@@ -74,6 +76,7 @@ impl<R: ChunkReader + 'static> ParquetRows<R> {
                 cells.iter_mut().try_for_each(|cells| cells.next(count))?;
                 batch_rows(&self.columns, &mut self.clock, row..row + count, &cells, taker);
                 row += count;
+                // After each batch, so that at most one batch too many is stored.
                 if taker.held() > self.most {
                     return Err(ParquetError::General(too_many(self.most)));
                 }
@@ -105,8 +108,8 @@ impl<R: ChunkReader + 'static> RowsFile for ParquetRows<R> {
     }
 }
 
-/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be
-/// refused.
+/// Returns the number of rows and of columns that are read, and the bytes that pages take at a
+/// time; `None` for a file that will be refused.
 pub(crate) fn measure<R: ChunkReader + 'static>(
     input: &R,
     mapping: &Mapping,
@@ -115,7 +118,7 @@ pub(crate) fn measure<R: ChunkReader + 'static>(
     Some((mapped.rows, width(&mapped.columns), mapped.holding))
 }
 
-/// What is read of a file.
+/// Columns that are read of a file, and its size.
 struct Mapped {
     columns: Vec<Column>,
     rows: usize,
@@ -123,7 +126,7 @@ struct Mapped {
     holding: u64,
 }
 
-/// Finds the columns to read, and holds their pages against the limits before any is decompressed.
+/// Finds the columns to read, and checks their pages against the limits before any is unpacked.
 fn mapped<R: ChunkReader + 'static>(
     input: &R,
     mapping: &Mapping,
@@ -135,6 +138,7 @@ fn mapped<R: ChunkReader + 'static>(
     let (meta, rows) = opened.ok()?;
     let schema = meta.file_metadata().schema_descr();
     let mut columns = resolve(&names(schema), mapping, findings)?;
+    // Columns of other types cannot be identified by their values.
     if mapping.unidentified.is_some() {
         columns.retain(|column| is_number(&schema.column(column.index)));
     }
@@ -146,6 +150,8 @@ fn mapped<R: ChunkReader + 'static>(
         };
         let parts: Result<Vec<Held>, String> = meta.row_groups().iter().map(of_group).collect();
         match parts {
+            // Row groups are read one after the other, the columns of a group together: the maximum
+            // over groups, and the sum over columns.
             Ok(parts) => holding += parts.into_iter().fold(Held::default(), Held::max).bytes(),
             Err(message) => findings.error(None, Some(&column.header), message),
         }
@@ -166,8 +172,8 @@ fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Fin
     }
 }
 
-/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to
-/// be a number is refused.
+/// Returns true if the column holds plain numbers. Dates, times and decimals are stored as
+/// integers, too, but in units of their own: only known types are accepted.
 fn is_number(column: &ColumnDescriptor) -> bool {
     use ConvertedType as C;
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
@@ -196,7 +202,7 @@ fn type_name(column: &ColumnDescriptor) -> String {
     }
 }
 
-/// Gives rows that have been decoded, by the numbers of those before them.
+/// Passes decoded rows to the sink; `before` is the range of the numbers of the preceding rows.
 fn batch_rows<T: Taker>(
     columns: &[Column],
     clock: &mut Clock,
@@ -208,6 +214,7 @@ fn batch_rows<T: Taker>(
     let number =
         |k: usize, at: usize| cells[at].values.get(k).copied().filter(|value| value.is_finite());
     for (k, before) in before.enumerate() {
+        // The first row of data is row 2, as in a CSV file with a header.
         let row = before + 1;
         if let Some(at) = time {
             let si = number(k, at).map(|time| time * columns[at].to_si);

@@ -1,5 +1,4 @@
-//! What a Parquet file says of itself, at its end: held against the limits before anything of it is
-//! decoded.
+//! Footer of a Parquet file, checked against the limits before anything is decoded.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -11,14 +10,14 @@ use parquet::schema::types::SchemaDescriptor;
 
 use crate::limits::Limits;
 
-/// The library asserts some of what a file says of itself; on a file that lies, such a panic
-/// becomes an error.
+/// Runs `work` and converts a panic to an error: the library asserts some properties of a file,
+/// which a forged file violates.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResult<T> {
     let contradiction = |_| Err(ParquetError::General("it contradicts itself".into()));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(contradiction)
 }
 
-/// Why a file is not read at all.
+/// Reason for which a file is not read at all.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FileRefusal {
     #[error("not a Parquet file that can be read: {0}")]
@@ -40,7 +39,7 @@ impl FileRefusal {
     }
 }
 
-/// Opens the file and holds it against the limits before any sample is decoded.
+/// Opens the file and checks it against the limits before any sample is decoded.
 pub(crate) fn open<R: ChunkReader + 'static>(
     input: R,
     limits: Limits,
@@ -49,7 +48,7 @@ pub(crate) fn open<R: ChunkReader + 'static>(
     guarded(|| SerializedFileReader::new(input)).map_err(FileRefusal::unreadable)
 }
 
-/// What the file says of itself, as far as that is within the limits, and its rows.
+/// Returns the metadata of the file, if it is within the limits, and the number of rows.
 pub(crate) fn metadata<R: ChunkReader + 'static>(
     input: &R,
     limits: Limits,
@@ -58,6 +57,7 @@ pub(crate) fn metadata<R: ChunkReader + 'static>(
     if footer > limits.footer_bytes as u64 {
         return Err(FileRefusal::Footer { found: footer, most: limits.footer_bytes });
     }
+    // The footer is checked before the library parses it, which trusts its lengths.
     pages::footer(input, footer).map_err(FileRefusal::unreadable)?;
     let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input))
         .map_err(FileRefusal::unreadable)?;
@@ -70,7 +70,8 @@ pub(crate) fn metadata<R: ChunkReader + 'static>(
     }) {
         return Err(FileRefusal::unreadable("a column lies outside the file"));
     }
-    // The groups are what is read, so they are counted, not the file's own total.
+    // The rows of the groups are counted, since these are read; the total of the file is not
+    // trusted.
     let groups = meta.row_groups().iter().map(|group| group.num_rows());
     let counted: Option<Vec<usize>> =
         groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
@@ -86,7 +87,7 @@ pub(crate) fn metadata<R: ChunkReader + 'static>(
     Ok((meta, rows))
 }
 
-/// Bytes of what the file says of itself; its last eight bytes hold their number and a mark.
+/// Returns the size of the footer, bytes; the last eight bytes of the file contain it and a mark.
 fn footer_bytes<R: ChunkReader>(input: &R) -> ParquetResult<u64> {
     let at = input
         .len()
@@ -96,12 +97,12 @@ fn footer_bytes<R: ChunkReader>(input: &R) -> ParquetResult<u64> {
     Ok(end.first_chunk().map_or(0, |bytes| u64::from(u32::from_le_bytes(*bytes))))
 }
 
-/// Dotted names of the columns of an opened file.
+/// Returns the dotted names of the columns of an opened file.
 pub(crate) fn headers<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>) -> Vec<String> {
     names(reader.metadata().file_metadata().schema_descr())
 }
 
-/// Dotted names of the columns of a schema.
+/// Returns the dotted names of the columns of a schema.
 pub(crate) fn names(schema: &SchemaDescriptor) -> Vec<String> {
     schema.columns().iter().map(|column| column.path().string()).collect()
 }

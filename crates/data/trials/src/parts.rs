@@ -1,4 +1,4 @@
-//! One pass over a file from which several stretches are kept, each in a table of its own.
+//! Reading of several segments of a file in one pass, each into a table of its own.
 
 use crate::clock::Clock;
 use crate::findings::Findings;
@@ -9,13 +9,14 @@ use crate::stretches::{Stretch, StretchFault, Window};
 use crate::table::{Column, Table};
 use crate::taker::{RowsFile, Taker};
 
-/// A stretch that is asked for: what it is called, and how it is read.
+/// Segment to be read: its label, and its mapping.
 pub(crate) struct Asked<'a> {
     pub label: &'a str,
     pub mapping: &'a Mapping,
 }
 
-/// Reads stretches; what was found of the header, each is told. One that is not there has no table.
+/// Reads segments. The findings on the header are added to those of each segment; a segment without
+/// rows or with an error has no table.
 pub(crate) fn read(
     mut file: impl RowsFile,
     asked: &[Asked],
@@ -36,6 +37,7 @@ pub(crate) fn read(
         file.finish(drops[at], &mut table, &mut findings);
         let window = windows.iter().find(|(_, part)| *part == at).map(|(window, _)| *window);
         let outside = window.and_then(|window| window.fault(first_s, last_s));
+        // The first fault that applies, from the most to the least fundamental.
         let open = is_open.then_some(StretchFault::Open);
         let empty = window.filter(|_| table.rows.is_empty() && !findings.has_errors());
         let empty = empty.map(|Window { from_s, to_s }| StretchFault::NoRow { from_s, to_s });
@@ -52,18 +54,18 @@ fn missing(asked: &Asked) -> sistership_model::manifest::Missing {
     asked.mapping.conventions.missing
 }
 
-/// The tables that grow, and which of them a time belongs to.
+/// Tables under construction, and the assignment of times to them.
 struct Parts<'a> {
     builders: Vec<Builder<'a>>,
-    /// In order of time; none overlaps another.
+    /// Windows in order of time, without overlap, with the index of the table.
     windows: Vec<(Window, usize)>,
     faults: Vec<Option<StretchFault>>,
-    /// Between these times rows belong to the part, or to none.
+    /// Window of times in which all rows belong to the table `at`, or to none.
     known: Window,
     at: Option<usize>,
     first_s: f64,
     last_s: f64,
-    /// Whether times cannot be told row by row.
+    /// True if times cannot be converted row by row.
     is_open: bool,
 }
 
@@ -81,7 +83,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Puts the stretches in order, once it is known what time zero is.
+    /// Orders the segments in time, once the calendar time of time zero is known.
     fn settle(&mut self, asked: &[Asked], clock: &Clock) {
         let start = clock.start();
         let mut windows = Vec::new();
@@ -105,8 +107,9 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Learns which part a time belongs to, and between which times that holds.
+    /// Finds the table to which a time belongs, and the window in which this holds.
     fn locate(&mut self, t_s: f64) {
+        // The first window that does not end before `t_s`.
         let next = self.windows.partition_point(|(window, _)| window.to_s < t_s);
         let ends = next.checked_sub(1).map(|before| self.windows[before].0.to_s.next_up());
         match self.windows.get(next) {
@@ -123,7 +126,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// A pass over the rows.
+/// Row sink that distributes rows to the tables.
 struct Pass<'a, 'b> {
     asked: &'a [Asked<'a>],
     parts: &'a mut Parts<'b>,
@@ -135,6 +138,7 @@ impl Taker for Pass<'_, '_> {
     #[inline]
     fn wants(&mut self, _: usize, t_s: Option<f64>, clock: &Clock) -> bool {
         let parts = &mut *self.parts;
+        // A row without a time belongs to the segment of the row before.
         let Some(t_s) = t_s else {
             parts.is_open = parts.is_open || clock.is_open();
             return parts.at.is_some();
@@ -144,6 +148,7 @@ impl Taker for Pass<'_, '_> {
         }
         parts.first_s = parts.first_s.min(t_s);
         parts.last_s = parts.last_s.max(t_s);
+        // Times mostly ascend: a search is only needed where a row leaves the known window.
         if !(parts.known.from_s <= t_s && t_s <= parts.known.to_s) {
             parts.locate(t_s);
         }

@@ -1,5 +1,5 @@
-//! Positions by latitude and longitude become m north and east of the first fix; those of an
-//! antenna become midship's.
+//! Conversion of latitude and longitude to m north and east of the first fix, and of positions of
+//! an antenna to midship.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -11,7 +11,7 @@ use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
 use crate::table::Raw;
 
-/// Makes `x` and `y` of fixes, where there are any and positions are not given in m.
+/// Computes `x` and `y` from fixes, if there are any and positions are not given in m.
 pub(crate) fn local(recording: &mut Recording, findings: &mut Findings) {
     let fixes = (recording.raw.remove(&Raw::Latitude), recording.raw.remove(&Raw::Longitude));
     let (latitude, longitude) = match fixes {
@@ -23,6 +23,7 @@ pub(crate) fn local(recording: &mut Recording, findings: &mut Findings) {
         let message = "positions in m are read; latitude and longitude are not";
         return findings.warning(None, None, message);
     }
+    // Longitudes may count from 0 to 360 degrees.
     let off = recording
         .hits(0..latitude.len(), |k| latitude[k].abs() > FRAC_PI_2 || longitude[k].abs() > TAU);
     if !off.is_empty() {
@@ -35,8 +36,8 @@ pub(crate) fn local(recording: &mut Recording, findings: &mut Findings) {
     project(recording, &latitude, &longitude, findings);
 }
 
-/// Distance and azimuth on the ellipsoid WGS 84 from the first fix, so that distances from there
-/// are true.
+/// Projects fixes by distance and azimuth on the ellipsoid WGS 84 from the first fix, so that
+/// distances from there are true.
 fn project(
     recording: &mut Recording,
     latitude: &[f64],
@@ -73,6 +74,7 @@ pub(crate) fn to_midship(recording: &mut Recording, antenna: Antenna, findings: 
         Some(psi) => {
             for ((x, y), psi) in x.iter_mut().zip(&mut y).zip(psi) {
                 let (sin, cos) = psi.sin_cos();
+                // The offset of the antenna, rotated from ship-fixed to earth-fixed axes.
                 *x -= antenna.x_m * cos - antenna.y_m * sin;
                 *y -= antenna.x_m * sin + antenna.y_m * cos;
             }

@@ -1,4 +1,4 @@
-//! The start of a file as a person would look at it: names, units and the first rows.
+//! Preview of a file: names, units and the first rows.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -15,25 +15,28 @@ use crate::source::{Content, Source};
 use crate::table::Target;
 use crate::workbook;
 
-/// Bytes and rows that are looked at.
+/// Largest number of bytes and of rows that are examined.
 const START: u64 = 64 << 10;
 const ROWS: usize = 200;
 
-/// What is seen of a file.
+/// Start of a file, as text.
 #[derive(Debug, Default)]
 pub(crate) struct Preview {
     pub names: Vec<String>,
-    /// Units in a line of their own, or nothing.
+    /// Units in a row of their own, or empty.
     pub units: Vec<String>,
-    /// Cells of the first rows; nothing of files that hold no text.
+    /// Cells of the first rows; empty for files that contain no text.
     pub rows: Vec<Vec<String>>,
-    /// The sheet, where a workbook has several.
+    /// Sheet, if a workbook has several.
     pub sheet: Option<String>,
-    /// NMEA sentences, which need no mapping, and what each holds.
+    /// NMEA sentences, which need no mapping, and the content of each.
     pub sentences: Vec<(String, Target)>,
 }
 
-/// Looks at a file.
+/// Reads the preview of a file.
+///
+/// # Errors
+/// Returns an error if the file cannot be read or its format contains no table.
 pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
     let limits = Limits::default();
     match Source::open(name, path)?.content {
@@ -46,7 +49,7 @@ pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
             let sheets = workbook::starts(input, limits).map_err(io::Error::other)?;
             let several = sheets.len() > 1;
             let seen = sheets.into_iter().map(|(sheet, start)| (sheet, of_text(&start)));
-            // Of equals the first.
+            // `max_by_key` returns the last of equals: reversed, it is the first.
             let best = seen.rev().max_by_key(|(_, preview)| preview.rows.len());
             let (sheet, preview) = best.ok_or_else(|| io::Error::other("it has no sheet"))?;
             Ok(Preview { sheet: several.then_some(sheet), ..preview })
@@ -55,7 +58,7 @@ pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
             Ok(Preview { names: mat_file::names(input, limits)?, ..Preview::default() })
         }
         Content::ParquetFile(file) => {
-            // Of a long log stretches are read, so that it may have any number of rows.
+            // Segments are read of a long log, so that it may have any number of rows.
             let opened = parquet_footer::open(file, Limits { rows: usize::MAX, ..limits });
             let reader = opened.map_err(|refused| io::Error::other(refused.to_string()))?;
             Ok(Preview { names: parquet_footer::headers(&reader), ..Preview::default() })

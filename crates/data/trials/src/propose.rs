@@ -1,4 +1,4 @@
-//! A manifest proposed for files: what each column most likely is, and why.
+//! Proposal of a manifest for files: the most likely content of each column, with the evidence.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -16,44 +16,44 @@ use crate::preview::preview;
 use crate::sampling::{FileSample, sample};
 use crate::shape::Shape;
 
-/// A manifest and what it rests on.
+/// Proposed manifest and its evidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
-    /// To be read over, completed and kept beside the files.
+    /// Manifest, to be reviewed, completed and stored with the files.
     pub manifest: ManifestFile,
-    /// One for each column of each file.
+    /// One entry for each column of each file.
     pub guesses: Vec<Guess>,
-    /// Remarks on columns together.
+    /// Notes on combinations of columns.
     pub notes: Vec<String>,
 }
 
-/// Files for which a manifest is wanted.
+/// Files for which a manifest is to be proposed.
 #[derive(Debug, Clone, Copy)]
 pub struct ProposalRequest<'a> {
-    /// The ship that the trials are of; empty where it is not known.
+    /// Ship of the trials; empty if it is not known.
     pub ship: &'a str,
-    /// The files.
+    /// Paths of the files.
     pub files: &'a [&'a Path],
-    /// The folder that the manifest is to stand in; by default that of the files.
+    /// Folder of the manifest; by default the common folder of the files.
     pub folder: Option<&'a Path>,
-    /// Columns that the user has settled.
+    /// Columns whose content is given by the user.
     pub given: &'a [GivenColumn],
 }
 
-/// Proposes a manifest that stands beside the files.
+/// Proposes a manifest in the folder of the files.
 ///
 /// # Errors
-/// As [`propose_files`].
+/// Returns the errors of [`propose_files`].
 pub fn propose(ship: &str, files: &[&Path]) -> Result<Proposal, Vec<FileError>> {
     propose_files(&ProposalRequest { ship, files, folder: None, given: &[] })
 }
 
-/// Proposes a manifest. Files with the same columns share a mapping; a file that has all that a
-/// trial needs is one, with columns of its own where they differ; others are sensors of the trial
-/// whose clock theirs overlaps.
+/// Proposes a manifest. Files with the same columns share a mapping. A file with everything that a
+/// trial needs becomes a trial, with columns of its own where they differ; other files become
+/// sensors of the trial with the largest overlap in time.
 ///
 /// # Errors
-/// Every file that cannot be read, and why.
+/// Returns an error for every file that cannot be read.
 pub fn propose_files(request: &ProposalRequest) -> Result<Proposal, Vec<FileError>> {
     let folder = request.folder.map_or_else(|| common_folder(request.files), Path::to_path_buf);
     let mut set = FileSet::default();
@@ -70,6 +70,7 @@ pub fn propose_files(request: &ProposalRequest) -> Result<Proposal, Vec<FileErro
     if !errors.is_empty() {
         return Err(errors);
     }
+    // Columns are identified once all files with the same columns have contributed their samples.
     set.shapes.iter_mut().for_each(|shape| shape.identify(request.given));
     set.settle_spans();
     Ok(set.proposal(request.ship))
@@ -85,7 +86,7 @@ fn refused(path: &Path, message: &str) -> FileError {
     }
 }
 
-/// The folder that all files are in, at some depth.
+/// Returns the deepest folder that contains all files.
 fn common_folder(files: &[&Path]) -> PathBuf {
     let parent = |path: &&Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut folders = files.iter().map(parent);
@@ -96,9 +97,10 @@ fn common_folder(files: &[&Path]) -> PathBuf {
     })
 }
 
-/// A path as it is seen from a folder, with `/` between its parts.
+/// Returns a path relative to a folder, with `/` between its parts.
 fn relative(path: &Path, folder: &Path) -> String {
     let here = |path: &Path| if path.as_os_str().is_empty() { ".".into() } else { path.to_owned() };
+    // Absolute paths, so that both have a common root.
     let plain = |path: &Path| std::path::absolute(here(path)).unwrap_or_else(|_| path.to_owned());
     let (path, folder) = (plain(path), plain(folder));
     let same = path.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
@@ -110,12 +112,12 @@ fn relative(path: &Path, folder: &Path) -> String {
     parts.collect::<Vec<_>>().join("/")
 }
 
-/// Files and their shapes.
+/// Files and their column sets.
 #[derive(Default)]
 struct FileSet {
     files: Vec<SetFile>,
     shapes: Vec<Shape>,
-    /// First and last time of each file as it stands, until its unit is known.
+    /// Sample of each file, until the unit of its time is known.
     samples: Vec<FileSample>,
     sheet: Option<String>,
 }
@@ -123,6 +125,7 @@ struct FileSet {
 impl FileSet {
     fn add(&mut self, name: String, path: &Path) -> std::io::Result<()> {
         let preview = preview(&name, path)?;
+        // NMEA sentences are identified by their names, without a sample.
         let sample = match preview.sentences.is_empty() {
             true => sample(&name, path, &preview)?,
             false => FileSample::default(),
@@ -140,7 +143,7 @@ impl FileSet {
         Ok(())
     }
 
-    /// First and last time of each file, now that its column and unit are known.
+    /// Computes the first and last time of each file, once its time column and unit are known.
     fn settle_spans(&mut self) {
         for (file, sample) in self.files.iter_mut().zip(self.samples.drain(..)) {
             let Some((at, factor)) = self.shapes[file.shape].time else { continue };
@@ -158,8 +161,11 @@ impl FileSet {
 
     fn proposal(mut self, ship: &str) -> Proposal {
         let parts = parts(&self.files, &self.shapes);
+        // Before columns are cloned: a common sign replaces the reversal of single columns.
         let rudder = self.rudder();
         let places: Vec<usize> = (0..parts.len()).filter(|&k| parts[k] == Part::Trial).collect();
+        // The columns of the first trial become those of the manifest; others are listed at their
+        // trial.
         let first = places.first().map_or(0, |&at| self.files[at].shape);
         let columns = self.shapes[first].columns.clone();
         let trials: Vec<ManifestTrial> = places.iter().map(|&at| self.trial(at, first)).collect();
@@ -182,7 +188,7 @@ impl FileSet {
         Proposal { manifest: ManifestFile { manifest, declarations, sensors }, guesses, notes }
     }
 
-    /// The rudder's sign, where all files agree; then no column says so itself.
+    /// Returns the sign of the rudder if all files agree; single columns then need no reversal.
     fn rudder(&mut self) -> RudderSign {
         let mut signs = self.shapes.iter().filter_map(Shape::rudder_reversed).peekable();
         let all = signs.peek().is_some() && signs.all(|reversed| reversed);
@@ -210,7 +216,7 @@ impl FileSet {
         let sensor = |file: &SetFile| {
             let shape = &self.shapes[file.shape];
             let trial = &self.shapes[self.files[trial].shape];
-            // What the trial has itself is not read twice.
+            // Channels that the trial has itself are not read from the sensor.
             let own = shape.columns.iter().filter(|(name, _)| *name == "t" || !trial.has(name));
             SensorFile {
                 file: file.name.clone(),
@@ -221,7 +227,7 @@ impl FileSet {
         of_trial.map(|(file, _)| sensor(file)).collect()
     }
 
-    /// A guess for each column of each file.
+    /// Returns the identified content of each column of each file.
     fn guesses(&self) -> Vec<Guess> {
         let of_file = |file: &SetFile| {
             let each = self.shapes[file.shape].guesses.iter();
@@ -230,12 +236,13 @@ impl FileSet {
         self.files.iter().flat_map(of_file).collect()
     }
 
-    /// Columns to pass over, and velocities to derive where positions and heading are there and
-    /// they are not.
+    /// Returns the columns to ignore, and the velocities to derive where positions and heading
+    /// exist and velocities do not.
     fn declarations(&self) -> Declarations {
         let one = |name: &str| self.shapes.iter().any(|shape| shape.has(name));
         let has = |names: &[&str]| names.iter().all(|name| one(name));
         let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
+        // Course and speed, or velocities north and east, give `u` and `v` without derivation.
         let ground = has(&["course", "speed", "psi"]) || has(&["v_north", "v_east", "psi"]);
         let mut derive = Vec::new();
         if track && !ground {

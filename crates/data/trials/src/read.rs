@@ -1,4 +1,4 @@
-//! From a source and a mapping to a checked trial.
+//! Reading of a source with a mapping into a checked trial.
 
 use sistership_model::manifest::Missing;
 use sistership_model::trial::{Finding, Trial};
@@ -25,30 +25,30 @@ use crate::{
     csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, water, workbook,
 };
 
-/// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
+/// Reads, converts and checks a trial, and smooths it if the conventions require it.
 ///
 /// # Errors
-/// Every reason, with row and column, why the file is no trial.
+/// Returns every reason, with row and column, for which the file is not accepted.
 pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
     read_in_full(source, mapping).map(|reading| reading.trial)
 }
 
-/// As [`read_trial`], with what a trial has no place for.
+/// Reads a trial with the data that have no place in a [`Trial`].
 ///
 /// # Errors
-/// As [`read_trial`].
+/// Returns the errors of [`read_trial`].
 pub fn read_in_full(source: Source, mapping: &Mapping) -> Result<TrialReading, Refusal> {
     let file = source.name.clone();
     examine(source, mapping).reading(file)
 }
 
-/// Runs the checks of [`read_trial`] and tells what they found.
+/// Runs the checks of [`read_trial`] and returns their findings.
 pub fn check(source: Source, mapping: &Mapping) -> CheckOutcome {
     let file = source.name.clone();
     examine(source, mapping).outcome(file)
 }
 
-/// A recording with everything that was found.
+/// Recording with all findings.
 pub(crate) struct Examined {
     recording: Recording,
     errors: Vec<Finding>,
@@ -68,7 +68,7 @@ impl Examined {
         })
     }
 
-    /// Faults that were found, where they were looked for.
+    /// Returns the faults, if they were searched.
     pub(crate) fn faults(&self) -> &[Exclusion] {
         &self.recording.faults
     }
@@ -96,14 +96,14 @@ pub(crate) fn examine(source: Source, mapping: &Mapping) -> Examined {
     finish(&name, table, sensors, mapping, findings)
 }
 
-/// A stretch of a file, by its name and its mapping, and the sensors' files that belong to it.
+/// Request for a segment of a file, with the files of sensors that belong to it.
 pub(crate) struct StretchRequest<'a> {
     pub name: &'a str,
     pub mapping: &'a Mapping,
     pub sensors: Vec<Sensor<'a>>,
 }
 
-/// Reads stretches of one file in one pass.
+/// Reads several segments of one file in one pass.
 pub(crate) fn stretches(input: Content, requests: Vec<StretchRequest>) -> Vec<Examined> {
     let mut header = Findings::default();
     let parts: Vec<Asked> = requests
@@ -114,6 +114,7 @@ pub(crate) fn stretches(input: Content, requests: Vec<StretchRequest>) -> Vec<Ex
         let visit = PartsVisit(&parts);
         each_row(input, first.mapping, &mut header, visit)
     });
+    // If the file cannot be opened, each segment reports the findings on the header.
     let nothing = || parts.iter().map(|_| (None, header.clone())).collect();
     let tables: Vec<(Option<Table>, Findings)> = tables.unwrap_or_else(nothing);
     let each = requests.into_iter().zip(tables);
@@ -123,7 +124,7 @@ pub(crate) fn stretches(input: Content, requests: Vec<StretchRequest>) -> Vec<Ex
     .collect()
 }
 
-/// What is done with the rows of a file, whatever its format.
+/// Operation on the rows of a file, whatever its format.
 pub(crate) trait Visit {
     type Output;
     fn visit(self, file: impl RowsFile, header: &Findings) -> Self::Output;
@@ -139,7 +140,7 @@ impl Visit for PartsVisit<'_> {
     }
 }
 
-/// Opens a file of which not all rows are kept, and visits its rows; nothing after errors.
+/// Opens a file of which not all rows are stored, and visits its rows; returns `None` after errors.
 pub(crate) fn each_row<V: Visit>(
     input: Content,
     mapping: &Mapping,
@@ -159,6 +160,7 @@ pub(crate) fn each_row<V: Visit>(
             let file = ParquetRows::open(bytes, mapping, findings)?;
             Some(visit.visit(file, findings))
         }
+        // Other formats cannot be streamed: they are read into a table whose rows are visited.
         other => {
             let table = content(other, mapping, findings)?;
             Some(visit.visit(TableRows::new(table), findings))
@@ -166,7 +168,7 @@ pub(crate) fn each_row<V: Visit>(
     }
 }
 
-/// From a table to a checked, smoothed recording.
+/// Converts a table to a checked, smoothed recording with its findings.
 fn finish(
     name: &str,
     table: Option<Table>,
@@ -194,12 +196,14 @@ fn record(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Recording {
+    // Sensors first, so that exclusions, gaps and derived channels apply to all channels alike.
     for sensor in sensors {
         if let Some((other, offset_s)) = sensor_table(sensor, &table, findings) {
             join(&mut table, series(other, offset_s), findings);
         }
     }
     exclude(&mut table, &mapping.exclude, findings);
+    // Faults are searched before gaps are bridged: interpolated values are no readings.
     let faults = if mapping.seeks_faults { faults::find(name, &table) } else { Vec::new() };
     if mapping.conventions.missing == Missing::Bridge {
         bridge(&mut table, mapping.conventions.bridge_s.unwrap_or(BRIDGED_S), findings);
@@ -226,7 +230,7 @@ fn content(content: Content, mapping: &Mapping, findings: &mut Findings) -> Opti
     }
 }
 
-/// What a sensor's file holds, and what is to be added to its time.
+/// Returns the table of the file of a sensor, and the offset of its time.
 fn sensor_table(sensor: Sensor, base: &Table, findings: &mut Findings) -> Option<(Table, f64)> {
     let mut own = Findings::default();
     let read =
@@ -243,7 +247,7 @@ fn sensor_table(sensor: Sensor, base: &Table, findings: &mut Findings) -> Option
     read
 }
 
-/// Channels that come of what instruments show.
+/// Derives channels from those that instruments record.
 fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
     let antenna = mapping.declared.antenna;
     position::local(recording, findings);
@@ -251,6 +255,8 @@ fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
         position::to_midship(recording, antenna, findings);
     }
     let wanted = &mapping.declared.derive;
+    // The order matters: velocities of an antenna need the yaw rate, and derived velocities are
+    // only computed where course and speed have not given any.
     derived::yaw_rate(recording, wanted, findings);
     ground::velocities(recording, antenna, findings);
     derived::velocities(recording, wanted, findings);

@@ -1,5 +1,4 @@
-//! A trial on its way through the checks: canonical samples, and the row and column that each came
-//! from.
+//! Trial during the checks: canonical samples, with the row and column of each in the file.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,49 +11,49 @@ use crate::findings::Hits;
 use crate::table::{Column, Raw, Start, Target};
 use crate::units::Kind;
 
-/// Canonical samples and where they stand in the file.
+/// Canonical samples and their places in the file.
 #[derive(Debug, Default)]
 pub(crate) struct Recording {
     pub trial: Trial,
-    /// Whether it is a stretch of a file, which starts when it does.
+    /// True if it is a segment of a file, so that its time need not start at zero.
     pub is_stretch: bool,
     pub rows: Vec<u32>,
-    /// Rows before which others have been left out.
+    /// Rows before which other rows have been excluded.
     pub resumed: Vec<u32>,
     /// Header of the time column.
     pub time: String,
     pub columns: BTreeMap<Channel, Column>,
-    /// What channels have yet to be made of.
+    /// Quantities from which channels are still to be computed.
     pub raw: BTreeMap<Raw, Vec<f64>>,
-    /// Channels that were not measured.
+    /// Channels that were derived.
     pub derived: Vec<DerivedChannel>,
-    /// What time zero is in the calendar, where the file says it.
+    /// Calendar time of time zero, if the file contains it.
     pub start: Option<Start>,
-    /// Faults that were found in the file's values, where they were looked for.
+    /// Faults of the values of the file, if they were searched.
     pub faults: Vec<Exclusion>,
-    /// Median time between samples, s; zero until time is known to be in order.
+    /// Median time between samples, s; zero until time is known to increase.
     pub interval_s: f64,
-    /// Ranges without a gap; empty until time is known to be in order.
+    /// Ranges without a gap; empty until time is known to increase.
     pub segments: Vec<Range<usize>>,
 }
 
 impl Recording {
-    /// The row of a sample.
+    /// Returns the row of a sample in the file.
     pub(crate) fn row(&self, sample: usize) -> usize {
         self.rows.get(sample).map_or(0, |&row| row as usize)
     }
 
-    /// The column's name in the file, or the channel's own.
+    /// Returns the name of the column in the file, or of the channel.
     pub(crate) fn header(&self, channel: Channel) -> &str {
         self.columns.get(&channel).map_or(channel.name(), |column| &column.header)
     }
 
-    /// The declared unit.
+    /// Returns the declared unit of a channel.
     pub(crate) fn unit(&self, channel: Channel) -> &str {
         self.columns.get(&channel).map_or("", |column| &column.unit)
     }
 
-    /// The unit of the samples.
+    /// Returns the unit of the samples.
     pub(crate) fn canonical_unit(&self, channel: Channel) -> &'static str {
         Kind::of(Target::Channel(channel)).canonical()
     }
@@ -67,14 +66,15 @@ impl Recording {
         &self.trial.t_s
     }
 
-    /// Samples that a test holds for, each with its row.
+    /// Returns the samples that satisfy a condition, each with its row.
     pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Hits {
         let mut hits = Hits::default();
         samples.filter(|&k| holds(k)).for_each(|k| hits.add((k, self.row(k))));
         hits
     }
 
-    /// Takes ranges of samples, in order, out of every channel; the rows that follow them resume.
+    /// Removes ranges of samples, in ascending order, from every channel; the rows after them are
+    /// marked as resumed.
     pub(crate) fn leave_out(&mut self, ranges: &[Range<usize>]) {
         let resumed = ranges.iter().filter_map(|range| self.rows.get(range.end).copied());
         self.resumed.extend(resumed.collect::<Vec<_>>());
@@ -88,10 +88,11 @@ impl Recording {
         }
         without(&mut self.rows, ranges);
         let rows = &self.rows;
+        // A row that was marked earlier may be removed now.
         self.resumed.retain(|row| rows.binary_search(row).is_ok());
     }
 
-    /// Learns interval and segments; time must be strictly increasing.
+    /// Computes sampling interval and segments; time must be strictly increasing.
     pub(crate) fn settle_time(&mut self) {
         self.interval_s = self.trial.interval_s();
         self.segments = self.trial.segments();

@@ -1,4 +1,4 @@
-//! From a file's headers to the columns that are read.
+//! Resolution of the headers of a file to the columns that are read.
 
 use sistership_model::manifest::{VelocityFrame, WindKind};
 use sistership_model::trial::Channel;
@@ -10,12 +10,12 @@ use crate::names;
 use crate::table::{Column, Raw, Target};
 use crate::units::{Kind, plain_unit};
 
-/// How alike two names must be (Jaro-Winkler, 0 to 1) to be offered as a correction.
+/// Similarity of two names (Jaro-Winkler, 0 to 1) from which one is suggested for the other.
 const ALIKE: f64 = 0.8;
-/// Column names listed in a message.
+/// Largest number of column names in a message.
 const LISTED: usize = 40;
 
-/// The columns to read of a file whose first row is its header, or nothing after errors.
+/// Returns the columns to read of a file whose first row is its header, or `None` after errors.
 pub(crate) fn resolve(
     headers: &[String],
     mapping: &Mapping,
@@ -24,17 +24,17 @@ pub(crate) fn resolve(
     resolve_heading(Heading { names: headers, units: &[], row: 1 }, mapping, findings)
 }
 
-/// What stands above the numbers.
+/// Header of a table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Heading<'a> {
     pub names: &'a [String],
-    /// Units in a line of their own, or nothing.
+    /// Units in a row of their own, or empty.
     pub units: &'a [String],
-    /// The row of the names.
+    /// Row of the names.
     pub row: usize,
 }
 
-/// The columns to read, or nothing after errors.
+/// Returns the columns to read, or `None` after errors.
 pub(crate) fn resolve_heading(
     heading: Heading,
     mapping: &Mapping,
@@ -45,6 +45,7 @@ pub(crate) fn resolve_heading(
     }
     let Heading { names: headers, units, row } = heading;
     let mut resolver = Resolver { headers, units, row, mapping, columns: Vec::new(), findings };
+    // In order of precedence: a column or a channel that one step takes is closed to the next.
     resolver.mapped();
     resolver.canonical();
     resolver.raw();
@@ -56,7 +57,7 @@ pub(crate) fn resolve_heading(
     (!findings.has_errors()).then_some(columns)
 }
 
-/// Every column as it stands.
+/// Returns every column unconverted.
 fn unidentified(heading: Heading, time: &WrittenTime) -> Vec<Column> {
     let of_column = |(index, header): (usize, &String)| {
         let unit = time.0.filter(|(at, _)| *at == index).map(|(_, unit)| unit);
@@ -65,6 +66,8 @@ fn unidentified(heading: Heading, time: &WrittenTime) -> Vec<Column> {
             None => Target::Unidentified(u16::try_from(index).unwrap_or(u16::MAX)),
         };
         let unit = unit.unwrap_or("1").to_owned();
+        // Days of a sheet become seconds here; other written times are seconds once the clock has
+        // read them.
         let to_si = if unit == "excel" { 86_400.0 } else { 1.0 };
         Column { index, header: header.clone(), target, unit, to_si }
     };
@@ -81,7 +84,7 @@ struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    /// Columns that the manifest names.
+    /// Adds the columns that the manifest names.
     fn mapped(&mut self) {
         for (name, mapped) in &self.mapping.columns {
             let Some(target) = Target::by_name(name) else {
@@ -94,6 +97,8 @@ impl Resolver<'_> {
                 Ok(index) => {
                     self.contradicted(index, target, &mapped.unit);
                     self.add(index, target, &mapped.unit);
+                    // `add_column` adds nothing if the unit is wrong: the last column may then be
+                    // another.
                     let added = self.columns.last_mut().filter(|column| column.index == index);
                     if let Some(column) = added.filter(|_| mapped.reversed) {
                         column.to_si = -column.to_si;
@@ -104,8 +109,9 @@ impl Resolver<'_> {
         }
     }
 
-    /// A header that names one unit, where the manifest says another: one of the two is wrong.
+    /// Reports a header with one unit where the manifest states another: one of the two is wrong.
     fn contradicted(&mut self, index: usize, target: Target, unit: &str) {
+        // Units are compared by their factors, so that spellings of the same unit agree.
         let (kind, header) = (Kind::of(target), &self.headers[index]);
         let below = self.units.get(index).filter(|unit| kind.factor(unit).is_ok());
         if let Some(named) = kind.named_in(header).or(below.map(String::as_str))
@@ -125,6 +131,7 @@ impl Resolver<'_> {
     fn find(&self, wanted: &str) -> Result<usize, String> {
         let mut found =
             self.headers.iter().enumerate().filter(|(_, header)| header.as_str() == wanted.trim());
+        // Two columns with the same header cannot be distinguished by name.
         match (found.next(), found.next()) {
             (Some((index, _)), None) => Ok(index),
             (Some(_), Some(_)) => Err("this name heads two columns; rename one of them".into()),
@@ -168,8 +175,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Apparent wind and speeds through the water go to their own channels, so that nothing
-    /// downstream can take them for the true wind and for speeds over the ground.
+    /// Assigns apparent wind and speeds through the water to channels of their own, so that later
+    /// steps cannot mistake them for the true wind and for speeds over the ground.
     fn redirect(&self, target: Target) -> Target {
         let Target::Channel(channel) = target else { return target };
         let conventions = &self.mapping.conventions;
@@ -184,7 +191,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Columns that carry a canonical name, for channels that the manifest leaves open.
+    /// Adds columns with a canonical name, for channels that the manifest leaves open.
     fn canonical(&mut self) {
         for index in 0..self.headers.len() {
             if let Some((target, unit)) = self.named(index)
@@ -196,8 +203,10 @@ impl Resolver<'_> {
         }
     }
 
-    /// Canonical columns of which channels are made, where the channels themselves are not there.
+    /// Adds canonical columns from which channels are computed, if the channels themselves are
+    /// absent.
     fn raw(&mut self) {
+        // A channel with a column of its own is not computed from others.
         let given: Vec<Target> = self.columns.iter().map(|column| column.target).collect();
         for index in 0..self.headers.len() {
             if let Some((Target::Raw(raw), unit)) = self.named(index)
@@ -209,7 +218,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Target and unit that a header names, for a column that is free and a target that the
+    /// Returns the target and unit named by a header, for a free column and a target that the
     /// manifest leaves open.
     fn named(&self, index: usize) -> Option<(Target, String)> {
         let header = &self.headers[index];
@@ -218,6 +227,7 @@ impl Resolver<'_> {
             .get(index)
             .and_then(|unit| names::with_unit(header, unit).map(|target| (target, unit.clone())));
         let named = names::canonical(header).map(|(target, unit)| (target, unit.to_owned()));
+        // A unit in the name precedes one in the row below.
         let free = self.is_free(index) && !self.is_ignored(header);
         named.or(below).filter(|(target, _)| free && !self.is_mapped(*target))
     }
@@ -234,7 +244,7 @@ impl Resolver<'_> {
         self.mapping.declared.ignore.iter().any(|ignored| ignored.trim() == header)
     }
 
-    /// Where nothing else is time, the first column that has a common name of it.
+    /// Adds the first column with a common name of time, if no other column is time.
     fn timed(&mut self) {
         let free = |index: usize| self.is_free(index) && !self.is_ignored(&self.headers[index]);
         if !self.is_mapped(Target::Time)
@@ -250,6 +260,7 @@ impl Resolver<'_> {
 
     fn doubled(&mut self) {
         for (position, column) in self.columns.iter().enumerate() {
+            // Each column is compared with earlier ones only, so that a pair is reported once.
             let before = &self.columns[..position];
             let message = if let Some(first) =
                 before.iter().find(|first| first.target == column.target)
@@ -274,6 +285,7 @@ impl Resolver<'_> {
     }
 
     fn needed(&mut self) {
+        // A missing column may be the consequence of an error that is reported already.
         if self.findings.has_errors() {
             return;
         }
@@ -313,11 +325,12 @@ impl Resolver<'_> {
     }
 }
 
-/// The factor to canonical units; a percentage is one of what is declared to be full.
+/// Returns the factor to canonical units; a percentage refers to the declared maximum.
 pub(crate) fn factor(target: Target, unit: &str, declared: &Declarations) -> Result<f64, String> {
     if plain_unit(unit) != "%" {
         return Kind::of(target).factor(unit);
     }
+    // `delta_s` may use the maximum declared for `delta`.
     let of_pair = target.name().split('_').next().unwrap_or_default();
     let full = declared.maximum.get(target.name()).or_else(|| declared.maximum.get(of_pair));
     match full {
@@ -330,7 +343,7 @@ pub(crate) fn factor(target: Target, unit: &str, declared: &Declarations) -> Res
     }
 }
 
-/// Every channel name of a manifest.
+/// Returns every channel name of manifests.
 pub(crate) fn channel_names() -> String {
     let names = std::iter::once("t").chain(Channel::all().map(Channel::name));
     names.chain(Raw::all().map(Raw::name)).collect::<Vec<_>>().join(", ")

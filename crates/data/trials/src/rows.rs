@@ -1,4 +1,4 @@
-//! Rows of a file on their way into a table: kept, dropped or refused.
+//! Construction of a table from the rows of a file, which are kept, dropped or refused.
 
 use sistership_model::manifest::Missing;
 
@@ -7,7 +7,7 @@ use crate::number::Fault;
 use crate::table::{Column, Table, Target};
 use crate::taker::Taker;
 
-/// A run of rows that are left out.
+/// Run of consecutive excluded rows.
 struct Run {
     first: usize,
     last: usize,
@@ -15,7 +15,7 @@ struct Run {
     fault: Fault,
 }
 
-/// Takes rows one at a time and keeps, drops or refuses them.
+/// Row sink that keeps, drops or refuses rows.
 pub(crate) struct Builder<'a> {
     table: Table,
     missing: Missing,
@@ -23,20 +23,20 @@ pub(crate) struct Builder<'a> {
     run: Option<Run>,
     faulty: usize,
     scratch: Vec<f64>,
-    /// For each column, what its first cell lacks while no cell has held a number.
+    /// For each column without any number so far, the fault of its last cell.
     unfilled: Vec<Option<Fault>>,
-    /// For each column, the cells without a number that were kept as gaps.
+    /// For each column, the cells without a number that became gaps.
     gaps: Vec<Gaps>,
 }
 
-/// Cells without a number.
+/// Cells of a column without a number.
 #[derive(Clone, Default)]
 struct Gaps {
     count: usize,
     first: Option<(usize, Fault)>,
 }
 
-/// Faulty rows listed one by one before they are only counted.
+/// Number of faulty rows listed one by one; further ones are counted.
 const LISTED: usize = 5;
 
 impl<'a> Builder<'a> {
@@ -49,19 +49,19 @@ impl<'a> Builder<'a> {
         Self { table, missing, findings, run: None, faulty: 0, scratch, unfilled, gaps }
     }
 
-    /// With room for so many rows: columns that grow take half as much again.
+    /// Reserves memory for a number of rows: a column that grows would take half as much again.
     pub(crate) fn with_room(mut self, rows: usize) -> Self {
         self.table.rows.reserve_exact(rows);
         self.table.values.iter_mut().for_each(|values| values.reserve_exact(rows));
         self
     }
 
-    /// Whether rows without a value are left out.
+    /// Returns true if rows without a value are excluded.
     pub(crate) fn drops(&self) -> bool {
         self.missing != Missing::Refuse
     }
 
-    /// Whether a cell without a number becomes a gap of its channel.
+    /// Returns true if a cell without a number becomes a gap of its channel.
     fn keeps(&self) -> bool {
         self.missing == Missing::Bridge
     }
@@ -85,13 +85,14 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Learns that columns have numbers; rows that were kept although they had none there are
-    /// faulty after all.
+    /// Marks columns that have numbers; earlier rows that were kept without a number there become
+    /// faulty.
     fn fill(&mut self) {
         for position in 0..self.scratch.len() {
             if !self.scratch[position].is_finite() {
                 continue;
             }
+            // This is the first number of the column.
             if let Some(fault) = self.unfilled[position].take()
                 && !self.table.rows.is_empty()
                 && !self.keeps()
@@ -102,6 +103,7 @@ impl<'a> Builder<'a> {
     }
 
     fn retract(&mut self, position: usize, fault: &Fault) {
+        // Every row so far lacks a number in this column: all of them are faulty.
         self.table.values.iter_mut().for_each(Vec::clear);
         self.table.resumed.clear();
         let header = self.table.columns[position].header.clone();
@@ -109,6 +111,7 @@ impl<'a> Builder<'a> {
         for &row in &rows {
             self.faulty(row as usize, header.clone(), fault.clone());
         }
+        // The current run then begins at the first retracted row.
         let first = rows.first().map_or(usize::MAX, |&row| row as usize);
         if let Some(run) = self.run.as_mut().filter(|run| first < run.first) {
             (run.first, run.column, run.fault) = (first, header, fault.clone());
@@ -142,7 +145,7 @@ impl<'a> Builder<'a> {
         self.findings.warning(Some(run.first), Some(&run.column), message);
     }
 
-    /// The table, once every row has been seen.
+    /// Returns the table, once every row has been read.
     pub(crate) fn finish(mut self) -> Table {
         self.absent();
         self.tell_gaps();
@@ -163,11 +166,12 @@ impl<'a> Builder<'a> {
         self.table
     }
 
-    /// Columns that are empty throughout are as good as not there.
+    /// Removes columns that are empty throughout, as if they were absent.
     fn absent(&mut self) {
         if self.table.rows.is_empty() {
             return;
         }
+        // Backwards, so that removal does not shift the positions that follow.
         for position in (0..self.unfilled.len()).rev() {
             if self.unfilled[position].is_some() {
                 let column = self.table.columns.remove(position);
@@ -184,7 +188,7 @@ impl<'a> Builder<'a> {
 }
 
 impl Taker for Builder<'_> {
-    /// One row of the file; `cell` gives the number in the n-th mapped column.
+    /// Takes one row of the file; `cell` returns the number of the n-th mapped column.
     fn row(&mut self, row: usize, mut cell: impl FnMut(usize, &Column) -> Result<f64, Fault>) {
         self.scratch.clear();
         for position in 0..self.table.columns.len() {
@@ -192,6 +196,7 @@ impl Taker for Builder<'_> {
             let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
             match cell(position, column).and_then(|value| si(value).ok_or(Fault::NotANumber)) {
                 Ok(value) => self.scratch.push(value),
+                // An empty column is dropped in the end: its cells do not make the row faulty yet.
                 Err(fault @ (Fault::Empty | Fault::NotANumber))
                     if self.unfilled[position].is_some() && column.target != Target::Time =>
                 {
@@ -209,6 +214,7 @@ impl Taker for Builder<'_> {
         }
         self.fill();
         let row = u32::try_from(row).unwrap_or(u32::MAX);
+        // The first row after excluded ones: nothing is interpolated across.
         if self.run.is_some() {
             self.table.resumed.push(row);
         }
@@ -221,8 +227,8 @@ impl Taker for Builder<'_> {
             .for_each(|(values, &value)| values.push(value));
     }
 
-    /// A row that ends before the header does: left out as one without a value, or told by whoever
-    /// counts the cells.
+    /// Takes a row with too few cells: it is excluded like one without a value, or reported by the
+    /// counter of cells.
     fn short(&mut self, row: usize) {
         if self.drops()
             && let Some(column) = self.table.columns.last()

@@ -1,8 +1,8 @@
-//! Trials in canonical form: Parquet to keep them, CSV to look at them.
+//! Trials in canonical form: Parquet for storage, CSV for export.
 //!
 //! The Parquet file has one DOUBLE column per channel under its canonical name, `t_s` first, and no
-//! nulls. What else a trial is (name, manoeuvre, depth, velocity frame, warnings) is one JSON text
-//! in the file's key-value metadata, so that reading back gives the same trial. The same trial
+//! nulls. The other data of a trial (name, manoeuvre, depth, velocity frame, warnings) are one JSON
+//! text in the file's key-value metadata, so that the trial is read back unchanged. The same trial
 //! gives the same bytes: there is no time stamp, the writer's name is fixed, and compression runs
 //! on one thread.
 
@@ -32,13 +32,13 @@ use crate::parquet_footer;
 const KEY: &str = "sistership.trial";
 /// Canonical name of time.
 const TIME: &str = "t_s";
-/// Rows that are compressed and decoded together.
+/// Number of rows that are compressed and decoded together.
 pub(crate) const GROUP_ROWS: usize = 1 << 20;
 
-/// Why samples could not be written or read back.
+/// Error in writing or reading samples.
 #[derive(Debug, thiserror::Error)]
 pub enum SamplesError {
-    /// The Parquet library refuses, or the file is damaged.
+    /// The Parquet library returns an error, or the file is damaged.
     #[error("Parquet samples: {0}")]
     Parquet(#[from] ParquetError),
     /// The CSV cannot be written.
@@ -49,7 +49,7 @@ pub enum SamplesError {
     Content(String),
 }
 
-/// What a trial is besides its samples.
+/// Data of a trial other than its samples.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct About {
@@ -60,20 +60,20 @@ struct About {
     warnings: Vec<Finding>,
 }
 
-/// The trial as Parquet, without loss.
+/// Returns the trial as Parquet, without loss.
 ///
 /// # Errors
-/// A channel is not as long as time, or the library refuses.
+/// Returns an error if a channel and time differ in length, or if the library fails.
 pub fn to_parquet(trial: &Trial) -> Result<Vec<u8>, SamplesError> {
     let mut bytes = Vec::new();
     write_parquet(&mut bytes, trial)?;
     Ok(bytes)
 }
 
-/// As [`to_parquet`], where the file does not lie in memory.
+/// Writes the trial as [`to_parquet`] does, to a writer.
 ///
 /// # Errors
-/// As [`to_parquet`], or the writer fails.
+/// Returns the errors of [`to_parquet`], and those of the writer.
 pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), SamplesError> {
     let columns = columns(trial)?;
     let schema = schema(columns.iter().map(|(name, _)| *name))?;
@@ -90,10 +90,10 @@ pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), Sample
     Ok(())
 }
 
-/// The trial that [`to_parquet`] wrote.
+/// Reads a trial that [`to_parquet`] wrote.
 ///
 /// # Errors
-/// The file is damaged, too large, or not written by [`to_parquet`].
+/// Returns an error if the file is damaged, too large, or not written by [`to_parquet`].
 pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
     let reader = parquet_footer::open(bytes, Limits::default())
         .map_err(|refused| SamplesError::Content(refused.to_string()))?;
@@ -110,11 +110,11 @@ pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
     Ok(trial)
 }
 
-/// The trial as CSV: canonical names, every number in the shortest form that reads back to the same
-/// value.
+/// Writes the trial as CSV: canonical names, every number in the shortest form that reads back to
+/// the same value.
 ///
 /// # Errors
-/// A channel is not as long as time, or the writer fails.
+/// Returns an error if a channel and time differ in length, or if the writer fails.
 pub fn to_csv(writer: impl Write, trial: &Trial) -> Result<(), SamplesError> {
     let columns = columns(trial)?;
     let mut writer = csv::Writer::from_writer(writer);
@@ -129,7 +129,7 @@ pub fn to_csv(writer: impl Write, trial: &Trial) -> Result<(), SamplesError> {
     Ok(())
 }
 
-/// Name and samples of every column, in the order of the channels.
+/// Returns name and samples of every column, in the order of the channels.
 fn columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
     let mut columns = vec![(TIME, trial.t_s.as_slice())];
     for (channel, values) in &trial.channels {
@@ -165,6 +165,7 @@ fn properties(trial: &Trial) -> Result<WriterProperties, SamplesError> {
     let text =
         serde_json::to_string(&about).map_err(|error| SamplesError::Content(error.to_string()))?;
     Ok(WriterProperties::builder()
+        // Without a version, so that the same trial gives the same bytes.
         .set_created_by("sistership".into())
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         // Neighbouring samples share sign, exponent and leading digits: split by byte they compress
@@ -202,6 +203,7 @@ fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
 
 fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<String, Vec<f64>>> {
     let (names, groups) = (parquet_footer::headers(reader), reader.metadata().row_groups());
+    // The total was checked against the limits when the file was opened.
     let rows: i64 = groups.iter().map(|group| group.num_rows()).sum();
     let mut columns: Vec<Vec<f64>> =
         names.iter().map(|_| Vec::with_capacity(usize::try_from(rows).unwrap_or(0))).collect();
@@ -219,26 +221,26 @@ fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<
     Ok(names.into_iter().zip(columns).collect())
 }
 
-/// Samples as [`to_csv`] writes them, some rows at a time, from a file that [`to_parquet`] wrote.
+/// Reader that returns the samples of a file of [`to_parquet`] as CSV, in pieces of some rows.
 pub struct CsvPieces {
     reader: SerializedFileReader<File>,
     names: Vec<String>,
-    /// The next row group.
+    /// Index of the next row group.
     group: usize,
-    /// Of the row group that is being read.
+    /// Columns of the current row group.
     cells: Vec<Cells>,
     left: usize,
     has_begun: bool,
 }
 
-/// Rows of a piece.
+/// Number of rows of a piece.
 const PIECE_ROWS: usize = 1024;
 
 impl CsvPieces {
-    /// Opens the file.
+    /// Opens a file.
     ///
     /// # Errors
-    /// It is damaged, or too large.
+    /// Returns an error if the file is damaged or too large.
     pub fn open(file: File) -> Result<Self, SamplesError> {
         let reader = parquet_footer::open(file, Limits::default())
             .map_err(|refused| SamplesError::Content(refused.to_string()))?;
@@ -246,12 +248,13 @@ impl CsvPieces {
         Ok(Self { reader, names, group: 0, cells: Vec::new(), left: 0, has_begun: false })
     }
 
-    /// The next lines; none after the last.
+    /// Returns the next lines; `None` after the last.
     ///
     /// # Errors
-    /// The file is damaged.
+    /// Returns an error if the file is damaged.
     pub fn next_piece(&mut self) -> Result<Option<Vec<u8>>, SamplesError> {
         let mut writer = csv::Writer::from_writer(Vec::new());
+        // The header is part of the first piece.
         if !self.has_begun {
             self.has_begun = true;
             writer.write_record(&self.names)?;
@@ -267,8 +270,9 @@ impl CsvPieces {
         Ok((!text.is_empty()).then_some(text))
     }
 
-    /// Decodes the next rows, and tells how many they are.
+    /// Decodes the next rows, and returns their number.
     fn decode(&mut self) -> ParquetResult<usize> {
+        // Empty row groups are skipped.
         while self.left == 0 {
             if self.group == self.reader.num_row_groups() {
                 return Ok(0);

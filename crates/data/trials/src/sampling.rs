@@ -1,4 +1,4 @@
-//! Enough of a file to identify its columns: all of it, or pieces of a long log.
+//! Sample of a file for the identification of its columns: all of it, or pieces of a long log.
 
 use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
@@ -18,26 +18,27 @@ use crate::table::{Start, Table, Target};
 use crate::taker::RowsFile;
 use crate::written_time::written_time;
 
-/// Bytes of text beyond which pieces are looked at, and the size and number of these.
+/// Size of text, bytes, beyond which only pieces are read, and the size and number of these.
 const WHOLE: u64 = 16 << 20;
 const PIECE: u64 = 1 << 20;
 const PIECES: u64 = 8;
-/// Rows that are looked at.
+/// Largest number of rows that are examined.
 const ROWS: usize = 100_000;
 
-/// The columns of a file, and what time zero is in the calendar where the file says it.
+/// Columns of a file, and the calendar time of time zero, if the file contains it.
 #[derive(Debug, Default)]
 pub(crate) struct FileSample {
     pub recording: RecordingSample,
     pub start: Option<Start>,
 }
 
-/// The columns of a file as they stand.
+/// Reads the columns of a file unconverted.
 pub(crate) fn sample(name: &str, path: &Path, preview: &Preview) -> io::Result<FileSample> {
     let mut content = Source::open(name, path)?.content;
     if let Content::Csv(_) = content
         && std::fs::metadata(path)?.len() > WHOLE
     {
+        // Pieces from the whole file: its start alone may show no manoeuvre.
         content = Content::Csv(Box::new(Cursor::new(pieces(path)?)));
     }
     let time = written(preview);
@@ -48,7 +49,7 @@ pub(crate) fn sample(name: &str, path: &Path, preview: &Preview) -> io::Result<F
     };
     mapping.declared.sheet.clone_from(&preview.sheet);
     mapping.conventions.missing = Missing::Bridge;
-    // What is wrong with the file is told when it is read for good.
+    // Findings are ignored here: they are reported when the trial is read with its manifest.
     let mut findings = Findings::default();
     let table = each_row(content, &mapping, &mut findings, WholeVisit(&mapping));
     let mut table = table.flatten().unwrap_or_default();
@@ -66,7 +67,7 @@ impl Visit for WholeVisit<'_> {
     }
 }
 
-/// The start of a long file and pieces of the rest, cut at line ends.
+/// Reads the start of a long file and pieces of the rest, cut at line ends.
 fn pieces(path: &Path) -> io::Result<Vec<u8>> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
@@ -82,12 +83,13 @@ fn pieces(path: &Path) -> io::Result<Vec<u8>> {
     Ok(text)
 }
 
-/// Bytes up to the end of a line and with it.
+/// Returns the number of bytes up to and including the first line end; 0 without one.
 fn end_of_line<'a>(mut bytes: impl Iterator<Item = &'a u8>) -> usize {
     bytes.position(|&byte| byte == b'\n').map_or(0, |at| at + 1)
 }
 
-/// The first column whose cells are dates, times of day or days of a sheet, and its unit.
+/// Returns the index and unit of the first column whose cells are dates, times of day or days of a
+/// sheet.
 fn written(preview: &Preview) -> Option<(usize, &'static str)> {
     (0..preview.names.len()).find_map(|at| {
         let cells: Vec<&str> =
@@ -113,6 +115,7 @@ fn recording(
     let columns = preview.names.iter().enumerate().map(|(at, header)| ColumnData {
         header: header.clone(),
         below: preview.units.get(at).filter(|unit| !unit.is_empty()).cloned(),
+        // A column that is empty throughout is absent from the table: NaN takes its place.
         values: of_place(at).map_or_else(|| vec![f64::NAN; rows], |k| table.values[k].clone()),
         written_time: time.filter(|(written, _)| *written == at).map(|(_, unit)| unit),
     });

@@ -1,4 +1,4 @@
-//! A pass over a long log that tells how the ship was steered, and keeps nothing.
+//! Pass over a long log that reports the steering of the ship and stores nothing.
 
 use std::io;
 use std::path::Path;
@@ -17,28 +17,28 @@ use crate::stretches::StretchFault;
 use crate::table::{Column, Raw, Table, Target};
 use crate::taker::{RowsFile, Taker};
 
-/// How a ship was steered and moved at one time, in SI units and radians; NaN for what is not
-/// measured.
+/// Steering and motion of a ship at one time, in SI units and radians; NaN where not measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
-    /// Time, s, as the reader counts it.
+    /// Time, s, as in the table.
     pub t_s: f64,
-    /// Rudder angle, rad, positive to starboard; of a pair the mean.
+    /// Rudder angle, rad, positive to starboard; the mean of a pair.
     pub rudder_rad: f64,
-    /// Propeller revolutions, 1/s; of a pair the mean.
+    /// Propeller revolutions, 1/s; the mean of a pair.
     pub revolutions_rps: f64,
     /// Yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,
-    /// Heading, rad, as the compass shows it; not looked at where the yaw rate is measured.
+    /// Heading, rad, as recorded; not read if the yaw rate is measured.
     pub heading_rad: f64,
     /// Speed ahead, or over ground, m/s.
     pub speed_m_s: f64,
 }
 
-/// Gives every row of a file that has a time to `each`.
+/// Calls `each` with every row of a file that has a time.
 ///
 /// # Errors
-/// The file cannot be read, has no such columns, or its times can be told only from all of them.
+/// Returns an error if the file cannot be read, lacks these columns, or needs its whole time column
+/// for its times to be known.
 pub fn scan(path: &Path, mapping: &Mapping, each: impl FnMut(&Steering)) -> Result<(), Refusal> {
     let file = path.display().to_string();
     let unreadable = |error: io::Error| Refusal {
@@ -73,25 +73,27 @@ impl<F: FnMut(&Steering)> Visit for ScanVisit<F> {
         let places = Places::of(file.columns(), self.port);
         let mut scan = Scan { each: self.each, places, t_s: f64::NAN, is_open: false };
         file.each(&mut scan);
+        // Rows without a known time were skipped: the scan is not complete.
         if scan.is_open {
             findings.error(None, None, StretchFault::Open.to_string());
         }
+        // No table is built: only the findings of the reader are needed.
         file.finish(true, &mut Table::default(), &mut findings);
         findings
     }
 }
 
-/// Positions of a quantity, or of a pair, and the factor to SI units.
+/// Positions of the column of a quantity, or of a pair, with the factor to SI units.
 type Place = [Option<(usize, f64)>; 2];
 
-/// Where what is looked at stands among the columns.
+/// Columns of the quantities of [`SteeringSample`].
 struct Places {
     rudder: Place,
     revolutions: Place,
     yaw: Place,
     heading: Place,
     speed: Place,
-    /// Columns by position, which the reader is asked for.
+    /// All columns by position, as the cell reader needs them.
     columns: Vec<Column>,
 }
 
@@ -106,11 +108,13 @@ impl Places {
         let or = |first: Place, second: Place| if first[0].is_some() { first } else { second };
         let raw = |one: Raw, other: Raw| [at(Target::Raw(one)), at(Target::Raw(other))];
         let signed = |place: Place| place.map(|one| one.map(|(at, factor)| (at, sign * factor)));
+        // The pair of a twin ship is read only if the channel itself is absent.
         let yaw = one(Channel::R);
         Self {
             rudder: signed(or(one(Channel::Delta), raw(Raw::DeltaS, Raw::DeltaP))),
             revolutions: or(one(Channel::N), raw(Raw::NS, Raw::NP)),
             yaw,
+            // The heading is only needed where there is no yaw rate.
             heading: if yaw[0].is_some() { [None, None] } else { one(Channel::Psi) },
             speed: or(one(Channel::U), [at(Target::Raw(Raw::Speed)), None]),
             columns: columns.to_vec(),

@@ -1,4 +1,4 @@
-//! Readings of several sensors, each at its own rate, on one time base.
+//! Interpolation of the readings of several sensors, each with its own rate, to one time base.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,11 +7,11 @@ use sistership_model::trial::Channel;
 use crate::findings::Findings;
 use crate::table::{Column, Raw, Start, Table, Target};
 
-/// Readings further apart than so many of a sensor's median steps are not bridged: rows between
-/// them are left out.
+/// Multiple of the median step of a sensor beyond which there is no interpolation between two
+/// readings: rows between them are excluded.
 const BRIDGED: f64 = 2.5;
 
-/// One sensor's readings in canonical units, in order of time.
+/// Readings of one sensor in canonical units, in order of time.
 #[derive(Debug, Clone)]
 pub(crate) struct Series {
     pub column: Column,
@@ -19,15 +19,15 @@ pub(crate) struct Series {
     pub values: Vec<f64>,
 }
 
-/// What is told of one series at the times of the base.
+/// Values of a series at the times of the base.
 struct Sampled {
     values: Vec<f64>,
-    /// Rows that lie in a gap.
+    /// Number of rows that are in a gap.
     lost: usize,
 }
 
-/// The columns of a sensor's file, at its times with an offset; those that go back are left for the
-/// check of time.
+/// Returns the columns of the file of a sensor as series, with an offset of their times; times that
+/// go back are left to the check of time.
 pub(crate) fn series(table: Table, offset_s: f64) -> Vec<Series> {
     let is_time = |column: &Column| column.target == Target::Time;
     let Some(at) = table.columns.iter().position(is_time) else { return Vec::new() };
@@ -36,7 +36,10 @@ pub(crate) fn series(table: Table, offset_s: f64) -> Vec<Series> {
     others.map(|(column, values)| Series { column, t: t.clone(), values }).collect()
 }
 
-/// What is to be added to a sensor's seconds to have those of the base.
+/// Returns the offset that is added to the seconds of a sensor to obtain those of the base.
+///
+/// # Errors
+/// Returns an error if only one of the files has calendar times and no offset is declared.
 pub(crate) fn offset_s(
     base: Option<&Start>,
     sensor: Option<&Start>,
@@ -45,8 +48,8 @@ pub(crate) fn offset_s(
     let starts = match (base, sensor) {
         (Some(base), Some(sensor)) if base.dated && sensor.dated => Some(sensor.at_s - base.at_s),
         (Some(base), Some(sensor)) => {
-            // Of one of them only the time of day is known, so that they are less than half a day
-            // apart.
+            // The time of day alone is known of at least one of them: they are assumed to be less
+            // than half a day apart.
             Some((sensor.at_s - base.at_s + 43_200.0).rem_euclid(86_400.0) - 43_200.0)
         }
         (None, None) => Some(0.0),
@@ -63,8 +66,7 @@ pub(crate) fn offset_s(
     }
 }
 
-/// Adds series to a table at the table's own times; rows where one has no reading nearby are left
-/// out.
+/// Adds series to a table at the times of the table; rows without a nearby reading are excluded.
 pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findings) {
     let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
         return;
@@ -76,6 +78,7 @@ pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findin
             findings.error(None, Some(&column.header), message);
             continue;
         }
+        // The binary search of the interpolation needs strictly increasing times.
         if t.windows(2).any(|pair| pair[0] >= pair[1]) {
             let message = "its time does not increase throughout; sort its rows, each once";
             findings.error(None, Some(&column.header), message);
@@ -97,14 +100,15 @@ pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findin
     leave_out(table);
 }
 
-/// Between the readings before and after each time, along the shorter way round for an angle; NaN
-/// in a gap.
+/// Interpolates between the readings before and after each time, along the shorter way for an
+/// angle; NaN in a gap.
 fn sample(times: &[f64], t: &[f64], values: &[f64], is_angle: bool) -> Sampled {
     let longest = BRIDGED * median_step(t);
     let mut lost = 0;
     let values = times.iter().map(|&time| {
         let after = t.partition_point(|&other| other < time);
         let value = match (after.checked_sub(1), t.get(after)) {
+            // A reading at the time itself is valid even next to a gap.
             (_, Some(&exact)) if exact == time => values[after],
             (Some(before), Some(&next)) if next - t[before] <= longest => {
                 let share = (time - t[before]) / (next - t[before]);
@@ -120,7 +124,7 @@ fn sample(times: &[f64], t: &[f64], values: &[f64], is_angle: bool) -> Sampled {
     Sampled { values: values.collect(), lost }
 }
 
-/// A change of direction along the shorter way round.
+/// Returns a change of direction along the shorter way, in -pi to pi.
 pub(crate) fn shorter_way(change: f64) -> f64 {
     change - ((change + PI) / TAU).floor() * TAU
 }
@@ -139,7 +143,7 @@ pub(crate) fn is_angle(target: Target) -> bool {
     )
 }
 
-/// Takes rows with a gap out of every column; those that follow them resume.
+/// Removes rows with a gap from every column; the rows after them are marked as resumed.
 pub(crate) fn leave_out(table: &mut Table) {
     let whole: Vec<bool> = (0..table.rows.len())
         .map(|k| table.values.iter().all(|values| values[k].is_finite()))

@@ -1,4 +1,4 @@
-//! Files with the same columns: identified once, by all of their rows.
+//! Sets of columns that several files share: identified once, from the rows of all files.
 
 use indexmap::IndexMap;
 use sistership_columns::{
@@ -11,23 +11,23 @@ use crate::preview::Preview;
 use crate::table::Target;
 use crate::units::Kind;
 
-/// Rows of all files together that are compared.
+/// Largest number of rows of all files that are compared.
 const ROWS: usize = 60_000;
 
-/// Columns that several files share, and what they are.
+/// Columns that several files share, and their identification.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Shape {
     names: Vec<String>,
     units: Vec<String>,
-    /// Channels of sentences, which need no mapping.
+    /// Channels of NMEA sentences, which need no mapping.
     sentences: Vec<(String, Target)>,
     sample: RecordingSample,
     pub columns: IndexMap<String, ColumnMapping>,
-    /// A guess for each column, without the file's name.
+    /// Identified content of each column, without the name of the file.
     pub guesses: Vec<Guess>,
-    /// The factor of the time column to seconds.
+    /// Index of the time column, and its factor to seconds.
     pub time: Option<(usize, f64)>,
-    /// Remarks on columns together.
+    /// Notes on combinations of columns.
     pub notes: Vec<String>,
 }
 
@@ -41,8 +41,9 @@ impl Shape {
         }
     }
 
-    /// Whether a file has these columns.
+    /// Returns true if a file has these columns.
     pub(crate) fn fits(&self, preview: &Preview) -> bool {
+        // Logs of NMEA sentences need no identification, and keep a set of their own.
         let sentences = self.sentences.is_empty() && preview.sentences.is_empty();
         sentences && self.names == preview.names && self.units == preview.units
     }
@@ -57,13 +58,14 @@ impl Shape {
         if rows + sample.len() > ROWS {
             return;
         }
+        // No step is formed from one file to the next.
         self.sample.breaks.push(rows);
         for (column, further) in self.sample.columns.iter_mut().zip(&sample.columns) {
             column.values.extend_from_slice(&further.values);
         }
     }
 
-    /// Identifies the columns.
+    /// Identifies the columns, and releases the sample.
     pub(crate) fn identify(&mut self, given: &[GivenColumn]) {
         for (name, target) in &self.sentences {
             self.guesses.push(of_sentence(name, *target));
@@ -84,10 +86,11 @@ impl Shape {
             self.guesses.push(guess);
         }
         self.notes.extend(thrusters(&found));
+        // The samples may be large, and are not needed any more.
         self.sample = RecordingSample::default();
     }
 
-    /// Whether it has a channel of that name.
+    /// Returns true if it has a channel of that name.
     pub(crate) fn has(&self, name: &str) -> bool {
         let told = || self.sentences.iter().any(|(_, held)| held.name() == name);
         self.columns.contains_key(name) || told()
@@ -97,20 +100,21 @@ impl Shape {
         names.iter().any(|name| self.has(name))
     }
 
-    /// Whether it is a trial by itself: time, steering or propulsion, turning and speed.
+    /// Returns true if it is a complete trial: time, steering or propulsion, turning and speed.
     pub(crate) fn is_complete(&self) -> bool {
+        // Commands of thrusters have no channel, but count as steering here.
         let commands = self.any(&["delta", "delta_s", "delta_p", "n", "n_s", "n_p"])
             || self.notes.iter().any(|note| note.contains("thruster"));
         let speed = self.any(&["u", "speed", "x", "latitude", "v_north"]);
         commands && speed && self.any(&["r", "psi"])
     }
 
-    /// How many channels it has besides time.
+    /// Returns the number of channels besides time.
     pub(crate) fn channels(&self) -> usize {
         self.columns.len() + self.sentences.len()
     }
 
-    /// Whether the rudder counts the other way; nothing where there is no rudder.
+    /// Returns true if the sign of the rudder is reversed; `None` if there is no rudder.
     pub(crate) fn rudder_reversed(&self) -> Option<bool> {
         let rudder =
             ["delta", "delta_s", "delta_p"].into_iter().find_map(|one| self.columns.get(one));
@@ -120,6 +124,7 @@ impl Shape {
 
 fn seconds(unit: &str) -> f64 {
     match unit {
+        // Days of a sheet were converted to seconds when the sample was read.
         "excel" => 1.0,
         unit => Kind::Time.factor(unit).unwrap_or(1.0),
     }
@@ -152,6 +157,7 @@ fn guess(column: &IdentifiedColumn, all: &Identification) -> Guess {
     let Some(role) = column.role else {
         return nothing(format!("left out: {}", column.reason), column.is_certain);
     };
+    // Certain, since the column is left out by rule and not by evidence.
     if let Some(why) = redundant(role, all) {
         return nothing(why, true);
     }
@@ -166,6 +172,7 @@ fn guess(column: &IdentifiedColumn, all: &Identification) -> Guess {
         unit: Some(column.unit.clone()),
         reversed: column.is_reversed,
         why: why(column, role),
+        // A percentage needs a declared maximum, and a changed role a confirmation by the user.
         certain: column.is_certain && column.unit != "%" && Some(role) == column.role,
         question: question(column),
     }
@@ -182,7 +189,7 @@ fn why(column: &IdentifiedColumn, role: Role) -> String {
     column.reason.clone()
 }
 
-/// What a column is not read for, since another gives the same.
+/// Returns the reason for which a column is not read if another gives the same.
 fn redundant(role: Role, all: &Identification) -> Option<String> {
     let has = |role: Role| all.find(role).is_some();
     let metres = has(Role::X) && has(Role::Y);
@@ -201,14 +208,14 @@ fn redundant(role: Role, all: &Identification) -> Option<String> {
     }
 }
 
-/// A speed over ground that nothing else gives is the speed ahead.
+/// Returns the role of a column; a speed over ground without other motion data is the speed ahead.
 fn read_as(role: Role, all: &Identification) -> Role {
     let has = |role: Role| all.find(role).is_some();
     let alone = ![Role::U, Role::Course, Role::X, Role::Latitude].into_iter().any(has);
     if role == Role::Speed && alone { Role::U } else { role }
 }
 
-/// One question where a second reading is nearly as likely, with what answers it.
+/// Returns the question to the user if an alternative is nearly as likely, and how to answer it.
 fn question(column: &IdentifiedColumn) -> Option<String> {
     let other = column.alternative.as_ref()?;
     let first = Alternative {
@@ -222,6 +229,7 @@ fn question(column: &IdentifiedColumn) -> Option<String> {
         Some(role) => format!("{} in {}", role.name(), one.unit),
         None => "left out".to_owned(),
     };
+    // Argument of the command line that settles the column in this way.
     let flag = |one: &Alternative| match one.role {
         Some(role) => {
             let reversed = if one.is_reversed { ":reversed" } else { "" };
@@ -241,7 +249,7 @@ fn question(column: &IdentifiedColumn) -> Option<String> {
     ))
 }
 
-/// Commands of two thrusters, of which a trial holds neither.
+/// Returns the note on commands of two thrusters, for which a trial has no channel.
 fn thrusters(found: &Identification) -> Option<String> {
     let pair = found.thrusters.as_ref()?;
     let (port, starboard) = pair.columns;

@@ -1,36 +1,38 @@
-//! A fixed-interval Kalman smoother (Rauch, Tung and Striebel 1965) for one recorded quantity and
-//! its rates.
+//! Fixed-interval Kalman smoother (Rauch, Tung and Striebel 1965) for one recorded quantity and its
+//! rates.
 //!
 //! Between samples the quantity is a parabola whose second derivative is disturbed by white noise:
 //! value, rate and acceleration are the state, the density of the disturbance is the process noise.
-//! Two numbers decide how smooth the result is: the variance of a reading, and the process noise.
-//! Neither is known of a file, so both are those that make the readings most probable: their ratio
-//! is searched, and of each ratio the variance follows from the innovations.
+//! Two numbers determine the smoothness of the result: the variance of a reading, and the process
+//! noise. Neither is known of a file, so both are chosen by maximum likelihood of the readings:
+//! their ratio is searched, and for each ratio the variance follows from the innovations.
 
 use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Samples of the longest stretch by which the ratio is chosen; more would not move it by much.
+/// Largest number of samples of the longest segment from which the ratio is estimated; more would
+/// hardly change it.
 const CHOOSING: usize = 20_000;
-/// Innovations passed over at the start of a stretch, where they only tell the first state.
+/// Number of innovations ignored at the start of a segment, where they only determine the initial
+/// state.
 const LEARNING: usize = 3;
-/// Decimal logarithms between which the ratio is searched, in units of the median step.
+/// Range of the decimal logarithm in which the ratio is searched, in units of the median step.
 const RATIOS: Range<i32> = -14..5;
-/// Variance of the first rate and acceleration, by that of differences of readings: they are read
-/// again, so that their first use must count for little, but not so little that rounding shows in
-/// what is left of it.
+/// Factor of the initial variances of value, rate and acceleration: the readings from which they
+/// are computed are used again, so that the initial state must have little weight, but its variance
+/// must not be so large that rounding spoils what remains of it.
 const DIFFUSE: f64 = 100.0;
-/// The least variance of a reading by the square of the readings' range: what a simulation's
-/// rounding leaves.
+/// Smallest variance of a reading by the square of the readings' range: the rounding of a
+/// simulation.
 const EXACT: f64 = 1e-24;
 
-/// What was found of the readings.
+/// Estimated noise of the readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Noise {
     /// Variance of a reading.
     pub reading: f64,
-    /// Density of what disturbs the acceleration, by the variance of a reading, 1/s^5.
+    /// Density of the disturbance of the acceleration, divided by the variance of a reading, 1/s^5.
     pub ratio: f64,
 }
 
@@ -49,10 +51,12 @@ struct State {
     covariance: Matrix3<f64>,
 }
 
+/// Constant acceleration over the step: rows for value, rate and acceleration.
 fn transition(step: f64) -> Matrix3<f64> {
     Matrix3::new(1.0, step, 0.5 * step * step, 0.0, 1.0, step, 0.0, 0.0, 1.0)
 }
 
+/// Covariance that white noise of density `ratio` on the third derivative adds over the step.
 fn disturbance(step: f64, ratio: f64) -> Matrix3<f64> {
     let [two, three, four, five] = [2, 3, 4, 5].map(|power| step.powi(power));
     let (a, b, c) = (five / 20.0, four / 8.0, three / 6.0);
@@ -60,9 +64,10 @@ fn disturbance(step: f64, ratio: f64) -> Matrix3<f64> {
 }
 
 impl State {
-    /// At the first sample, in units in which a reading has variance 1.
+    /// Returns the state at the first sample, in units in which a reading has variance 1.
     fn first(t: &[f64], values: &[f64], ratio: f64) -> Self {
         let step = t[1] - t[0];
+        // Rate and acceleration from the differences of the first three readings.
         let rate = (values[1] - values[0]) / step;
         let next = (values[2] - values[1]) / (t[2] - t[1]);
         let acceleration = (next - rate) / (0.5 * (t[2] - t[0]));
@@ -82,18 +87,19 @@ impl State {
         Self { mean: f * self.mean, covariance }
     }
 
-    /// With a reading; the innovation and its variance.
+    /// Updates the state with a reading; returns it with the innovation and its variance.
     fn updated(&self, value: f64) -> (Self, f64, f64) {
         let (innovation, variance) = (value - self.mean[0], self.covariance[(0, 0)] + 1.0);
         let gain = self.covariance.column(0) / variance;
         let covariance = self.covariance - gain * gain.transpose() * variance;
+        // Symmetric again, against the growth of rounding errors.
         let covariance = 0.5 * (covariance + covariance.transpose());
         (Self { mean: self.mean + gain * innovation, covariance }, innovation, variance)
     }
 }
 
-/// Sums over the innovations of one quantity: of squares by variance, of logarithms of the
-/// variance, and how many.
+/// Returns sums over the innovations of one quantity: of squares divided by the variance, of
+/// logarithms of the variance, and their number.
 fn innovations(t: &[f64], values: &[f64], ratio: f64) -> (f64, f64, f64) {
     let mut state = State::first(t, values, ratio);
     let mut sums = (0.0, 0.0, 0.0);
@@ -110,7 +116,8 @@ fn innovations(t: &[f64], values: &[f64], ratio: f64) -> (f64, f64, f64) {
     sums
 }
 
-/// The most probable noise of quantities that are read alike, by the longest stretch without a gap.
+/// Returns the most likely noise of quantities with equal reading noise, from the longest segment
+/// without a gap; `None` if that is too short.
 pub(crate) fn choose(t: &[f64], quantities: &[&[f64]], segments: &[Range<usize>]) -> Option<Noise> {
     let longest = segments.iter().max_by_key(|range| range.len())?;
     let range = longest.start..longest.end.min(longest.start + CHOOSING);
@@ -119,8 +126,11 @@ pub(crate) fn choose(t: &[f64], quantities: &[&[f64]], segments: &[Range<usize>]
         return None;
     }
     let step = (t[count - 1] - t[0]) / (count - 1) as f64;
+    // A lower bound, since readings without noise would give a variance of zero.
     let least = quantities.iter().map(|values| EXACT * spread(&values[range.clone()]).powi(2));
     let least = least.fold(f64::MIN_POSITIVE, f64::max);
+    // Minus twice the log likelihood, up to a constant, with the variance of a reading concentrated
+    // out.
     let noise = |exponent: f64| {
         let ratio = 10_f64.powf(exponent) / step.powi(5);
         let sums = quantities.iter().map(|values| innovations(t, &values[range.clone()], ratio));
@@ -129,6 +139,7 @@ pub(crate) fn choose(t: &[f64], quantities: &[&[f64]], segments: &[Range<usize>]
         let reading = (squares / count).max(least);
         (Noise { reading, ratio }, count * reading.ln() + logarithms)
     };
+    // A search over decades, refined by halving the width: one exponent, and a smooth objective.
     let (mut centre, mut width) = (best(RATIOS.map(f64::from), &noise), 0.5);
     for _ in 0..4 {
         centre = best([centre - width, centre, centre + width].into_iter(), &noise);
@@ -147,7 +158,7 @@ fn spread(values: &[f64]) -> f64 {
     most - least
 }
 
-/// Smooths a stretch without a gap, of three samples at least.
+/// Smooths a segment without a gap, of at least three samples.
 pub(crate) fn smooth(t: &[f64], values: &[f64], noise: Noise) -> Vec<Smoothed> {
     let mut states = Vec::with_capacity(t.len());
     states.push(State::first(t, values, noise.ratio));
@@ -155,6 +166,7 @@ pub(crate) fn smooth(t: &[f64], values: &[f64], noise: Noise) -> Vec<Smoothed> {
         let before: State = states[k - 1];
         states.push(before.predicted(t[k] - t[k - 1], noise.ratio).updated(values[k]).0);
     }
+    // Backward pass of Rauch, Tung and Striebel. A singular prediction leaves the filtered state.
     for k in (0..t.len() - 1).rev() {
         let (after, filtered) = (states[k + 1], states[k]);
         let step = t[k + 1] - t[k];

@@ -1,7 +1,7 @@
 //! Savitzky-Golay smoothing: a polynomial fitted by least squares to a moving window.
 //!
-//! Savitzky and Golay 1964 (doi 10.1021/ac60214a047). The ends are read off the polynomials fitted
-//! to the first and the last window, as SciPy's `savgol_filter` does with `mode="interp"`.
+//! Savitzky and Golay 1964 (doi 10.1021/ac60214a047). The ends are evaluated on the polynomials
+//! fitted to the first and the last window, as SciPy's `savgol_filter` does with `mode="interp"`.
 
 use nalgebra::DMatrix;
 use sistership_model::manifest::Smoothing;
@@ -10,14 +10,15 @@ use sistership_model::trial::Channel;
 use crate::findings::Findings;
 use crate::recording::Recording;
 
-/// Bounds of what a file may ask for.
+/// Largest window and largest degree that a manifest may declare.
 const MAX_WINDOW: usize = 9_999;
 const MAX_DEGREE: usize = 15;
-/// A step may differ from the median by this part of it; the filter assumes equal steps.
+/// Largest deviation of a step from the median, as a fraction of it; the filter assumes equal
+/// steps.
 const UNEVEN: f64 = 0.1;
 
-/// The measured motions. Rudder and revolutions are commands with edges that a smoother would blur
-/// ahead of time, and wind directions wrap: these stay as recorded.
+/// Measured motions, which are smoothed. Rudder and revolutions are commands with edges that a
+/// smoother would blur ahead of time, and wind directions wrap: these stay as recorded.
 const SMOOTHED: [Channel; 10] = [
     Channel::X,
     Channel::Y,
@@ -31,29 +32,29 @@ const SMOOTHED: [Channel; 10] = [
     Channel::P,
 ];
 
-/// Why values cannot be smoothed so.
+/// Reason for which values cannot be smoothed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SmoothingError {
-    /// The window has no middle, or is too long.
+    /// The window is even or too long.
     #[error("the smoothing window must be odd and at most {most}, not {0}", most = MAX_WINDOW)]
     Window(usize),
     /// The window does not determine the polynomial.
     #[error("the smoothing degree {degree} must be less than the window of {window} samples")]
     Degree {
-        /// Of the polynomial.
+        /// Degree of the polynomial.
         degree: usize,
-        /// Samples of the window.
+        /// Number of samples of the window.
         window: usize,
     },
     /// The degree is too high.
     #[error("the smoothing degree must be at most {most}, not {0}", most = MAX_DEGREE)]
     High(usize),
-    /// There are fewer values than the window has.
+    /// There are fewer values than samples of the window.
     #[error("a smoothing window of {window} samples does not fit into {samples}")]
     Short {
-        /// Samples of the window.
+        /// Number of samples of the window.
         window: usize,
-        /// Values.
+        /// Number of values.
         samples: usize,
     },
 }
@@ -64,7 +65,7 @@ pub enum SmoothingError {
 /// less than the window and at most 15.
 ///
 /// # Errors
-/// Says which of these does not hold.
+/// Returns the first of these conditions that is violated.
 pub fn savitzky_golay(
     values: &[f64],
     window: usize,
@@ -76,7 +77,8 @@ pub fn savitzky_golay(
     }
     let basis = basis(window, degree);
     let (half, last) = (window / 2, values.len() - window);
-    // The fitted value at a place of a window is the projection onto the polynomials, read there.
+    // The fitted value at a place of a window is the projection onto the polynomials, evaluated
+    // there.
     let fitted = |start: usize, weights: &[f64]| -> f64 {
         values[start..start + window].iter().zip(weights).map(|(a, b)| a * b).sum()
     };
@@ -87,7 +89,7 @@ pub fn savitzky_golay(
     Ok(head.chain(body).chain(tail).collect())
 }
 
-/// Whether window and degree are ones that [`savitzky_golay`] takes.
+/// Checks that window and degree are valid for [`savitzky_golay`].
 pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> {
     match () {
         () if window.is_multiple_of(2) || window > MAX_WINDOW => {
@@ -99,7 +101,7 @@ pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> 
     }
 }
 
-/// Orthonormal polynomials on the window, one per column; on [-1, 1], where powers stay well
+/// Returns orthonormal polynomials on the window, one per column; on [-1, 1], where powers are well
 /// conditioned.
 fn basis(window: usize, degree: usize) -> DMatrix<f64> {
     let half = (window / 2).max(1) as f64;
@@ -107,12 +109,12 @@ fn basis(window: usize, degree: usize) -> DMatrix<f64> {
     DMatrix::from_fn(window, degree + 1, |row, power| at(row).powi(power as i32)).qr().q()
 }
 
-/// The weights of the window's samples in the fitted value at one place.
+/// Returns the weights of the window's samples in the fitted value at one place.
 fn weights(basis: &DMatrix<f64>, place: usize) -> Vec<f64> {
     (basis * basis.row(place).transpose()).iter().copied().collect()
 }
 
-/// Smooths the measured motions, each stretch without a gap by itself.
+/// Smooths the measured motions, each segment without gaps separately.
 pub(crate) fn smooth(recording: &mut Recording, smoothing: Smoothing, findings: &mut Findings) {
     if let Err(refused) = check(smoothing.window, smoothing.degree) {
         return findings.error(None, None, refused.to_string());
@@ -125,6 +127,7 @@ pub(crate) fn smooth(recording: &mut Recording, smoothing: Smoothing, findings: 
         );
         return findings.error(Some(recording.row(k)), Some(&recording.time), message);
     }
+    // Cloned, since smoothing borrows the recording mutably.
     for segment in recording.segments.clone() {
         smooth_segment(recording, segment, smoothing, findings);
     }

@@ -1,4 +1,4 @@
-//! Where a trial's bytes come from.
+//! Input files of trials.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -11,14 +11,14 @@ use crate::magic::{self, Kind, LOOKED_AT};
 use crate::mapping::Mapping;
 use crate::workbook::ReadSeek;
 
-/// A file to read: its name, used in every message, and its bytes.
+/// Input file: its name, which every message mentions, and its bytes.
 pub struct Source<'a> {
     pub(crate) name: String,
     pub(crate) content: Content<'a>,
     pub(crate) sensors: Vec<Sensor<'a>>,
 }
 
-/// A file with further channels of the same trial.
+/// File with further channels of the same trial.
 pub(crate) struct Sensor<'a> {
     pub name: String,
     pub content: Content<'a>,
@@ -33,22 +33,23 @@ pub(crate) enum Content<'a> {
     Workbook(Box<dyn ReadSeek + 'a>),
     Nmea(Box<dyn ReadSeek + 'a>),
     Matlab(Box<dyn ReadSeek + 'a>),
-    /// What the file is, and what to do with it.
+    /// A format that is not read: its name, and advice.
     Other(&'static str),
 }
 
 impl<'a> Source<'a> {
-    /// CSV from any reader, streamed row by row.
+    /// Creates an input file of CSV from any reader, streamed row by row.
     pub fn csv(name: impl Into<String>, reader: impl Read + 'a) -> Self {
         Self::whole(name.into(), Content::Csv(Box::new(reader)))
     }
 
-    /// Parquet in memory.
+    /// Creates an input file of Parquet in memory.
     pub fn parquet(name: impl Into<String>, bytes: Bytes) -> Self {
         Self::whole(name.into(), Content::ParquetBytes(bytes))
     }
 
-    /// A file in memory, told by its first bytes, whatever the name says.
+    /// Creates an input file in memory, whose format is detected by its first bytes, independent of
+    /// its name.
     pub fn bytes(name: impl Into<String>, bytes: Bytes) -> Self {
         match magic::kind(&bytes[..bytes.len().min(LOOKED_AT)]) {
             Kind::Parquet => Self::parquet(name, bytes),
@@ -72,9 +73,9 @@ impl<'a> Source<'a> {
         Self { name, content, sensors: Vec::new() }
     }
 
-    /// With a file of further channels, read by a mapping of its own. Its readings are put on this
-    /// file's times; its clock is this file's after the offset is added, and after dates and times
-    /// of day are compared where both files have them.
+    /// Adds a file of further channels with a mapping of its own. Its readings are interpolated to
+    /// the times of this file; its clock agrees with that of this file once the offset is added
+    /// and, where both files have them, dates and times of day are compared.
     pub fn with_sensor(
         mut self,
         other: Self,
@@ -86,10 +87,10 @@ impl<'a> Source<'a> {
         self
     }
 
-    /// A file on disk with the sensors' that belong to the same trial.
+    /// Opens a file on disk with the files of sensors that belong to the same trial.
     ///
     /// # Errors
-    /// A file cannot be opened or read; a sensor's is named.
+    /// Returns an error if a file cannot be opened or read, with the name of a sensor's file.
     pub fn open_trial(
         name: impl Into<String>,
         path: &Path,
@@ -105,17 +106,19 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    /// A file on disk, streamed and told by its first bytes.
+    /// Opens a file on disk, which is streamed and whose format is detected by its first bytes.
     ///
     /// # Errors
-    /// The file cannot be opened or read.
+    /// Returns an error if the file cannot be opened or read.
     pub fn open(name: impl Into<String>, path: &Path) -> io::Result<Self> {
         let mut file = File::open(path)?;
         let mut start = Vec::new();
         file.by_ref().take(LOOKED_AT as u64).read_to_end(&mut start)?;
+        // The start is read again with the rest of the file.
         file.seek(SeekFrom::Start(0))?;
         let name = name.into();
         Ok(match magic::kind(&start) {
+            // Parquet is read by offset, other formats through a buffer.
             Kind::Parquet => Self::whole(name, Content::ParquetFile(file)),
             kind => Self::of(kind, name, BufReader::new(file)),
         })

@@ -1,45 +1,45 @@
-//! Dates and times of day as people write them.
+//! Parsing of dates and times of day in common forms.
 
 use crate::calendar::{SECOND, day};
 use crate::open_dates::OpenDate;
 
-/// Which of two numbers before the year is the day, where the writing does not tell.
+/// Order of day and month before the year.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Order {
     DayFirst,
     MonthFirst,
-    /// To be learned from the whole column.
+    /// Not known until the whole column is read.
     Open,
 }
 
-/// Where the date of a cell stands.
+/// Date of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Date {
     /// Days since 1970.
     Known(i64),
-    /// Two numbers of which one is the month, and the year.
+    /// Two numbers, one of which is the month, and the year.
     Either(OpenDate),
-    /// Only the time of day is written.
+    /// No date, only a time of day.
     Absent,
 }
 
-/// What a cell of a time column says.
+/// Content of a cell of a time column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Stamp {
     pub date: Date,
     /// Nanoseconds since midnight, as written.
     pub of_day: i64,
-    /// Nanoseconds that the zone is ahead of UTC, if one is written.
+    /// Offset of the time zone from UTC, ns, positive to the east, if one is written.
     pub zone: Option<i64>,
 }
 
 const MONTHS: [&str; 12] =
     ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 
-/// Reads a date with time of day, or a time of day.
+/// Parses a date with time of day, or a time of day.
 pub(crate) fn stamp(text: &str, order: Order) -> Option<Stamp> {
     let text = text.trim();
-    // Nothing that is a time is longer, and slices below are of ASCII only.
+    // No time is longer, and the slices below require ASCII.
     if text.len() > 48 || !text.is_ascii() {
         return None;
     }
@@ -51,7 +51,7 @@ pub(crate) fn stamp(text: &str, order: Order) -> Option<Stamp> {
     Some(Stamp { date, of_day, zone })
 }
 
-/// Date and time of day; they are apart by `T`, by blanks or by a comma.
+/// Splits a text into date and time of day, separated by `T`, blanks or a comma.
 fn split(text: &str) -> (&str, &str) {
     let colon = text.find(':').unwrap_or(text.len());
     match text[..colon].rfind([' ', 'T', 't', ',', '_']) {
@@ -60,7 +60,8 @@ fn split(text: &str) -> (&str, &str) {
     }
 }
 
-/// The time without its zone, and the zone: `Z`, `UTC`, `GMT`, `+02:00`, `-0330` or `+02`.
+/// Splits a time into the time without its zone, and the zone: `Z`, `UTC`, `GMT`, `+02:00`, `-0330`
+/// or `+02`.
 fn zone(time: &str) -> Option<(&str, Option<i64>)> {
     for name in ["Z", "z", "UTC", "GMT"] {
         if let Some(rest) = time.strip_suffix(name) {
@@ -79,7 +80,7 @@ fn zone(time: &str) -> Option<(&str, Option<i64>)> {
     fits.then(|| (&time[..at], Some(sign * (hours * 60 + minutes) * 60 * SECOND)))
 }
 
-/// The time without `AM` or `PM`, and whether it is after noon if that is said.
+/// Splits a time into the time without `AM` or `PM`, and the presence of either: true for `PM`.
 fn half(time: &str) -> (&str, Option<bool>) {
     let cut = |name: &str| {
         let at = time.len().checked_sub(name.len())?;
@@ -92,7 +93,7 @@ fn half(time: &str) -> (&str, Option<bool>) {
     }
 }
 
-/// Nanoseconds since midnight of `hh:mm`, `hh:mm:ss`, `hh:mm:ss.sss` or `hh:mm:ss,sss`.
+/// Returns the nanoseconds since midnight of `hh:mm`, `hh:mm:ss`, `hh:mm:ss.sss` or `hh:mm:ss,sss`.
 fn of_day(time: &str, half: Option<bool>) -> Option<i64> {
     let mut parts = time.split(':');
     let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
@@ -102,7 +103,7 @@ fn of_day(time: &str, half: Option<bool>) -> Option<i64> {
         Some(_) if !(1..=12).contains(&hour) => return None,
         Some(after) => hour % 12 + if after { 12 } else { 0 },
     };
-    // A leap second is the sixtieth.
+    // A leap second has the number 60.
     let fits = parts.next().is_none() && hour < 24 && minute < 60 && seconds < 61 * SECOND;
     fits.then_some((hour * 60 + minute) * 60 * SECOND + seconds)
 }
@@ -112,11 +113,12 @@ fn nanoseconds(text: &str) -> Option<i64> {
     if !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
+    // Padded with zeros or cut to nine digits, hence nanoseconds.
     let digits = format!("{:0<9.9}", fraction);
     Some(whole(seconds)? * SECOND + digits.parse::<i64>().ok()?)
 }
 
-/// Digits and nothing else, of which there are at most four.
+/// Parses one to four digits and nothing else.
 fn whole(text: &str) -> Option<i64> {
     let digits = (1..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
     if digits { text.parse().ok() } else { None }
@@ -129,13 +131,13 @@ fn date(text: &str, order: Order) -> Option<Date> {
     if one.len() == 4 {
         return Some(Date::Known(day(whole(one)?, month(two)?, whole(three)?)?));
     }
-    // Two digits between hyphens may be the year in front.
+    // Two digits after hyphens may be a day with the year in front: ambiguous, and refused.
     if three.len() == 2 && mark == '-' && whole(two).is_some() {
         return None;
     }
     let (year, first) = (year(three)?, whole(one)?);
     let (Some(second), true) = (whole(two), matches!(mark, '/' | '-')) else {
-        // Points and names of months follow the day wherever they are in use.
+        // With points or names of months the day comes first in all common forms.
         return Some(Date::Known(day(year, month(two)?, first)?));
     };
     match order {
@@ -148,8 +150,8 @@ fn date(text: &str, order: Order) -> Option<Date> {
     }
 }
 
-/// Of four digits, or of two: those from 69 on are of 1900, the others of 2000 (POSIX.1-2017,
-/// `strptime`, `%y`).
+/// Parses a year of four digits, or of two: those from 69 on are 19xx, the others 20xx
+/// (POSIX.1-2017, `strptime`, `%y`).
 fn year(text: &str) -> Option<i64> {
     match (text.len(), whole(text)?) {
         (4, year) => Some(year),
@@ -164,7 +166,7 @@ fn month(text: &str) -> Option<i64> {
 }
 
 impl Stamp {
-    /// Seconds of the day counted from a day before, or after, by so many.
+    /// Returns seconds in UTC since midnight of a reference day that is `days` days earlier.
     pub(crate) fn seconds(self, days: i64) -> f64 {
         let of_day = self.of_day - self.zone.unwrap_or(0);
         days as f64 * 86_400.0 + of_day as f64 / SECOND as f64

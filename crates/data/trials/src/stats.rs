@@ -1,21 +1,20 @@
-//! Sums over blocks of samples, on which the physical checks stand.
+//! Sums over blocks of samples, on which the physical checks are based.
 //!
-//! Integrating over a block rather than differentiating samples keeps measurement noise out of the
-//! comparison.
+//! Integrals over a block rather than differences of samples suppress measurement noise.
 
 use crate::recording::Recording;
 
-/// Blocks that a recording is cut into for a comparison.
+/// Number of blocks of a recording for a comparison.
 const BLOCKS: usize = 100;
 
-/// First and last sample of a stretch without a gap.
+/// First and last sample of a block without a gap.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Block {
     pub first: usize,
     pub last: usize,
 }
 
-/// About a hundred blocks of equal length that follow each other within the segments.
+/// Returns about a hundred consecutive blocks of equal length within the segments.
 pub(crate) fn blocks(recording: &Recording) -> Vec<Block> {
     let steps = (recording.trial.len() / BLOCKS).max(1);
     let inside = |segment: &std::ops::Range<usize>| {
@@ -23,6 +22,7 @@ pub(crate) fn blocks(recording: &Recording) -> Vec<Block> {
             .step_by(steps)
             .map(move |first| Block { first, last: first + steps })
     };
+    // An incomplete block at the end of a segment is dropped.
     let fits = |block: &Block, end: usize| block.last < end;
     recording
         .segments
@@ -32,19 +32,18 @@ pub(crate) fn blocks(recording: &Recording) -> Vec<Block> {
 }
 
 impl Block {
-    /// Trapezoidal integral over time of a function of the sample.
+    /// Returns the trapezoidal integral over time of a function of the sample.
     pub(crate) fn integral(self, t: &[f64], value: impl Fn(usize) -> f64) -> f64 {
         (self.first..self.last).map(|k| 0.5 * (value(k) + value(k + 1)) * (t[k + 1] - t[k])).sum()
     }
 
-    /// Change from first to last sample.
+    /// Returns the change from the first to the last sample.
     pub(crate) fn change(self, values: &[f64]) -> f64 {
         values[self.last] - values[self.first]
     }
 }
 
-/// How one series follows another without an offset: `b = slope a`, and the correlation of the two
-/// about zero.
+/// Proportionality of two series without offset: `b = slope a`, and their correlation about zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Proportion {
     pub slope: f64,
@@ -58,7 +57,8 @@ pub(crate) fn proportion(pairs: &[(f64, f64)]) -> Option<Proportion> {
         .then(|| Proportion { slope: ab / aa, correlation: ab / (aa * bb).sqrt() })
 }
 
-/// Pearson's correlation of pairs that can be gone through again; zero where one side is constant.
+/// Returns Pearson's correlation of pairs; zero if one side is constant or there are fewer than
+/// three. The iterator is cloned for several passes.
 pub(crate) fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     let count = pairs.clone().count();
     let n = count.max(1) as f64;
@@ -72,12 +72,12 @@ pub(crate) fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f6
     if count >= 3 && aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
 }
 
-/// Largest less smallest.
+/// Returns the largest less the smallest value.
 pub(crate) fn range(values: &[f64]) -> f64 {
     spread(values.iter().copied())
 }
 
-/// As [`range`].
+/// Returns the largest less the smallest value of an iterator; zero for none.
 pub(crate) fn spread(values: impl Iterator<Item = f64>) -> f64 {
     let bounds = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
@@ -85,17 +85,18 @@ pub(crate) fn spread(values: impl Iterator<Item = f64>) -> f64 {
     (bounds.1 - bounds.0).max(0.0)
 }
 
-/// Bits of a number that are told apart in one pass over the values.
+/// Number of bits that one pass over the values determines.
 const DIGIT: u32 = 16;
 
-/// The value below which the fraction of values lies; zero for none. Found digit by digit, in four
-/// passes: a copy of a column to be sorted would be as large as the column.
+/// Returns the quantile of the values by nearest rank; zero for none. It is found digit by digit in
+/// four passes: a copy of a column for sorting would be as large as the column.
 pub(crate) fn quantile(values: impl Iterator<Item = f64> + Clone, fraction: f64) -> f64 {
     let last = values.clone().count().saturating_sub(1);
     let mut rank = ((last as f64 * fraction).round() as usize).min(last);
     let (mut found, mut counts) = (0_u64, vec![0_usize; 1 << DIGIT]);
     for shift in (0..u64::BITS).step_by(DIGIT as usize).rev() {
         counts.fill(0);
+        // Only values that agree with the digits found so far are counted by their next digit.
         let above = |key: u64| key.checked_shr(shift + DIGIT).unwrap_or(0);
         let alike = values.clone().map(ordered).filter(|&key| above(key) == above(found));
         alike.for_each(|key| counts[(key >> shift) as usize & ((1 << DIGIT) - 1)] += 1);
@@ -108,10 +109,11 @@ pub(crate) fn quantile(values: impl Iterator<Item = f64> + Clone, fraction: f64)
         };
         found |= (digit as u64) << shift;
     }
+    // Inverse of `ordered_bits`.
     f64::from_bits(if found >> 63 == 1 { found & !(1 << 63) } else { !found })
 }
 
-/// Bits that are ordered as the numbers are.
+/// Returns bits whose order as integers is that of the numbers.
 fn ordered(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }

@@ -1,4 +1,4 @@
-//! All rows of a file as one table, and a table as rows.
+//! Reading of all rows of a file into one table, and of a table as rows.
 
 use crate::clock::Clock;
 use crate::findings::Findings;
@@ -8,7 +8,7 @@ use crate::rows::Builder;
 use crate::table::{Column, Table};
 use crate::taker::{RowsFile, Taker, time_at};
 
-/// All rows as one table.
+/// Reads all rows into one table.
 pub(crate) fn whole(
     mut file: impl RowsFile,
     mapping: &Mapping,
@@ -24,7 +24,7 @@ pub(crate) fn whole(
     Some(table)
 }
 
-/// A file that was read whole, row by row.
+/// Rows of a table that is already in memory.
 pub(crate) struct TableRows {
     table: Table,
     columns: Vec<Column>,
@@ -32,7 +32,7 @@ pub(crate) struct TableRows {
 
 impl TableRows {
     pub(crate) fn new(table: Table) -> Self {
-        // Its numbers are in SI units already.
+        // The numbers are in SI units already.
         let si = |column: &Column| Column { to_si: 1.0, ..column.clone() };
         Self { columns: table.columns.iter().map(si).collect(), table }
     }
@@ -64,6 +64,7 @@ impl RowsFile for TableRows {
     fn finish(&mut self, _: bool, table: &mut Table, _: &mut Findings) {
         table.start = self.table.start.clone();
         let resumed = self.table.resumed.iter();
+        // Only the marks of rows that are in this table.
         let resumed = resumed.filter(|row| table.rows.binary_search(row).is_ok());
         table.resumed.extend(resumed);
         table.resumed.sort_unstable();

@@ -1,4 +1,4 @@
-//! Stretches of a file that manifests name by their times.
+//! Segments of a file that manifests define by their times.
 
 use std::path::{Component, Path};
 
@@ -10,23 +10,23 @@ use crate::table::Start;
 /// Seconds of a day.
 const DAY_S: f64 = 86_400.0;
 
-/// From when to when a file is read.
+/// Segment of a file by its first and last time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
-    /// The first time; absent for the file's first row.
+    /// First time; by default that of the first row of the file.
     pub from: Option<FileTime>,
-    /// The last; absent for the last row.
+    /// Last time; by default that of the last row.
     pub to: Option<FileTime>,
 }
 
-/// The same in seconds of the file.
+/// First and last time in seconds of the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Window {
     pub from_s: f64,
     pub to_s: f64,
 }
 
-/// What is wrong with a stretch.
+/// Fault of a segment.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum StretchFault {
     #[error("`{field}` must be a number of seconds that is finite")]
@@ -72,7 +72,7 @@ pub(crate) enum StretchFault {
 }
 
 impl StretchFault {
-    /// The field at fault; where both are, the first.
+    /// Returns the field with the fault; the first if both have it.
     fn field(&self) -> &'static str {
         match self {
             Self::NotFinite { field } | Self::NoTime { field, .. } => field,
@@ -82,19 +82,20 @@ impl StretchFault {
 }
 
 impl Stretch {
-    /// Of an entry; nothing where that is a whole file.
+    /// Returns the segment of an entry; `None` if the entry is a whole file.
     pub(crate) fn of(trial: &ManifestTrial) -> Option<Self> {
         let (from, to) = (trial.from.clone(), trial.to.clone());
         trial.is_stretch().then_some(Self { from, to })
     }
 
-    /// In seconds of a file that starts so in the calendar.
+    /// Returns the segment in seconds of a file with the given start.
     pub(crate) fn window(&self, start: Option<&Start>) -> Result<Window, StretchFault> {
         let told = |time: &Option<FileTime>, field, after_s: f64| match time {
             Some(time) => seconds(time, field, start, after_s).map(Some),
             None => Ok(None),
         };
         let from_s = told(&self.from, "from", 0.0)?;
+        // A time of day of the end is the first one after the start.
         let to_s = told(&self.to, "to", from_s.unwrap_or(0.0))?;
         if let (Some(from), Some(to)) = (&self.from, &self.to)
             && from_s >= to_s
@@ -106,7 +107,7 @@ impl Stretch {
     }
 }
 
-/// A time of day is the first after a time.
+/// Returns a time in seconds of the file; a time of day is the first after `after_s`.
 fn seconds(
     time: &FileTime,
     field: &'static str,
@@ -125,6 +126,7 @@ fn seconds(
     match stamp.date {
         Date::Known(_) if !start.dated => Err(StretchFault::NoDate { field, text }),
         Date::Known(day) => Ok(stamp.seconds(day) - start.at_s),
+        // Day and month cannot be distinguished in a single date.
         Date::Either(_) => Err(StretchFault::NoTime { field, text }),
         Date::Absent => {
             let since = stamp.seconds(0) - (start.at_s + after_s);
@@ -134,7 +136,8 @@ fn seconds(
 }
 
 impl Window {
-    /// Holds it against the first and the last time of the file.
+    /// Compares the window with the first and the last time of the file; returns the fault, if
+    /// there is one.
     pub(crate) fn fault(&self, first_s: f64, last_s: f64) -> Option<StretchFault> {
         let Self { from_s, to_s } = *self;
         if from_s > last_s {
@@ -151,17 +154,17 @@ impl Window {
     }
 }
 
-/// What can be told of an entry without its file: the field, and the message.
+/// Returns the fault of an entry that can be found without its file: the field, and the message.
 pub(crate) fn problem(
     trial: &ManifestTrial,
     earlier: &[ManifestTrial],
 ) -> Option<(String, String)> {
     let stretch = Stretch::of(trial)?;
-    // Any clock will do to hold two times against each other.
+    // Any start serves to compare two times with each other.
     let clock = |dated| Start { text: String::new(), at_s: 0.0, dated };
     let window = match stretch.window(Some(&clock(true))) {
         Ok(window) => window,
-        // A clock and seconds can be held against each other by the file only.
+        // A clock time and seconds can only be compared with the start of the file.
         Err(StretchFault::Empty { .. }) if !stretch.is_of_one_kind() => return None,
         Err(fault) => return Some((fault.field().to_owned(), fault.to_string())),
     };
@@ -181,14 +184,14 @@ impl Stretch {
         self.from.as_ref().map(is_clock) == self.to.as_ref().map(is_clock)
     }
 
-    /// Whether two are told in seconds.
+    /// Returns true if both segments are given in seconds.
     fn is_comparable(&self, other: &Self) -> bool {
         let mut times = [&self.from, &self.to, &other.from, &other.to].into_iter().flatten();
         times.all(|time| matches!(time, FileTime::Seconds(_)))
     }
 }
 
-/// Whether two paths name the same file: `a.csv` is `./a.csv`.
+/// Returns true if two paths name the same file: `a.csv` is `./a.csv`.
 pub(crate) fn same_file(one: &str, other: &str) -> bool {
     let plain = |path| {
         Path::new(path).components().filter(|part| *part != Component::CurDir).collect::<Vec<_>>()

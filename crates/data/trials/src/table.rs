@@ -1,20 +1,20 @@
-//! The mapped columns of a file as numbers in SI units and radians, still in the file's own signs.
+//! Mapped columns of a file as numbers in SI units and radians, still in the signs of the file.
 
 use sistership_formula::units::Dimension;
 use sistership_model::trial::Channel;
 
-/// What a column is read into.
+/// Target of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Target {
     Time,
     Channel(Channel),
-    /// What channels are made of.
+    /// A quantity from which channels are computed.
     Raw(Raw),
-    /// A column that is yet to be identified, by its place in the file.
+    /// A column that is yet to be identified, by its index in the file.
     Unidentified(u16),
 }
 
-/// What instruments show, of which channels are made.
+/// Recorded quantities from which channels are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Raw {
     /// North of the equator, rad.
@@ -36,6 +36,7 @@ pub(crate) enum Raw {
     VEast,
 }
 
+// In the order of the variants of `RawQuantity`, which index this table.
 const RAW: [(Raw, &str, Dimension); 10] = [
     (Raw::Latitude, "latitude", Dimension::NONE),
     (Raw::Longitude, "longitude", Dimension::NONE),
@@ -62,7 +63,7 @@ impl Raw {
         RAW[self as usize].2
     }
 
-    /// The channels that it gives.
+    /// Returns the channels that are computed from the quantity.
     pub(crate) fn gives(self) -> &'static [Channel] {
         match self {
             Self::Latitude | Self::Longitude => &[Channel::X, Channel::Y],
@@ -93,25 +94,26 @@ impl Target {
     }
 }
 
-/// A column of the file that is read.
+/// Column of the file that is read.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     /// Position in the file, from 0.
     pub index: usize,
     pub header: String,
     pub target: Target,
-    /// As declared, for messages.
+    /// Unit as declared, for messages.
     pub unit: String,
     pub to_si: f64,
 }
 
-/// Columns that are held at a time: those that are read, and what is made of raw ones.
+/// Returns the number of columns in memory at a time: those that are read, and those computed from
+/// them.
 pub(crate) fn width(columns: &[Column]) -> usize {
     let raw = columns.iter().filter(|column| matches!(column.target, Target::Raw(_)));
     columns.len() + raw.count()
 }
 
-/// What time zero is in the calendar.
+/// Calendar time of time zero.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Start {
     pub text: String,
@@ -120,15 +122,14 @@ pub(crate) struct Start {
     pub dated: bool,
 }
 
-/// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand
-/// in.
+/// Numbers of the mapped columns, one vector per column, and their rows in the file.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     pub columns: Vec<Column>,
     pub values: Vec<Vec<f64>>,
     pub rows: Vec<u32>,
-    /// Of these, the ones before which rows have been left out.
+    /// Rows before which other rows have been excluded.
     pub resumed: Vec<u32>,
-    /// What time zero is in the calendar, where the file says it.
+    /// Calendar time of time zero, if the file contains it.
     pub start: Option<Start>,
 }

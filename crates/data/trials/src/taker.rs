@@ -1,46 +1,47 @@
-//! Who gives rows of a file, and who takes them.
+//! Traits of files that supply rows, and of sinks that take them.
 
 use crate::clock::Clock;
 use crate::findings::Findings;
 use crate::number::Fault;
 use crate::table::{Column, Table, Target};
 
-/// A file whose header has been read.
+/// File whose header has been read, as a source of rows.
 pub(crate) trait RowsFile {
-    /// The columns that are read.
+    /// Returns the columns that are read.
     fn columns(&self) -> &[Column];
 
-    /// Rows that there will be, where that is known.
+    /// Returns the expected number of rows, where that is known.
     fn room(&self) -> usize;
 
-    /// Gives every row to one who takes them.
+    /// Passes every row to a sink.
     fn each(&mut self, taker: &mut impl Taker);
 
-    /// What was learned of all rows, for one table that was made of them.
+    /// Completes one table made of the rows with what is known once all rows are read, and reports
+    /// its findings.
     fn finish(&mut self, drops: bool, table: &mut Table, findings: &mut Findings);
 }
 
-/// Who takes rows.
+/// Sink of rows.
 pub(crate) trait Taker {
-    /// Whether it is told the time of each row first.
+    /// True if the sink needs the time of each row before the row.
     const TIMED: bool = false;
 
-    /// Whether a row is to be given; `t_s` is nothing where its time cannot be told.
+    /// Returns true if a row is accepted; `t_s` is `None` if its time is not known.
     fn wants(&mut self, _row: usize, _t_s: Option<f64>, _clock: &Clock) -> bool {
         true
     }
 
-    /// Takes a row; `cell` gives the number in the n-th column.
+    /// Takes a row; `cell` returns the number of the n-th column.
     fn row(&mut self, row: usize, cell: impl FnMut(usize, &Column) -> Result<f64, Fault>);
 
-    /// Passes over a row that ends before the header does.
+    /// Takes a row with fewer cells than the header.
     fn short(&mut self, row: usize);
 
-    /// Rows that it holds.
+    /// Returns the number of rows in the sink.
     fn held(&self) -> usize;
 }
 
-/// The place of time among columns.
+/// Returns the index of the time column.
 pub(crate) fn time_at(columns: &[Column]) -> Option<usize> {
     columns.iter().position(|column| column.target == Target::Time)
 }

@@ -1,4 +1,4 @@
-//! Small recordings to try the checks on.
+//! Small recordings for tests of the checks.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::recording::Recording;
 use crate::table::{Column, Table, Target};
 use crate::units::Kind;
 
-/// A table at 2 Hz with canonical names and units.
+/// Returns a table at 2 Hz with canonical names and units.
 pub(crate) fn table(channels: &[(Channel, Vec<f64>)]) -> Table {
     let rows = channels.first().map_or(0, |(_, values)| values.len());
     let mut table = Table { rows: (2..).take(rows).collect(), ..Table::default() };
@@ -38,7 +38,7 @@ fn column(index: usize, target: Target, header: &str) -> Column {
     }
 }
 
-/// A recording at 2 Hz with canonical names and units.
+/// Returns a recording at 2 Hz with canonical names and units.
 pub(crate) fn recording(channels: &[(Channel, Vec<f64>)]) -> Recording {
     let mut recording =
         convert("a.csv", table(channels), &Mapping::canonical(), &mut Findings::default());
@@ -46,7 +46,7 @@ pub(crate) fn recording(channels: &[(Channel, Vec<f64>)]) -> Recording {
     recording
 }
 
-/// What a check says of a recording, one line per finding, errors first.
+/// Returns the findings of a check, one per line, errors first.
 pub(crate) fn said(recording: &Recording, check: impl Fn(&Recording, &mut Findings)) -> String {
     let mut findings = Findings::default();
     check(recording, &mut findings);
@@ -65,7 +65,8 @@ pub(crate) fn messages(findings: Findings) -> String {
         .join("\n")
 }
 
-/// A zigzag of a Nomoto ship (K = 0.1 1/s, T = 10 s) at 5 m/s for 300 s: x, y, psi, u, v, r, delta.
+/// Returns a zigzag of a Nomoto ship (K = 0.1 1/s, T = 10 s) at 5 m/s for 300 s: x, y, psi, u, v,
+/// r, delta.
 pub(crate) fn zigzag() -> Vec<(Channel, Vec<f64>)> {
     let (mut x, mut y, mut psi, mut r, mut delta) = (0.0, 0.0, 0.0_f64, 0.0, 20.0 * PI / 180.0);
     let names =
@@ -76,6 +77,7 @@ pub(crate) fn zigzag() -> Vec<(Channel, Vec<f64>)> {
         let (u, v) = (5.0, -15.0 * r);
         let sample = [x, y, psi, u, v, r, delta];
         channels.iter_mut().zip(sample).for_each(|((_, values), value)| values.push(value));
+        // Euler steps of 0.05 s, ten for each sample.
         for _ in 0..10 {
             x += 0.05 * (u * psi.cos() - v * psi.sin());
             y += 0.05 * (u * psi.sin() + v * psi.cos());
@@ -89,7 +91,7 @@ pub(crate) fn zigzag() -> Vec<(Channel, Vec<f64>)> {
     channels
 }
 
-/// The zigzag with one channel changed.
+/// Returns the zigzag with one channel changed.
 pub(crate) fn zigzag_with(channel: Channel, change: impl Fn(f64) -> f64) -> Recording {
     let mut channels = zigzag();
     for (name, values) in &mut channels {

@@ -1,13 +1,13 @@
-//! Which units a channel may be given in, and the suffixes that name them in a header.
+//! Units in which a channel may be given, and the suffixes that name them in a header.
 
 use sistership_formula::units::{Dimension, Unit};
 use sistership_model::trial::Channel;
 
 use crate::table::{Raw, Target};
 
-/// What a column measures. Dimensions alone do not tell a yaw rate from propeller revolutions: both
-/// are 1/s, but one counts radians and the other turns, and 80 rpm read as a yaw rate would be
-/// wrong by two pi.
+/// Physical kind of a column. Dimensions alone cannot distinguish a yaw rate from propeller
+/// revolutions: both are 1/s, but one counts radians and the other turns, and 80 rpm read as a yaw
+/// rate would be wrong by a factor of two pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Time,
@@ -52,7 +52,7 @@ const SUFFIXES: &[(&str, Kind, &str)] = &[
     ("rpm", Kind::Revolutions, "rpm"),
 ];
 
-/// How time may be written but as a duration, and the factor to seconds. `auto` is learned from the
+/// Forms of time other than a duration, with the factor to seconds. `auto` is detected from the
 /// cells.
 const CALENDAR: [(&str, f64); 8] = [
     ("auto", 1.0),
@@ -65,7 +65,7 @@ const CALENDAR: [(&str, f64); 8] = [
     ("unix", 1.0),
 ];
 
-/// Other spellings in use of a unit that is accepted.
+/// Other common spellings of accepted units.
 const SPELLINGS: [(&str, &str); 32] = [
     ("sec", "s"),
     ("secs", "s"),
@@ -101,18 +101,18 @@ const SPELLINGS: [(&str, &str); 32] = [
     ("pct", "%"),
 ];
 
-/// The unit as it is declared, out of brackets and other spellings.
+/// Returns the accepted name of a unit, without brackets and in the usual spelling.
 pub(crate) fn plain_unit(written: &str) -> &str {
     let inner = written.trim().trim_matches(['[', ']', '(', ')']).trim();
     let same = |spelling: &str| spelling.eq_ignore_ascii_case(inner);
     if let Some((_, unit)) = SPELLINGS.iter().find(|(spelling, _)| same(spelling)) {
         return unit;
     }
-    // `KN` and `Deg` are clear, `M` and `S` are not worth a refusal.
+    // Capitals are accepted: `KN` and `Deg` are clear, and `M` and `S` do not justify a refusal.
     SUFFIXES.iter().map(|&(_, _, unit)| unit).find(|unit| same(unit)).unwrap_or(inner)
 }
 
-/// Whether a cell can be a unit and nothing else.
+/// Returns true if a cell can only be a unit.
 pub(crate) fn is_unit(cell: &str) -> bool {
     let unit = plain_unit(cell);
     Unit::parse(unit).is_ok()
@@ -121,7 +121,7 @@ pub(crate) fn is_unit(cell: &str) -> bool {
 }
 
 impl Kind {
-    /// What the target's columns measure.
+    /// Returns the kind of the columns of a target.
     pub(crate) fn of(target: Target) -> Self {
         match target {
             Target::Time => Self::Time,
@@ -141,7 +141,7 @@ impl Kind {
         }
     }
 
-    /// The unit that a header's suffix stands for.
+    /// Returns the unit of a header's suffix.
     pub(crate) fn suffix(self, suffix: &str) -> Option<&'static str> {
         SUFFIXES
             .iter()
@@ -149,7 +149,7 @@ impl Kind {
             .map(|&(_, _, unit)| unit)
     }
 
-    /// The unit that a header ends in, as `log_kn`, `log [kn]` or `log (kn)`.
+    /// Returns the unit at the end of a header, such as `log_kn`, `log [kn]` or `log (kn)`.
     pub(crate) fn named_in(self, header: &str) -> Option<&'static str> {
         let bracket = |open: char, close: char| {
             header.trim_end().strip_suffix(close)?.rsplit_once(open).map(|(_, unit)| unit.trim())
@@ -162,25 +162,30 @@ impl Kind {
         header.match_indices('_').find_map(|(at, _)| self.suffix(&header[at + 1..]))
     }
 
-    /// Units accepted, the canonical one first.
+    /// Returns the accepted units, the canonical one first.
     pub(crate) fn accepted(self) -> Vec<&'static str> {
         let mut units: Vec<&str> = SUFFIXES
             .iter()
             .filter(|(_, kind, _)| *kind == self)
             .map(|&(_, _, unit)| unit)
             .collect();
+        // Spellings of one unit are neighbours in `SUFFIXES`.
         units.dedup();
         units
     }
 
-    /// The unit of the canonical column.
+    /// Returns the unit of the canonical column.
     pub(crate) fn canonical(self) -> &'static str {
         self.accepted().first().copied().unwrap_or("1")
     }
 
-    /// The factor to canonical units, or what would have been accepted.
+    /// Returns the factor to canonical units.
+    ///
+    /// # Errors
+    /// Returns a message with the accepted units if the unit is not one of them.
     pub(crate) fn factor(self, unit: &str) -> Result<f64, String> {
         let mut accepted = self.accepted();
+        // Forms of time have a factor, but are no units.
         if self == Self::Time {
             if let Some(&(_, factor)) = CALENDAR.iter().find(|(known, _)| *known == unit.trim()) {
                 return Ok(factor);

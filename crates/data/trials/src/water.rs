@@ -1,5 +1,5 @@
-//! Speeds through the water: a measurement of their own beside speeds over the ground, and the
-//! trial's velocities where there are none over the ground.
+//! Speeds through the water: a separate measurement if there are speeds over the ground, and
+//! otherwise the velocities of the trial.
 
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
@@ -11,16 +11,17 @@ use crate::recording::Recording;
 const AXES: [(Channel, Channel); 2] =
     [(Channel::UWater, Channel::U), (Channel::VWater, Channel::V)];
 
-/// Whether an axis has a speed through the water and none over the ground.
+/// Returns true if an axis has a speed through the water and none over the ground.
 pub(crate) fn is_water_only(recording: &Recording, ground: Channel) -> bool {
     let has = |channel| recording.channel(channel).is_some();
     AXES.iter().any(|&(water, own)| own == ground && has(water) && !has(own))
 }
 
-/// Decides what the trial's `u` and `v` are: over the ground where they are known so, else through
-/// the water.
+/// Determines `u` and `v` of the trial: over the ground if those are known, otherwise through the
+/// water.
 pub(crate) fn settle(recording: &mut Recording, findings: &mut Findings) {
     let has = |channel| recording.channel(channel).is_some();
+    // Findings refer to the first speed through the water that was recorded.
     let Some(&(log, _)) = AXES.iter().find(|(water, _)| has(*water)) else { return };
     if has(Channel::U) {
         let message = "speed through the water beside velocities over the ground: what it differs \

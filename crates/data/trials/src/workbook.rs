@@ -1,4 +1,4 @@
-//! Excel workbooks (.xlsx): a sheet is read as lines of text, cell by cell, in the same way as CSV.
+//! Excel workbooks (.xlsx): a sheet is read as lines of text, cell by cell, and parsed like CSV.
 
 use std::io::{self, Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,19 +13,19 @@ use crate::limits::Limits;
 use crate::mapping::Mapping;
 use crate::table::Table;
 
-/// What files are read from that are not read from start to end.
+/// Reader of files with random access.
 pub(crate) trait ReadSeek: Read + Seek {}
 impl<T: Read + Seek> ReadSeek for T {}
 
-/// Bytes of a sheet's start by which the one with the table is found.
+/// Number of bytes at the start of a sheet by which the sheet with the table is found.
 const START: u64 = 32 << 10;
-/// Sheets among which the table is looked for.
+/// Largest number of sheets that are searched.
 const SHEETS: usize = 20;
-/// Unpacked bytes of a workbook beyond which only the first sheet is looked at: many names may
-/// stand for one large sheet.
+/// Unpacked size of a workbook, bytes, beyond which only the first sheet is examined: several names
+/// may refer to the same large sheet.
 const SEARCHED: u64 = 32 << 20;
 
-/// Reads the sheet that is declared, or the one in whose first lines most names are known.
+/// Reads the declared sheet, or the one with most known names in its first lines.
 pub(crate) fn read(
     mut input: Box<dyn ReadSeek + '_>,
     mapping: &Mapping,
@@ -34,7 +34,7 @@ pub(crate) fn read(
     let unpacked = checked(&mut input, mapping.limits)
         .map_err(|message| findings.error(None, None, message))
         .ok()?;
-    // The library asserts some of what a file says of itself.
+    // The library asserts some properties of the file and panics if they do not hold.
     let read = catch_unwind(AssertUnwindSafe(|| {
         let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
         let sheet = sheet(&mut book, looked_at(unpacked), mapping)?;
@@ -60,6 +60,7 @@ pub(crate) fn read(
 
 fn checked(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> Result<u64, String> {
     let claimed = archive::claimed(input)?;
+    // More than the declared size is damage; the limit of the reader applies in any case.
     archive::check(input, claimed.min(limits.unpacked_bytes as u64))?;
     input.rewind().map_err(|error| error.to_string())?;
     Ok(claimed)
@@ -69,7 +70,7 @@ fn looked_at(unpacked: u64) -> usize {
     if unpacked > SEARCHED { 1 } else { SHEETS }
 }
 
-/// The first lines of each sheet.
+/// Returns the first lines of each sheet.
 pub(crate) fn starts(
     mut input: Box<dyn ReadSeek + '_>,
     limits: Limits,
@@ -84,11 +85,11 @@ pub(crate) fn starts(
     read.unwrap_or_else(|_| Err("the workbook contradicts itself".into()))
 }
 
-/// The first lines of a sheet; nothing of a chart, which is a sheet, too.
+/// Returns the first lines of a sheet; empty for a chart, which is a sheet, too.
 fn start(book: &mut Book, sheet: &str, mapping: &Mapping) -> Vec<u8> {
     let mut start = Vec::new();
     if let Ok(lines) = Lines::of(book, sheet, mapping) {
-        // What is wrong with the sheet is told when it is read.
+        // The error is ignored here: it is reported when the sheet is read.
         let _ = lines.take(START).read_to_end(&mut start);
     }
     start
@@ -107,6 +108,7 @@ fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String,
     for name in names.into_iter().take(looked_at) {
         let start = start(book, &name, mapping);
         let known = layout::known_names(&start, mapping);
+        // Among equals the first sheet is kept.
         if known > best.0 {
             best = (known, name);
         }
@@ -114,14 +116,14 @@ fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String,
     Ok(best.1)
 }
 
-/// A sheet as text: cells apart by tabs, one line for each row, empty rows too, so that lines are
-/// Excel's rows.
+/// Sheet as text: cells separated by tabs, one line for each row, empty rows included, so that line
+/// numbers are Excel's row numbers.
 struct Lines<'a, 'b> {
     cells: XlsxCellReader<'a, Box<dyn ReadSeek + 'b>>,
-    /// The cell that was read, but belongs to a row that is not begun.
+    /// Cell that was read but belongs to a later row.
     next: Option<(usize, usize, String)>,
     row: usize,
-    /// Columns of the widest row so far: rows end after their last cell that is not empty.
+    /// Index of the last column of the widest row so far, to which shorter rows are padded.
     width: usize,
     text: io::Cursor<Vec<u8>>,
     rows: usize,
@@ -130,6 +132,7 @@ struct Lines<'a, 'b> {
 
 impl<'a, 'b> Lines<'a, 'b> {
     fn of(book: &'a mut Book<'b>, sheet: &str, mapping: &Mapping) -> Result<Self, XlsxError> {
+        // Rows above the table are allowed in addition to the limit.
         let (rows, columns) = (mapping.limits.rows.saturating_add(1000), mapping.limits.columns);
         let cells = book.worksheet_cells_reader(sheet)?;
         let text = io::Cursor::new(Vec::new());
@@ -138,7 +141,7 @@ impl<'a, 'b> Lines<'a, 'b> {
         Ok(lines)
     }
 
-    /// The next cell that is not empty.
+    /// Reads the next cell that is not empty.
     fn cell(&mut self) -> io::Result<Option<(usize, usize, String)>> {
         let invalid = |message: String| io::Error::new(io::ErrorKind::InvalidData, message);
         loop {
@@ -162,7 +165,7 @@ impl<'a, 'b> Lines<'a, 'b> {
         }
     }
 
-    /// The text of the next row; none after the last.
+    /// Returns the text of the next row; `None` after the last.
     fn line(&mut self) -> io::Result<Option<String>> {
         let Some((row, ..)) = self.next else { return Ok(None) };
         let (mut line, mut column) = (String::new(), 0);
@@ -175,10 +178,12 @@ impl<'a, 'b> Lines<'a, 'b> {
             column = at;
             self.next = self.cell()?;
         }
+        // Rows come in ascending order: an earlier one would be lost.
         if row < self.row {
             return Err(out_of_order(row));
         }
         self.width = self.width.max(column);
+        // Rows end after their last cell with content: pad them, as the cells of a row are counted.
         if !line.is_empty() {
             line.extend(std::iter::repeat_n('\t', self.width - column));
         }
@@ -220,7 +225,7 @@ fn text(value: &DataRef) -> String {
     }
 }
 
-/// Text without what has a meaning between cells.
+/// Replaces the characters of a text that have a meaning between cells.
 fn in_line(text: &str) -> String {
     let plain = |c: char| match c {
         '\t' | '\n' | '\r' => ' ',
@@ -230,7 +235,7 @@ fn in_line(text: &str) -> String {
     text.trim().chars().map(plain).collect()
 }
 
-/// Date and time of day; a time of day alone where no day is counted; seconds of a duration.
+/// Formats a date and time of day; without a day only the time of day; a duration in seconds.
 fn date(instant: &ExcelDateTime) -> String {
     let days = instant.as_f64();
     if instant.is_duration() {
@@ -238,6 +243,7 @@ fn date(instant: &ExcelDateTime) -> String {
     }
     let (year, month, day, hour, minute, second, millisecond) = instant.to_ymd_hms_milli();
     let date = match days {
+        // Day 0 of a sheet is no date: the cell is a time of day.
         _ if (0.0..1.0).contains(&days) => String::new(),
         _ => format!("{year:04}-{month:02}-{day:02}T"),
     };

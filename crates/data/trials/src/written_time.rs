@@ -1,15 +1,15 @@
-//! Times that are written as text, or as the days of a sheet.
+//! Detection of times written as text, or as days of a sheet.
 
 use crate::clock::looks_serial;
 use crate::decimals::Decimals;
 use crate::number::number;
 use crate::stamp::{Date, Order, stamp};
 
-/// The unit of a column of such times; nothing where it holds something else.
+/// Returns the unit of a column of such times; `None` if it contains anything else.
 pub(crate) fn written_time(header: &str, cells: &[&str]) -> Option<&'static str> {
     let first = cells.iter().find(|cell| !cell.is_empty())?;
     let Some(stamp) = stamp(first, Order::Open) else { return serial(header, cells) };
-    // A date alone is the same in every row.
+    // A column of dates alone repeats the same date: most cells must differ from the first.
     let moves = cells.iter().filter(|cell| cell != &first).count() > cells.len() / 2;
     let unit = match stamp.date {
         Date::Known(_) => "timestamp",

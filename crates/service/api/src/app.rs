@@ -1,4 +1,4 @@
-//! What every handler and worker shares.
+//! State shared by every handler and worker.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -74,6 +74,8 @@ impl App {
         catalogue: Catalogue,
         stopping: Stopping,
     ) -> sistership_auth::openid::Result<Self> {
+        // As many numerical tasks and password hashes run at a time as there are cores; both take
+        // their permits from the same semaphore.
         let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
         let seats = Arc::new(Semaphore::new(seats));
         let provider = config.openid.clone().map(Provider::new).transpose()?;
@@ -104,13 +106,13 @@ impl App {
         Ok(Self(Arc::new(inner), Arc::new(archive)))
     }
 
-    /// The same whose store is another handle: that of a unit of work.
+    /// Returns a handle on the same state with another store, such as that of a unit of work.
     pub(crate) fn within(&self, store: &Store) -> Self {
         let archive = Archive { store: store.clone(), objects: self.objects().clone() };
         Self(Arc::clone(&self.0), Arc::new(archive))
     }
 
-    /// The zoo as it was last seen.
+    /// The zoo as it was last read from the store.
     pub(crate) fn catalogue(&self) -> &Catalogue {
         &self.0.catalogue
     }
@@ -127,37 +129,37 @@ impl App {
         &self.1.objects
     }
 
-    /// Who is known, and how they show who they are.
+    /// Known credentials and the ways in which a caller is identified.
     pub(crate) fn credentials(&self) -> &Credentials {
         &self.0.credentials
     }
 
-    /// The same with the store.
+    /// The accounts of the store, with the credentials of this process.
     pub(crate) fn accounts(&self) -> Accounts<'_> {
         self.credentials().of(self.store())
     }
 
-    /// What forms of pages send along.
+    /// Token that the forms of the pages carry.
     pub(crate) fn form_token(&self) -> &FormToken {
         &self.0.form_token
     }
 
-    /// Uploads that a person looks over.
+    /// Uploads that a person reviews before they are kept.
     pub(crate) fn drafts(&self) -> &Drafts {
         &self.0.drafts
     }
 
-    /// Ships under way.
+    /// Simulation sessions that are open.
     pub(crate) fn sessions(&self) -> &Sessions {
         &self.0.sessions
     }
 
-    /// Who has presented wrong keys.
+    /// Addresses that have presented wrong keys.
     pub(crate) fn throttle(&self) -> &Throttle {
         &self.0.throttle
     }
 
-    /// The proxies whose word for a client's address is taken.
+    /// Proxies whose statement of a client's address is trusted.
     pub(crate) fn proxies(&self) -> &TrustedProxies {
         &self.0.proxies
     }
@@ -170,29 +172,31 @@ impl App {
         &self.0.leases
     }
 
-    /// Where uploads lie until they have been read.
+    /// Folder of uploads until they have been read.
     pub(crate) fn spool(&self) -> &Spool {
         &self.0.spool
     }
 
-    /// Whether there was no room to write when somebody last tried.
+    /// True if the last attempt to write found no space.
     pub(crate) fn no_room(&self) -> &AtomicBool {
         &self.0.no_room
     }
 
-    /// What a worker holds while it has a job: for itself alone where a process has ended during
-    /// the job before.
+    /// Lock that a worker holds while it has a job: shared as a rule, exclusive if a process ended
+    /// during an earlier attempt at the job.
     pub(crate) fn turns(&self) -> &Arc<RwLock<()>> {
         &self.0.turns
     }
 
-    /// Wakes this process' workers.
+    /// Signal that wakes the workers of this process.
     pub(crate) fn wake(&self) -> &Notify {
         &self.0.wake
     }
 
-    /// Wakes all of them, also one that is about to rest.
+    /// Wakes all workers of this process, including one that is about to wait.
     pub(crate) fn wake_all(&self) {
+        // `notify_waiters` reaches only those that wait already; `notify_one` leaves a permit for
+        // one that begins to wait just now.
         self.wake().notify_waiters();
         self.wake().notify_one();
     }
@@ -201,48 +205,51 @@ impl App {
         &self.0.metrics
     }
 
-    /// Champions as they were answered before.
+    /// Cache of the answers with champions.
     pub(crate) fn answers(&self) -> &Answers {
         &self.0.answers
     }
 
-    /// The word that the server shall stop.
+    /// Signal that the server is to stop.
     pub(crate) fn stopping(&self) -> Stopping {
         self.0.stopping.clone()
     }
 
-    /// Memory for a request.
+    /// Memory budget of one request.
     pub(crate) fn held(&self) -> Held {
         Held::new(self.0.requests.clone(), self.0.limits.memory_wait)
     }
 
-    /// Memory of jobs.
+    /// Memory budget of the jobs.
     pub(crate) fn job_memory(&self) -> &Budget {
         &self.0.jobs
     }
 
-    /// The laws of the database, and no ships.
+    /// Returns the laws of the database, without ships.
     pub(crate) async fn laws(&self) -> sistership_store::Result<Arc<Zoo>> {
         self.0.catalogue.laws(self.store()).await
     }
 
-    /// The laws of the database, with the ships that a ship is compared with: all of them where
-    /// they are few, else those of its category that are most similar to it.
+    /// Returns the laws of the database with the ships that a ship is compared with: all ships if
+    /// they are few, otherwise the most similar ones of its category.
     pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
         Ok(self.0.catalogue.around(self.archive(), target, MOST).await?)
     }
 
-    /// The same with no more ships than a page shows, where they are many.
+    /// Returns the same with at most as many ships as a page lists, if they are many.
     pub(crate) async fn zoo_shown(&self, target: &Vessel) -> Result<Arc<Zoo>> {
         Ok(self.0.catalogue.around(self.archive(), target, SIMILAR).await?)
     }
 
-    /// What versions say of the standard manoeuvres, as pages show it.
+    /// Cache of the standard manoeuvres of versions, as pages show them.
     pub(crate) fn manoeuvres(&self) -> Arc<KnownManoeuvres> {
         Arc::clone(&self.0.manoeuvres)
     }
 
-    /// A law of the database.
+    /// Returns a law of the database.
+    ///
+    /// # Errors
+    /// Returns an internal error if the law is missing or cannot be parsed.
     pub(crate) async fn law(&self, name: &str) -> Result<Arc<Law>> {
         let known = self.find_law(name).await?;
         known
@@ -250,18 +257,20 @@ impl App {
             .ok_or_else(|| Problem::internal(format!("the law `{name}` does not read")))
     }
 
-    /// A law that may not be there.
+    /// Returns a law, or `None` if there is none of this name.
     pub(crate) async fn find_law(&self, name: &str) -> Result<Option<KnownLaw>> {
         Ok(self.0.catalogue.law(self.store(), name).await?)
     }
 
-    /// Runs numerics away from the threads that serve; as many at a time as there are cores.
+    /// Runs numerical work on a blocking thread; at most as many tasks at a time as there are
+    /// cores.
     pub(crate) async fn compute<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
         let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
         let task = tokio::task::spawn_blocking(budget::carried(move || {
+            // Held until the work ends, also if the request that waits for it is dropped.
             let _seat = seat;
             work()
         }));

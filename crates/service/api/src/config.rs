@@ -1,4 +1,4 @@
-//! What a server is told before it starts.
+//! Configuration of a server.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -13,91 +13,93 @@ use sistership_store::ObjectsPlace;
 
 use crate::start_error::StartError;
 
-/// Where the server listens when nobody says otherwise.
+/// Default address and port.
 pub const DEFAULT_LISTEN: SocketAddr =
     SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
 
-/// What closing the store may take.
+/// Time allowed for closing the store.
 const CLOSING: Duration = Duration::from_secs(5);
 
-/// What a server is told before it starts.
+/// Configuration of a server.
 #[derive(Clone)]
 pub struct Config {
-    /// Address and port; port 0 takes a free one. Another address than loopback needs an API key,
+    /// Address and port; port 0 takes a free one. An address other than loopback needs an API key
     /// or accounts.
     pub listen: SocketAddr,
     /// `sqlite://path/file.db` or `postgres://...`.
     pub database_url: String,
-    /// Folder of uploads under way; made if it is not there.
+    /// Folder of uploads in progress; created if it does not exist.
     pub data_dir: PathBuf,
-    /// Where the samples are; in the data folder unless set.
+    /// Location of the samples; by default in the data folder.
     pub objects: ObjectsPlace,
-    /// What every request must present as `Authorization: Bearer KEY`, if one is set.
+    /// Key that every request must present as `Authorization: Bearer KEY`, if one is set.
     pub api_key: Option<String>,
-    /// Whether people sign in by name and password, and nobody is let in without that or a key.
+    /// True if people sign in by name and password; every request then needs a session or a key.
     pub accounts: bool,
-    /// The OpenID provider at which people may sign in, too.
+    /// OpenID provider at which people may sign in as well.
     pub openid: Option<OpenIdSettings>,
-    /// The proxies whose word for a client's address is taken.
+    /// Proxies whose statement of a client's address is trusted.
     pub proxies: TrustedProxies,
-    /// Bounds on what is sent.
+    /// Limits on requests and on resources.
     pub limits: Limits,
-    /// How workers hold their jobs.
+    /// Timing of the leases by which workers hold jobs.
     pub leases: Leases,
-    /// Jobs that this process works on at a time; none leaves them to other processes.
+    /// Number of jobs that this process runs at a time; 0 leaves them to other processes.
     pub workers: usize,
 }
 
-/// Bounds on what is sent.
+/// Limits on requests and on resources.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// A JSON or YAML document, bytes.
+    /// Size of a JSON or YAML document, bytes.
     pub document_bytes: usize,
-    /// An upload of trials, bytes.
+    /// Size of an upload of trials, bytes.
     pub upload_bytes: usize,
-    /// Files in one upload.
+    /// Number of files in one upload.
     pub upload_files: usize,
-    /// Until a request's head has been read.
+    /// Time until the head of a request must have been read.
     pub header_time: Duration,
-    /// Until a request has been answered.
+    /// Time until a request must have been answered.
     pub request_time: Duration,
-    /// The same for uploads and for deriving a version again.
+    /// Time until an upload, or a derivation of a version again, must have been answered.
     pub long_request_time: Duration,
-    /// Connections at a time; where they are all at work, further ones are refused.
+    /// Number of connections at a time; if all of them are in use, further ones are refused.
     pub connections: usize,
-    /// Connections of one address at a time (of IPv6: of a network of 64 bits).
+    /// Number of connections of one address at a time (for IPv6: of a network of 64 bits).
     pub connections_per_address: usize,
     /// Bytes a second, on average, that a request's body must bring and a reader of an answer must
-    /// take. Long below any link in use: a satellite terminal for ships has 2400 bit/s and more.
+    /// take. Far below any link in use: a satellite terminal for ships has 2400 bit/s and more.
     pub least_rate: usize,
-    /// Without a byte of a body until it is given up; what comes faster than it must earns more, up
-    /// to a minute.
+    /// Time without a byte of a body after which it is given up; a body that comes faster than it
+    /// must earns more time, up to a minute.
     pub body_grace: Duration,
-    /// The same for answers. Longer, as the system tells of reading by tens of kilobytes.
+    /// The same time for answers. Longer, as the system reports what was read in steps of tens of
+    /// kilobytes.
     pub answer_grace: Duration,
-    /// Samples of a predicted track.
+    /// Number of samples of a predicted track.
     pub prediction_samples: usize,
-    /// Ships under way.
+    /// Limits on simulation sessions.
     pub sessions: SessionLimits,
-    /// Trials of one refinement.
+    /// Number of trials of one refinement.
     pub refinement_trials: usize,
-    /// How long a server that is told to stop waits for what is under way.
+    /// Time that a stopping server waits for work in progress.
     pub stop_time: Duration,
-    /// A YAML document, bytes: its tree is near a hundred times as large, see
+    /// Size of a YAML document, bytes: its tree is nearly a hundred times as large, see
     /// `sistership_web_support::payload`.
     pub yaml_bytes: usize,
-    /// Memory that requests take together, bytes.
+    /// Memory of all requests together, bytes.
     pub request_memory: u64,
-    /// Memory that jobs take together, bytes.
+    /// Memory of all jobs together, bytes.
     pub job_memory: u64,
-    /// How long a request waits for memory that others have.
+    /// Time that a request waits for memory that others hold.
     pub memory_wait: Duration,
-    /// Whether webhooks may lead into private networks, and speak plain http.
+    /// True if webhooks may lead into private networks and use plain http.
     pub webhooks_private: bool,
 }
 
 impl Config {
-    /// A server on the loopback interface with an SQLite database in `data_dir`.
+    /// Returns the configuration of a server on the loopback interface with an SQLite database in
+    /// `data_dir`.
     pub fn new(data_dir: impl Into<PathBuf>) -> Self {
         let data_dir = data_dir.into();
         Self {
@@ -115,11 +117,12 @@ impl Config {
         }
     }
 
-    /// Checks what can be checked without starting.
+    /// Checks the settings that can be checked without starting.
     ///
     /// # Errors
-    /// Says which setting cannot be, and what to do.
+    /// Returns an error that names the wrong setting and how to correct it.
     pub fn check(&self) -> Result<(), StartError> {
+        // Without key or accounts, anyone who reaches the address may change what the server holds.
         match &self.api_key {
             None if !self.accounts && !self.listen.ip().is_loopback() => {
                 Err(StartError::OpenWithoutKey(self.listen))
@@ -128,7 +131,9 @@ impl Config {
                 Err(StartError::Key)
             }
             _ if self.openid.is_some() && !self.accounts => Err(StartError::OpenIdWithoutAccounts),
+            // A heartbeat that comes later than the lease ends would lose every job.
             _ if self.leases.beat >= self.leases.lease => Err(StartError::Leases),
+            // The limit of one address is at most that of all.
             _ if !(1..=self.limits.connections).contains(&self.limits.connections_per_address) => {
                 Err(StartError::Connections)
             }
@@ -136,20 +141,20 @@ impl Config {
         }
     }
 
-    /// The time within which a process that is told to stop has ended, whatever it does: what jobs
-    /// have, what they and requests have to break off, and some to close the store.
+    /// Time within which a stopping process has ended in any case: the time for jobs to finish, the
+    /// time for jobs and requests to break off, and the time to close the store.
     pub fn stop_bound(&self) -> Duration {
         self.leases.drain + self.limits.stop_time + CLOSING
     }
 }
 
-/// The embedded database of a data folder.
+/// Returns the URL of the SQLite database of a data folder.
 pub fn sqlite_url(data_dir: &Path) -> String {
     format!("sqlite://{}", data_dir.join("sistership.db").display())
 }
 
 impl fmt::Debug for Config {
-    /// Leaves out the key, and the database's URL, which may hold a password.
+    /// Omits the key, and the database's URL, which may hold a password.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let key = self.api_key.as_ref().map(|_| "set");
         out.debug_struct("Config")
@@ -162,7 +167,7 @@ impl fmt::Debug for Config {
 }
 
 impl Limits {
-    /// Those of connections.
+    /// Limits of the connections.
     pub(crate) fn of_connections(&self) -> sistership_listener::Limits {
         let Self {
             header_time,
@@ -188,6 +193,7 @@ impl Limits {
 
 impl Default for Limits {
     fn default() -> Self {
+        // One source for the defaults of the listener.
         let connections = sistership_listener::Limits::default();
         Self {
             document_bytes: 4 << 20,

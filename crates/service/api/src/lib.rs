@@ -1,8 +1,8 @@
 //! The REST server of Sistership: endpoints, jobs, pages and reports over the store.
 //!
-//! [`Server::start`] runs it within the program that calls it; [`Workers::start`] works on its jobs
-//! without serving. What its jobs do stands in `sistership_jobs`, which the command line uses,
-//! too.
+//! [`Server::start`] runs it within the calling program; [`Workers::start`] works on its jobs
+//! without serving requests. The work of the jobs is in `sistership_jobs`, which the command line
+//! uses as well.
 
 mod accounts;
 mod app;

@@ -1,5 +1,5 @@
-//! What a process of Sistership consists of, whether it answers requests or only works: the shared
-//! state, its workers, and the word that stops them.
+//! Parts that every process of Sistership has, whether it answers requests or only works on jobs:
+//! the shared state, the workers, and the signal that stops them.
 
 use std::time::Duration;
 
@@ -28,10 +28,11 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Opens the store, brings the zoo in, and sets the workers to work; keeps up what ships are
-    /// found by, if it `indexes`.
+    /// Opens the store, seeds the zoo, and starts the workers; keeps the search index up to date
+    /// and delivers webhooks if `indexes` is set.
     pub(crate) async fn start(config: &Config, indexes: bool) -> Result<(Self, App), StartError> {
         let archive = Archive::open_at(&config.database_url, &config.objects).await?;
+        // Laws and ships of the zoo first: workers and handlers expect them in the store.
         let catalogue = Catalogue::default();
         seed::seed(&archive.store, &catalogue).await?;
         let (stop, stopping) = Stopping::new();
@@ -49,9 +50,10 @@ impl Process {
         Ok((Self { archive, tasks, stop, bound: config.stop_bound() }, app))
     }
 
-    /// Stops what runs, and waits for its end, but not longer than [`Config::stop_bound`].
+    /// Stops all tasks and waits for their end, but not longer than the configuration allows.
     pub(crate) async fn stop(mut self) {
         self.stop.send_replace(true);
+        // The store is closed last, as the tasks write to it until they have ended.
         let ended = async {
             while self.tasks.join_next().await.is_some() {}
             self.archive.store.close().await;
@@ -62,7 +64,7 @@ impl Process {
     }
 }
 
-/// Tells webhooks what has happened, until the server is told to stop.
+/// Delivers events to webhooks until the server stops.
 async fn told(app: App) {
     let telling = Telling { private: app.limits().webhooks_private, poll: app.leases().poll };
     let mut stopping = app.stopping();

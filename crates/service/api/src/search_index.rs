@@ -1,4 +1,4 @@
-//! Keeping up what ships are found by.
+//! Background task that keeps the search index of ships up to date.
 
 use std::time::Duration;
 
@@ -7,13 +7,15 @@ use sistership_store::StoreError;
 
 use crate::app::App;
 
-/// A pause after the database has failed.
+/// Pause after a failure of the database.
 const BREATH: Duration = Duration::from_secs(5);
 
-/// Writes the facts of ships as they change, until the server is told to stop.
+/// Writes the facts of ships as they change, until the server stops.
 pub(crate) async fn keep(app: App) {
     let mut stopping = app.stopping();
     let mut read = false;
+    // A failure is logged and tried again after a longer pause; the index only falls behind
+    // meanwhile.
     while !stopping.now() {
         let work = round(&app, &mut read);
         let mut pause = app.leases().poll;
@@ -31,8 +33,8 @@ pub(crate) async fn keep(app: App) {
     }
 }
 
-/// Writes the facts of the ships that wait. When none does, the vectors are read that have changed
-/// since they were `read`: not after every ship of many that are brought in one by one.
+/// Writes the facts of the ships that wait for it. If none waits, reads the vectors that have
+/// changed, once, so that an import of many ships does not cause a read after each.
 async fn round(app: &App, read: &mut bool) -> Result<(), StoreError> {
     if app.store().search_index().waiting("", 1).await?.is_empty() {
         if !*read {

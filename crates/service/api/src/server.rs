@@ -1,4 +1,4 @@
-//! Starting and stopping.
+//! Start and stop of a server.
 
 use std::net::SocketAddr;
 
@@ -13,7 +13,7 @@ use sistership_listener::{bind, listen};
 #[derive(Debug, Clone, Copy)]
 pub struct Server;
 
-/// A server that runs, until it is [stopped](Self::stop) or dropped.
+/// A running server, until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
 pub struct Running {
     addr: SocketAddr,
@@ -21,20 +21,23 @@ pub struct Running {
 }
 
 impl Server {
-    /// Opens the store, brings the zoo in, and serves. It answers as soon as this returns.
+    /// Opens the store, seeds the zoo, and starts to serve. Requests are answered as soon as this
+    /// returns.
     ///
     /// # Errors
-    /// Says what is wrong with the configuration, or what cannot be opened.
+    /// Returns an error if the configuration is wrong, or if the address, the data folder or the
+    /// store cannot be opened.
     pub async fn start(config: Config) -> Result<Running, StartError> {
         config.check()?;
         sistership_store::provide_cryptography();
-        // The address first: a process that cannot have it takes no job from others.
+        // Bind the address first: a process that cannot have it must take no job from others.
         let limits = sistership_listener::suited(config.limits.of_connections());
         let listener = bind(config.listen)
             .map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let addr = listener
             .local_addr()
             .map_err(|error| StartError::Listen { listen: config.listen, error })?;
+        // `true`: only a server keeps the search index and delivers webhooks.
         let (mut process, app) = Process::start(&config, true).await?;
         let stopping = app.stopping();
         process.tasks.spawn(listen(listener, routes::router(app), limits, stopping));
@@ -44,23 +47,23 @@ impl Server {
 }
 
 impl Running {
-    /// Where it listens.
+    /// Address and port of the server.
     pub fn addr(&self) -> SocketAddr {
         self.addr
     }
 
-    /// The URL of its front page, without a slash at the end.
+    /// URL of its front page, without a slash at the end.
     pub fn url(&self) -> String {
         format!("http://{}", self.addr)
     }
 
-    /// Its database and samples, for a program that runs the server within itself.
+    /// Database and samples of the server, for a program that embeds it.
     pub fn archive(&self) -> &Archive {
         &self.process.archive
     }
 
-    /// Stops: no further connections, requests under way are answered, jobs under way get
-    /// [`crate::Leases::drain`] to end and then go back to the queue.
+    /// Stops the server: it accepts no further connections, answers the requests in progress, and
+    /// gives running jobs [`crate::Leases::drain`] to finish before they go back to the queue.
     pub async fn stop(self) {
         self.process.stop().await;
     }

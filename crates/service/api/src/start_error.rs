@@ -1,34 +1,34 @@
-//! Why a server does not start.
+//! Reasons for which a server does not start.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use sistership_jobs::seed::SeedError;
 
-/// Why a server does not start.
+/// Reason for which a server does not start.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
-    /// Anyone on the network could change what it holds.
+    /// An address other than loopback has no key: anyone on the network could change the data.
     #[error(
         "refusing to listen on {0} without an API key: set one (--api-key or SISTERSHIP_API_KEY), \
          or listen on 127.0.0.1"
     )]
     OpenWithoutKey(SocketAddr),
-    /// A key that no header can carry.
+    /// The key has characters that no header can carry.
     #[error("the API key must be one or more printable ASCII characters without spaces")]
     Key,
-    /// Every job would be taken over while it runs.
+    /// Workers prolong their leases too rarely: every job would be taken over while it runs.
     #[error("the beat of a worker must be shorter than its lease")]
     Leases,
-    /// An address that could have no connection, or more than there are.
+    /// The limit of connections per address is zero or above the total.
     #[error("connections_per_address must be from 1 to the number of connections")]
     Connections,
-    /// The address is taken or not ours.
+    /// The address is in use or not available on this machine.
     #[error("cannot listen on {listen}: {error}")]
     Listen {
         /// The address.
         listen: SocketAddr,
-        /// What the system said.
+        /// Error of the operating system.
         error: std::io::Error,
     },
     /// The data folder cannot be used.
@@ -36,19 +36,19 @@ pub enum StartError {
     Folder {
         /// The folder.
         folder: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         error: std::io::Error,
     },
     /// The database or the object store cannot be used.
     #[error("cannot open the store: {0}")]
     Store(#[from] sistership_store::StoreError),
-    /// People who have signed in at a provider would be asked for a key.
+    /// An OpenID provider is set, but people do not sign in.
     #[error("oidc issuer: people sign in only where accounts are asked for; set --accounts, too")]
     OpenIdWithoutAccounts,
-    /// The system gives no random numbers.
+    /// The client of the OpenID provider cannot be set up.
     #[error("oidc: {0}")]
     OpenId(#[from] sistership_auth::openid::Failure),
-    /// The zoo that the program carries does not read.
+    /// The zoo that is embedded in the program cannot be parsed.
     #[error("the zoo is damaged: {0}")]
     Zoo(#[from] sistership_model::FileError),
 }

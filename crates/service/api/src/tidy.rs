@@ -1,6 +1,6 @@
-//! What a process does beside its work, at its start and from time to time: it removes what ended
-//! processes have left, forgets old keys, and looks whether there is room to write. Where there is
-//! none, reading goes on, and this tells when there is some again.
+//! Maintenance of a process, at its start and from time to time: it removes what ended processes
+//! have left, deletes old idempotency keys, and checks whether there is space to write. Without
+//! space, reading goes on, and this task finds out when there is some again.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -9,14 +9,14 @@ use sistership_store::StoreError;
 
 use crate::app::App;
 
-/// How often leftovers are looked for.
+/// Interval of the maintenance.
 const EVERY: Duration = Duration::from_secs(15);
-/// How often room is looked for where there was none.
+/// Interval of the check for space while there is none.
 const WITHOUT_ROOM: Duration = Duration::from_secs(2);
-/// What an upload needs at least.
+/// Least space that an upload needs, bytes.
 const ROOM_BYTES: usize = 64 << 10;
 
-/// Tidies until the server is told to stop.
+/// Runs the maintenance until the server stops.
 pub(crate) async fn keep(app: App) {
     let mut stopping = app.stopping();
     while !stopping.now() {
@@ -32,7 +32,7 @@ pub(crate) async fn keep(app: App) {
     }
 }
 
-/// Tidies once. What fails is said in the log and tried again.
+/// Runs the maintenance once. Failures are logged, and the next run tries again.
 pub(crate) async fn once(app: &App) {
     app.sessions().tidy();
     let inner = app.clone();
@@ -48,6 +48,7 @@ pub(crate) async fn once(app: &App) {
 
 async fn look_for_room(app: &App) {
     let found = has_room(app).await;
+    // Only a change is logged.
     let before = app.no_room().load(Ordering::Relaxed);
     match found {
         Ok(true) if before => tracing::info!("there is room to write again"),
@@ -62,8 +63,9 @@ async fn look_for_room(app: &App) {
     app.no_room().store(matches!(found, Ok(false)), Ordering::Relaxed);
 }
 
-/// Whether the database, the objects and the uploads can be written.
+/// Returns true if the database, the object store and the uploads can be written.
 async fn has_room(app: &App) -> Result<bool, StoreError> {
+    // The first step that fails for lack of space decides.
     let written = async {
         app.objects().mark().await?;
         app.store().idempotency().purge().await?;

@@ -5,16 +5,15 @@ use crate::process::Process;
 use crate::start_error::StartError;
 use sistership_jobs::archive::Archive;
 
-/// Workers that run, until they are [stopped](Self::stop) or dropped.
+/// Running workers, until they are [stopped](Self::stop) or dropped.
 #[derive(Debug)]
 pub struct Workers(Process);
 
 impl Workers {
-    /// Opens the store, brings the zoo in, and works on the jobs that it finds, [`Config::workers`]
-    /// at a time.
+    /// Opens the store, seeds the zoo, and works on queued jobs, [`Config::workers`] at a time.
     ///
     /// # Errors
-    /// Says what is wrong with the configuration, or what cannot be opened.
+    /// Returns an error if the configuration is wrong or the store cannot be opened.
     pub async fn start(config: Config) -> Result<Self, StartError> {
         config.check()?;
         let (process, _) = Process::start(&config, false).await?;
@@ -22,13 +21,13 @@ impl Workers {
         Ok(Self(process))
     }
 
-    /// Their database and samples.
+    /// Database and samples of the workers.
     pub fn archive(&self) -> &Archive {
         &self.0.archive
     }
 
-    /// Stops: no further jobs, and those under way get [`crate::Leases::drain`] to end and then go
-    /// back to the queue.
+    /// Stops the workers: they claim no further jobs, and give running jobs
+    /// [`crate::Leases::drain`] to finish before they go back to the queue.
     pub async fn stop(self) {
         self.0.stop().await;
     }

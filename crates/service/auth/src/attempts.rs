@@ -1,37 +1,39 @@
-//! Wrong passwords of late: some are free, then further attempts wait. A password is short enough
-//! to be guessed, so that, unlike with keys, the right one waits too.
+//! Limits on failed sign-ins: some attempts are free, then further ones must wait. A password is
+//! short enough to be guessed, so that, unlike with keys, the right one waits too.
 //!
-//! They are counted for a name from a client, for a client whatever the name, and for a name
-//! wherever they come from. Who signs in from a client from which that name has signed in before is
-//! held to the first of these only: neither those who guess the name elsewhere nor those who guess
-//! other names from the same place shut a person out. An attempt counts from before it is compared,
-//! so that of many at a time no more are compared than are free.
+//! Failures are counted for a name from a client, for a client with any name, and for a name from
+//! any client. A client from which a name has signed in before is only limited by the first of
+//! these: neither guesses of the name elsewhere nor guesses of other names from the same client
+//! lock a person out. An attempt is counted before its password is compared, so that parallel
+//! attempts cannot exceed the limit.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Mistakes that are free for a name from a client.
+/// Free failed attempts for a name from a client.
 const FREE: f64 = 5.0;
-/// The same for a client whatever the name: an office has more than one person who mistypes.
+/// Free failed attempts for a client with any name: an office has more than one person who
+/// mistypes.
 const FREE_OF_CLIENT: f64 = 20.0;
-/// The same for a name wherever they come from: what many clients may guess together.
+/// Free failed attempts for a name from any client: the number that many clients may guess
+/// together.
 const FREE_OF_NAME: f64 = 50.0;
-/// The time after which one mistake is forgotten.
+/// Time after which one failed attempt is forgotten.
 const FORGOTTEN: Duration = Duration::from_secs(12);
-/// Names and clients that are remembered.
+/// Maximum number of entries of each table.
 const KNOWN: usize = 4096;
 
-/// Who tries to sign in, and from where.
+/// An attempt to sign in.
 #[derive(Debug, Clone, Copy)]
 pub struct Attempt<'a> {
-    /// The name.
+    /// Name of the user.
     pub name: &'a str,
     /// The client's address.
     pub from: &'a str,
 }
 
-/// Mistakes by whom they concern, and clients from which a name has signed in.
+/// Failed attempts by name and client, and the clients from which a name has signed in.
 #[derive(Debug, Default)]
 pub struct Attempts(Mutex<Tables>);
 
@@ -42,10 +44,10 @@ struct Tables {
 }
 
 impl Attempts {
-    /// Counts an attempt that is about to be compared.
+    /// Counts an attempt before its password is compared.
     ///
     /// # Errors
-    /// How long it must wait; it is not counted then.
+    /// Returns the time to wait if there were too many attempts; this one is not counted then.
     pub fn begin(&self, attempt: Attempt<'_>, now: Instant) -> Result<(), Duration> {
         let mut tables = self.tables();
         let concerned = tables.concerned(attempt);
@@ -62,7 +64,7 @@ impl Attempts {
         }
     }
 
-    /// The attempt was no mistake, or was not compared after all.
+    /// Removes an attempt from the counts: its password was right, or was not compared.
     pub fn withdraw(&self, attempt: Attempt<'_>, now: Instant) {
         let mut tables = self.tables();
         for (whom, _) in tables.concerned(attempt) {
@@ -73,11 +75,12 @@ impl Attempts {
         }
     }
 
-    /// The password was right: the client is one from which the name signs in.
+    /// Records a successful sign-in: the client becomes known for the name.
     pub fn right(&self, attempt: Attempt<'_>, now: Instant) {
         self.withdraw(attempt, now);
         let mut tables = self.tables();
         if tables.known.len() >= KNOWN {
+            // A full table drops its oldest entry.
             let oldest = tables.known.iter().min_by_key(|(_, at)| **at);
             if let Some(oldest) = oldest.map(|(whom, _)| whom.clone()) {
                 tables.known.remove(&oldest);
@@ -92,7 +95,7 @@ impl Attempts {
 }
 
 impl Tables {
-    /// Whom an attempt concerns, and how many mistakes are free for each.
+    /// Returns the keys under which an attempt counts, each with its number of free failures.
     fn concerned(&self, attempt: Attempt<'_>) -> Vec<(String, f64)> {
         let pair = pair(attempt);
         if self.known.contains_key(&pair) {
@@ -102,7 +105,7 @@ impl Tables {
         vec![(pair, FREE), (client, FREE_OF_CLIENT), (name, FREE_OF_NAME)]
     }
 
-    /// The mistakes that are not forgotten yet.
+    /// Returns the number of failed attempts under a key that are not forgotten yet.
     fn count(&self, whom: &str, now: Instant) -> f64 {
         self.mistakes.get(whom).map_or(0.0, |mistakes| left(*mistakes, now))
     }
@@ -115,7 +118,7 @@ impl Tables {
         self.mistakes.insert(whom.to_owned(), (count, now));
     }
 
-    /// Forgets what is forgotten anyway, and whoever has the fewest mistakes.
+    /// Removes expired entries and, if the table is still full, the one with the fewest failures.
     fn make_room(&mut self, now: Instant) {
         self.mistakes.retain(|_, mistakes| left(*mistakes, now) > 0.0);
         let fewest =
@@ -132,6 +135,7 @@ fn pair(attempt: Attempt<'_>) -> String {
 }
 
 fn left((count, at): (f64, Instant), now: Instant) -> f64 {
+    // Linear decay: failures are forgotten one by one at a constant rate, in fractions.
     let passed = now.saturating_duration_since(at).as_secs_f64() / FORGOTTEN.as_secs_f64();
     (count - passed).max(0.0)
 }

@@ -1,14 +1,14 @@
-//! A role, and what it is given for.
+//! Roles with their scope.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::role::Role;
 
-/// What a role is given for.
+/// Scope of a role.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Scope {
-    /// Everything.
+    /// The whole server.
     Server,
     /// One ship, its trials and its models.
     Ship(String),
@@ -17,7 +17,7 @@ pub enum Scope {
 }
 
 impl Scope {
-    /// The kind and the name, as they are stored.
+    /// Returns kind and name, as they are stored.
     pub fn parts(&self) -> (&'static str, &str) {
         match self {
             Self::Server => ("server", ""),
@@ -26,7 +26,7 @@ impl Scope {
         }
     }
 
-    /// From what [`Scope::parts`] gives; none where the kind is unknown.
+    /// Creates a scope from kind and name, see [`Scope::parts`]; none if the kind is unknown.
     pub fn of_parts(kind: &str, name: &str) -> Option<Self> {
         match kind {
             "server" => Some(Self::Server),
@@ -40,14 +40,14 @@ impl Scope {
 /// A role for something, written `role`, `role@ship:NAME` or `role@family:NAME`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Grant {
-    /// For what.
+    /// The scope.
     pub scope: Scope,
     /// The role.
     pub role: Role,
 }
 
 impl Grant {
-    /// A role for everything.
+    /// Creates a role for the whole server.
     pub fn everywhere(role: Role) -> Self {
         Self { scope: Scope::Server, role }
     }
@@ -67,6 +67,7 @@ impl FromStr for Grant {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        // Without a scope the role is for the whole server.
         let Some((role, scope)) = text.split_once('@') else {
             return Ok(Self::everywhere(text.parse()?));
         };
@@ -79,6 +80,7 @@ impl FromStr for Grant {
             format!("`{text}` is no role; write reader, engineer@ship:NAME or approver@family:NAME")
         })?;
         match role {
+            // An administrator manages users and keys, which belong to no ship or family.
             Role::Admin => Err("the role admin is given for the whole server only".to_owned()),
             role => Ok(Self { scope, role }),
         }

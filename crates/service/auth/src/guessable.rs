@@ -1,7 +1,7 @@
-//! What of a password is no guess of its own: repetitions, sequences and words that everybody
-//! tries first (NIST SP 800-63B, 5.1.1.2).
+//! Estimate of the number of independent guesses of a password: repetitions, sequences and words of
+//! leaked lists count little (NIST SP 800-63B, 5.1.1.2).
 
-/// Words that stand in most lists of leaked passwords, and that this program suggests by its name.
+/// Words of most lists of leaked passwords, and words that this program suggests by its name.
 const WORDS: [&str; 40] = [
     "password",
     "passwort",
@@ -46,13 +46,15 @@ const WORDS: [&str; 40] = [
 ];
 /// The rows of keyboards.
 const ROWS: [&str; 5] = ["qwertyuiop", "qwertzuiop", "asdfghjkl", "zxcvbnm", "yxcvbnm"];
-/// The shortest part of a row or of a sequence that counts as one.
+/// Minimum length of a part of a keyboard row or of a sequence that counts as one guess.
 const RUN: usize = 3;
 
-/// How many guesses of its own a password takes: each of its characters is one, but a word, a row of
-/// the keyboard, a sequence such as `1234`, and a character or part that repeats is one together.
+/// Returns the number of independent guesses of a password: each character is one, but a word, a
+/// part of a keyboard row, a sequence such as `1234`, and a repeated character or part are one
+/// together.
 pub(crate) fn independent_parts(password: &str) -> usize {
     let lower: Vec<char> = password.to_lowercase().chars().collect();
+    // A repeated text counts once: only its first period is judged.
     let rest = &lower[..period(&lower)];
     let (mut at, mut parts) = (0, 0);
     while at < rest.len() {
@@ -62,14 +64,15 @@ pub(crate) fn independent_parts(password: &str) -> usize {
     parts
 }
 
-/// After how many characters a text repeats itself; all of it where it does not.
+/// Returns the period with which a text repeats itself; its length if it does not.
 fn period(text: &[char]) -> usize {
     let repeats = |length: &usize| text.iter().zip(&text[*length..]).all(|(a, b)| a == b);
     (1..=text.len() / 2).find(repeats).unwrap_or(text.len())
 }
 
-/// How many characters of the beginning of a text are one guess.
+/// Returns the number of leading characters of a text that are one guess.
 fn step(text: &[char]) -> usize {
+    // The longest of the three readings counts as one guess.
     let word = WORDS.iter().filter(|word| begins(text, word)).map(|word| word.len()).max();
     let row = ROWS.iter().map(|row| along(text, row)).max().filter(|length| *length >= RUN);
     let run = Some(sequence(text)).filter(|length| *length >= RUN);
@@ -80,16 +83,17 @@ fn begins(text: &[char], word: &str) -> bool {
     text.len() >= word.len() && word.chars().eq(text[..word.len()].iter().copied())
 }
 
-/// How many characters follow a row of the keyboard.
+/// Returns the number of leading characters that follow a row of the keyboard.
 fn along(text: &[char], row: &str) -> usize {
     let start = text.first().and_then(|first| row.find(*first));
     let rest = start.map_or("", |start| &row[start..]);
     rest.chars().zip(text).take_while(|(a, b)| a == *b).count()
 }
 
-/// How many characters go on by the same step: none, one up or one down.
+/// Returns the number of leading characters with a constant difference of code points: -1, 0 or 1.
 fn sequence(text: &[char]) -> usize {
     let difference = |pair: &[char]| i64::from(u32::from(pair[1])) - i64::from(u32::from(pair[0]));
+    // A single character has no difference; it is a sequence of its own length.
     let Some(first) = text.windows(2).next().map(difference) else { return text.len() };
     if first.abs() > 1 {
         return 1;

@@ -1,44 +1,45 @@
-//! Service keys: what programs present. The first part is shown in lists and finds the key; the
-//! rest is secret, and only the hash of the whole is kept.
+//! Service keys, the credentials of programs. The first part is shown in lists and finds the key;
+//! the rest is secret, and only the hash of the whole key is stored.
 //!
-//! A key has 256 random bits, so nobody finds it by trying, and a fast hash keeps it: what Argon2id
-//! adds is for passwords, which people choose. It would cost some 20 ms and 19 MiB a request.
+//! A key has 256 random bits and cannot be guessed, so that a fast hash is enough: Argon2id is for
+//! passwords, which people choose, and would cost some 20 ms and 19 MiB for each request.
 
 use crate::secret::{hex, same, secret, sha256};
 
 const MARK: &str = "sis_";
 const PREFIX: usize = 12;
 
-/// A service key as it is kept.
+/// A service key in its stored form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ServiceKey {
-    /// What finds it, and what is shown of it.
+    /// Public first part, by which the key is found and shown.
     pub prefix: String,
-    /// The SHA-256 of the whole, in hexadecimal.
+    /// SHA-256 of the whole key, hexadecimal.
     pub sha256: String,
 }
 
-/// A service key as its owner sees it, once.
+/// The text of a service key, shown to its owner once.
 #[derive(Clone, PartialEq, Eq)]
 pub struct KeyText(String);
 
 impl KeyText {
-    /// A new one.
+    /// Creates a random key.
     ///
     /// # Errors
-    /// The system gives no random numbers.
+    /// Returns an error if the system gives no random numbers.
     pub fn new() -> Result<Self, getrandom::Error> {
+        // Two hexadecimal digits a byte.
         let mut bytes = [0; PREFIX / 2];
         getrandom::fill(&mut bytes)?;
         Ok(Self(format!("{MARK}{}_{}", hex(&bytes), secret()?)))
     }
 
-    /// The text.
+    /// Returns the text.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// What is kept of it.
+    /// Returns the stored form of the key.
     pub fn kept(&self) -> ServiceKey {
         let prefix = ServiceKey::prefix(&self.0).unwrap_or_default().to_owned();
         ServiceKey { prefix, sha256: hex(&sha256(&self.0)) }
@@ -46,7 +47,7 @@ impl KeyText {
 }
 
 impl ServiceKey {
-    /// The prefix of a text, where it has the form of a service key.
+    /// Returns the prefix of a text, if it has the form of a service key.
     pub fn prefix(text: &str) -> Option<&str> {
         let (prefix, rest) = text.strip_prefix(MARK)?.split_once('_')?;
         let hexadecimal = |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
@@ -54,7 +55,7 @@ impl ServiceKey {
         fits.then_some(prefix)
     }
 
-    /// Whether a text is this key.
+    /// Returns true if a text is this key; the comparison takes constant time.
     pub fn is(&self, presented: &str) -> bool {
         same(self.sha256.as_bytes(), hex(&sha256(presented)).as_bytes())
     }

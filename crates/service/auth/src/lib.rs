@@ -1,5 +1,5 @@
-//! Who may do what: roles, what they are given for, and the decision; service keys, passwords and
-//! other secrets, of which only hashes are kept. It knows no route, no table and no ship.
+//! Access control: roles, their scopes, and the decision; service keys, passwords and other
+//! secrets, of which only hashes are stored. The crate knows no route, no table and no ship.
 
 mod attempts;
 mod grant;

@@ -1,10 +1,11 @@
-//! What users may be called.
+//! Valid names of users.
 
-/// Names under which the program itself, or somebody without an account, stands in the audit.
+/// Reserved names, under which the program itself, or a person without an account, appears in the
+/// audit.
 const RESERVED: [&str; 6] =
     ["sistership", "server-key", "local", "command-line", "admin-key", "openid"];
 
-/// Whether no user may have this name.
+/// Returns true if a name is reserved, so that no user may have it.
 pub fn is_reserved_name(name: &str) -> bool {
     RESERVED.contains(&name)
 }
@@ -13,7 +14,7 @@ pub fn is_reserved_name(name: &str) -> bool {
 /// letter or digit.
 ///
 /// # Errors
-/// Says what would be right.
+/// Returns a message that states the valid form.
 pub fn check_name(name: &str) -> Result<(), String> {
     let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || ".-_@".contains(c);
     let first = name.chars().next().is_some_and(|c| c.is_ascii_alphanumeric());

@@ -1,30 +1,30 @@
-//! Passwords: Argon2id (RFC 9106) with 19 MiB, two passes and one lane, which the library has by
-//! default and OWASP's Password Storage Cheat Sheet asks for at least.
+//! Passwords: Argon2id (RFC 9106) with 19 MiB, two passes and one lane, the default of the library
+//! and the minimum of OWASP's Password Storage Cheat Sheet.
 
 use crate::guessable::independent_parts;
 use argon2::Argon2;
 use argon2::password_hash::phc::PasswordHash;
 use argon2::password_hash::{PasswordHasher as _, PasswordVerifier as _};
 
-/// Fewest characters of a password: NIST SP 800-63B-4, 3.1.1.2, asks for 15 where it is the only
-/// factor.
+/// Minimum length of a password, characters: NIST SP 800-63B-4, 3.1.1.2, requires 15 where it is
+/// the only factor.
 const FEWEST: usize = 15;
-/// Most bytes: what is hashed is bounded.
+/// Maximum length, bytes: bounds the work of hashing.
 const MOST: usize = 256;
 
-/// Fewest parts that are guesses of their own: eight of the 26 letters alone are 2e11 guesses, which
-/// at one each 12 s (`attempts`) nobody makes.
+/// Minimum number of independent guesses: eight of the 26 letters alone are 2e11 guesses, too many
+/// at one each 12 s (`attempts`).
 const FEWEST_PARTS: usize = 8;
 
-/// Why there is no hash of a password.
+/// Error of hashing a password.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the password could not be hashed: {0}")]
 pub struct PasswordError(String);
 
-/// Checks a password that is to be set.
+/// Checks a new password.
 ///
 /// # Errors
-/// Says what would be right.
+/// Returns a message that states what would be right.
 pub fn check_password(password: &str) -> Result<(), String> {
     let characters = password.chars().count();
     if characters < FEWEST || password.len() > MOST {
@@ -41,25 +41,26 @@ pub fn check_password(password: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The hash of a password, with a salt of its own, as a PHC string.
+/// Hashes a password with a random salt; returns a PHC string.
 ///
 /// # Errors
-/// The system gives no random numbers, or no memory.
+/// Returns an error if the system gives no random numbers or no memory.
 pub fn hash_password(password: &str) -> Result<String, PasswordError> {
     let hash = Argon2::default().hash_password(password.as_bytes());
     hash.map(|hash| hash.to_string()).map_err(|error| PasswordError(error.to_string()))
 }
 
-/// Whether a password is the one of a hash. It takes some 20 ms and 19 MiB.
+/// Returns true if a password matches a hash. It takes some 20 ms and 19 MiB.
 pub fn verify_password(password: &str, hash: &str) -> bool {
     password.len() <= MOST
         && PasswordHash::new(hash)
             .is_ok_and(|hash| Argon2::default().verify_password(password.as_bytes(), &hash).is_ok())
 }
 
-/// Takes as long as [`verify_password`], for somebody who has no password, so that the time does
-/// not tell who has.
+/// Takes as long as [`verify_password`], for a user without a password, so that the time does not
+/// reveal which users have one.
 pub fn verify_unknown(password: &str) {
+    // As long as a valid password at most, so that the time does not depend on its length.
     let shortened = password.get(..MOST).unwrap_or(password);
     std::hint::black_box(hash_password(shortened).is_ok());
 }

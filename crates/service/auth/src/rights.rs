@@ -1,40 +1,42 @@
-//! What somebody may do, by all the roles that they have been given.
+//! Rights that follow from all granted roles.
 
 use crate::grant::{Grant, Scope};
 use crate::role::Role;
 
-/// The roles of somebody.
+/// The granted roles of a user or key, and the decisions based on them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Rights(Vec<Grant>);
 
 impl Rights {
-    /// Those of somebody who has these roles.
+    /// Creates the rights that follow from roles.
     pub fn new(mut grants: Vec<Grant>) -> Self {
         grants.sort();
         Self(grants)
     }
 
-    /// Those of somebody who may do everything.
+    /// Creates the rights of an administrator of the whole server.
     pub fn all() -> Self {
         Self(vec![Grant::everywhere(Role::Admin)])
     }
 
-    /// The roles, in order.
+    /// Returns the roles, sorted.
     pub fn grants(&self) -> &[Grant] {
         &self.0
     }
 
-    /// Whether the role is given for the whole server.
+    /// Returns true if the role, or a higher one, is granted for the whole server.
     pub fn on_server(&self, role: Role) -> bool {
+        // `None` sorts below every role: without a grant the comparison is false.
         self.highest(|scope| *scope == Scope::Server) >= Some(role)
     }
 
-    /// Whether the role is given for anything at all.
+    /// Returns true if the role, or a higher one, is granted for any scope.
     pub fn anywhere(&self, role: Role) -> bool {
         self.highest(|_| true) >= Some(role)
     }
 
-    /// Whether the role is given for a ship: by name, by one of its families, or for everything.
+    /// Returns true if the role, or a higher one, is granted for a ship: by name, by one of its
+    /// families, or for the whole server.
     pub fn on_ship(&self, role: Role, ship: &str, families: &[String]) -> bool {
         let given = |scope: &Scope| match scope {
             Scope::Server => true,
@@ -44,7 +46,7 @@ impl Rights {
         self.highest(given) >= Some(role)
     }
 
-    /// Whether the role is given for a family.
+    /// Returns true if the role, or a higher one, is granted for a family.
     pub fn on_family(&self, role: Role, family: &str) -> bool {
         let given = |scope: &Scope| match scope {
             Scope::Server => true,
@@ -54,7 +56,8 @@ impl Rights {
         self.highest(given) >= Some(role)
     }
 
-    /// Whether it depends on a ship's families what may be done to it.
+    /// Returns true if a role is granted for a family, so that the families of a ship must be
+    /// known.
     pub fn by_family(&self) -> bool {
         self.0.iter().any(|grant| matches!(grant.scope, Scope::Family(_)))
     }

@@ -3,25 +3,25 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// What somebody may do. Each role may do all that the ones before it may.
+/// Role of a user or key. Each role includes the rights of those before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
-    /// Looks at ships, trials, models and reports, and predicts with them.
+    /// Reads ships, trials, models and reports, and predicts with them.
     Reader,
-    /// Creates ships, uploads trials, refines, diagnoses, and moves aliases; the champion too,
-    /// where no second person is asked for.
+    /// Creates ships, uploads trials, refines, diagnoses, and moves aliases; `champion` too, unless
+    /// a second person is required.
     Engineer,
-    /// Promotes what others have made.
+    /// Promotes versions made by others.
     Approver,
-    /// Gives and takes rights, and reads the audit.
+    /// Grants and revokes roles, and reads the audit.
     Admin,
 }
 
 impl Role {
-    /// All of them, the least first.
+    /// All roles, the lowest first.
     pub const ALL: [Self; 4] = [Self::Reader, Self::Engineer, Self::Approver, Self::Admin];
 
-    /// Its name, as it is stored and shown.
+    /// Returns its name, as it is stored and shown.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Reader => "reader",

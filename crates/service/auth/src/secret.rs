@@ -1,31 +1,32 @@
-//! Secrets that are drawn, and how they are compared.
+//! Random secrets, hashes, and comparison in constant time.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
 use sha2::{Digest as _, Sha256};
 use subtle::ConstantTimeEq as _;
 
-/// A secret of 256 random bits, as text of 43 letters, digits, `-` and `_`.
+/// Returns a secret of 256 random bits, as text of 43 letters, digits, `-` and `_`.
 ///
 /// # Errors
-/// The system gives no random numbers.
+/// Returns an error if the system gives no random numbers.
 pub fn secret() -> Result<String, getrandom::Error> {
     let mut bytes = [0; 32];
     getrandom::fill(&mut bytes)?;
     Ok(BASE64_URL_SAFE_NO_PAD.encode(bytes))
 }
 
-/// The SHA-256 of a text.
+/// Returns the SHA-256 of a text.
 pub fn sha256(text: &str) -> [u8; 32] {
     Sha256::digest(text.as_bytes()).into()
 }
 
-/// Bytes in hexadecimal.
+/// Returns bytes in lower-case hexadecimal.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Whether two secrets are the same, in a time that does not tell how much of them is.
+/// Returns true if two secrets are equal, in a time that does not depend on the position of a
+/// difference.
 pub fn same(a: &[u8], b: &[u8]) -> bool {
     a.ct_eq(b).into()
 }

@@ -5,9 +5,9 @@ use sha2::Sha256;
 
 use crate::secret::hex;
 
-/// The HMAC-SHA256 of a message under a key, in hexadecimal.
+/// Returns the HMAC-SHA256 of a message under a key, in hexadecimal.
 pub fn sign(key: &str, message: &[u8]) -> String {
-    // A key of any length is taken.
+    // HMAC accepts keys of any length, so that this does not fail.
     let Ok(mut mac) = Hmac::<Sha256>::new_from_slice(key.as_bytes()) else { return String::new() };
     mac.update(message);
     hex(&mac.finalize().into_bytes())

@@ -1,4 +1,5 @@
-//! Everything that a version can be derived from, found by the hash of its bytes.
+//! Database and objects of an archive, with the inputs of derivations looked up by the SHA-256 of
+//! their bytes.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -19,41 +20,42 @@ use crate::library::{self, Library};
 use crate::recipe::PriorName;
 use crate::version::VersionDocument;
 
-/// The database and the samples that belong to it.
+/// Database with the object store that belongs to it.
 #[derive(Debug, Clone)]
 pub struct Archive {
     /// The database.
     pub store: Store,
-    /// The samples of trials, and the weights of learned branches.
+    /// Samples of trials, and weights of learned corrections.
     pub objects: Objects,
 }
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
 impl Archive {
-    /// Opens the database at the URL and the samples in a folder.
+    /// Opens the database at the URL with the objects in a folder.
     ///
     /// # Errors
-    /// Says which of them cannot be opened.
+    /// Returns an error that names which of them cannot be opened.
     pub async fn open(database_url: &str, data_dir: &Path) -> sistership_store::Result<Self> {
         Self::open_at(database_url, &ObjectsPlace::Folder(data_dir.to_path_buf())).await
     }
 
-    /// Opens the database at the URL and the samples where they are.
+    /// Opens the database at the URL with the objects at a place (folder or object store).
     ///
     /// # Errors
-    /// Says which of them cannot be opened.
+    /// Returns an error that names which of them cannot be opened.
     pub async fn open_at(
         database_url: &str,
         samples: &ObjectsPlace,
     ) -> sistership_store::Result<Self> {
         let objects = Objects::at(samples)?;
         match objects.mark().await {
-            // The server leaves it once there is room.
+            // Not fatal: the server writes the mark once there is space again.
             Err(error) if error.is_out_of_space() => {
                 tracing::error!(%error, "the objects could not be marked")
             }
-            // It serves what needs none, and says in `/readyz` that the store does not answer.
+            // Not fatal: requests that need no objects are served, and `/readyz` reports that the
+            // object store does not answer.
             Err(error) if error.is_passing() => {
                 tracing::error!(%error, "the object store does not answer")
             }
@@ -61,7 +63,7 @@ impl Archive {
         }
         let store = Store::connect(database_url, Arc::new(SystemClock)).await?;
         match library::keep(&store).await {
-            // Versions that this release makes wait for room, too.
+            // Not fatal: derivations of this release wait for space on the disk, too.
             Err(error) if error.is_out_of_space() => {
                 tracing::error!(%error, "the library of effects could not be kept")
             }
@@ -70,8 +72,10 @@ impl Archive {
         Ok(Self { store, objects })
     }
 
-    /// The ship as it was when its document had this hash.
+    /// Returns the ship at the revision whose document has this hash.
     pub async fn ship(&self, name: &str, hash: &str) -> Result<Vessel> {
+        // Revisions are found by the hash of the document itself: the recipe names no revision
+        // number.
         let mut page = Page::first(MAX_LIMIT);
         loop {
             let revisions = self.store.ships().revisions(name, &page).await?;
@@ -87,34 +91,35 @@ impl Archive {
         }
     }
 
-    /// The law of this name, whose text must have this hash.
+    /// Returns the law of this name, whose text must have this hash.
     pub async fn law(&self, name: &str, hash: &str) -> Result<Law> {
         let law = self.store.laws().get(name).await?;
         same_hash(&format!("the law `{name}`"), &law.document, hash)?;
         Ok(Law::parse(&law.name, &law.document)?)
     }
 
-    /// The model of a version, with the weights of its learned branch, if it has one.
+    /// Returns the model of a version, with the weights of its learned correction, if it has one.
     ///
     /// # Errors
-    /// The version does not read, or its weights are missing, damaged or not its own.
+    /// Returns an error if the version cannot be read, or if its weights are missing, damaged or
+    /// those of another model.
     pub async fn model(&self, version: &Version) -> Result<Model> {
         let mut model = document(version)?.model;
         self.attach(&mut model).await?;
         Ok(model)
     }
 
-    /// Attaches the weights of a model's learned branch, if it has one.
+    /// Attaches the weights of a model's learned correction, if it has one.
     ///
     /// # Errors
-    /// They are missing, damaged or not its own.
+    /// Returns an error if the weights are missing, damaged or those of another model.
     pub async fn attach(&self, model: &mut Model) -> Result<()> {
         let Some(branch) = &model.branch else { return Ok(()) };
         let weights = self.objects.get(&branch.weights_sha256).await?;
         Ok(sistership_learned::attach(model, &weights)?)
     }
 
-    /// The model of a version that another starts from, without the weights of a learned branch.
+    /// Returns the source model of a refinement, without the weights of its learned correction.
     pub async fn source(&self, source: &SourceVersion) -> Result<Model> {
         let version = self.store.versions().get(&source.ship, source.number).await?;
         let SourceVersion { ship, number, sha256 } = source;
@@ -122,7 +127,7 @@ impl Archive {
         Ok(document(&version)?.model)
     }
 
-    /// The library of effects of this hash.
+    /// Returns the library of effects with this hash.
     pub async fn effects(&self, hash: &str) -> Result<Library> {
         let found = match self.store.effects().get(hash).await {
             Err(StoreError::NotFound { .. }) => {
@@ -138,7 +143,7 @@ impl Archive {
         Ok(Library::parse(&found.document)?)
     }
 
-    /// What a family has taught.
+    /// Returns the prior of a family at the revision that a recipe names.
     pub async fn prior(&self, name: &PriorName) -> Result<FamilyPrior> {
         let PriorName { family, revision, sha256 } = name;
         let row = self.store.families().prior(family, Some(*revision)).await?;
@@ -150,8 +155,8 @@ impl Archive {
         Ok(serde_json::from_str(&row.document)?)
     }
 
-    /// Trials with their samples, in their order. Each is read before the next is fetched, so that
-    /// no more than one lies in memory as it is stored.
+    /// Returns trials with their samples, in the order given. Each is decoded before the next is
+    /// fetched, so that at most one is in memory in its stored form.
     pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
         let mut read = Vec::with_capacity(trials.len());
         for trial in trials {
@@ -162,15 +167,15 @@ impl Archive {
     }
 }
 
-/// A ship from its document.
+/// Parses a ship from its document.
 pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
     let file: VesselFile =
         serde_json::from_str(document).map_err(|error| damaged("ship", name, &error))?;
     Ok(Vessel::from_file(name, file)?)
 }
 
-/// Whether a document is the one that is asked for, by its bytes and not by what is recorded of
-/// them.
+/// Checks that a document has the hash that is asked for. The hash is computed from the bytes: the
+/// recorded one may belong to a document that was damaged later.
 fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
     match sha256(document.as_bytes()) {
         actual if actual == hash => Ok(()),
@@ -180,7 +185,7 @@ fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
     }
 }
 
-/// What a version holds.
+/// Parses the document of a version.
 pub fn document(version: &Version) -> Result<VersionDocument> {
     let name = format!("{}/{}", version.head.model, version.head.number);
     serde_json::from_str(&version.document).map_err(|error| damaged("version", &name, &error))

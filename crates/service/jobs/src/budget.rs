@@ -1,9 +1,9 @@
-//! Memory that requests and jobs may take together: who needs more than a little takes a share of a
-//! budget before allocating it.
+//! Memory budget shared by requests and jobs: a large allocation first reserves a share of the
+//! budget.
 //!
-//! What does not fit at the moment waits a while for others to end; what can never fit is refused
-//! at once. A request's shares are kept for as long as anything works for it, also where its caller
-//! has hung up.
+//! A reservation that does not fit at the moment waits a limited time; one that exceeds the whole
+//! budget is refused at once. The shares of a request are kept as long as any work for it runs,
+//! also after its client has disconnected.
 
 use std::future::Future;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,55 +12,55 @@ use std::time::Duration;
 use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
 
 const KIB: u64 = 1 << 10;
-/// How often somebody waiting looks again, should a word of what is given back be missed.
+/// Poll interval of a waiting reservation, in case a notification is missed.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Memory that some kind of work may take. A clone is another handle on the same one.
+/// Memory budget of one kind of work. A clone is another handle on the same budget.
 #[derive(Debug, Clone)]
 pub struct Budget(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    /// One for each KiB.
+    /// One permit for each KiB.
     permits: Arc<Semaphore>,
     given_back: Arc<Notify>,
     bytes: u64,
     setting: &'static str,
 }
 
-/// A part of a budget, given back when it is dropped.
+/// Share of a budget, returned when it is dropped.
 #[derive(Debug)]
 pub struct Share {
     permit: Option<OwnedSemaphorePermit>,
     given_back: Arc<Notify>,
 }
 
-/// Why there is no memory for something, in numbers.
+/// Reason for which memory cannot be reserved, with sizes in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Shortage {
-    /// It is more than all of it.
+    /// More than the whole budget.
     #[error("this takes about {} MiB of memory, more than the {} MiB that there are ({setting})", mib(*.needed), mib(*.bytes))]
     Never {
-        /// Bytes that were asked for.
+        /// Requested size, bytes.
         needed: u64,
         /// Bytes of the budget.
         bytes: u64,
-        /// What sets it.
+        /// Setting that defines the size.
         setting: &'static str,
     },
-    /// Others have too much of it.
+    /// More than what is free at the moment.
     #[error(
         "this takes about {} MiB of memory, and {} of {} MiB are free at the moment ({setting})",
         mib(*.needed), .free / (1 << 20), mib(*.bytes)
     )]
     Busy {
-        /// Bytes that were asked for.
+        /// Requested size, bytes.
         needed: u64,
         /// Bytes that were free.
         free: u64,
         /// Bytes of the budget.
         bytes: u64,
-        /// What sets it.
+        /// Setting that defines the size.
         setting: &'static str,
     },
 }
@@ -70,9 +70,11 @@ fn mib(bytes: u64) -> u64 {
 }
 
 impl Budget {
-    /// Of so many bytes; `setting` is what its user knows it by.
+    /// Creates a budget of `bytes`; `setting` is the name of the setting in messages.
     pub fn new(bytes: u64, setting: &'static str) -> Self {
         let permits =
+            // A semaphore counts at most `MAX_PERMITS`; a budget above that many KiB is limited to
+            // it.
             usize::try_from(bytes / KIB).unwrap_or(usize::MAX).min(Semaphore::MAX_PERMITS);
         let given_back = Arc::new(Notify::new());
         Self(Arc::new(Inner {
@@ -83,10 +85,10 @@ impl Budget {
         }))
     }
 
-    /// A share, if it is free now.
+    /// Reserves a share if it is free now.
     ///
     /// # Errors
-    /// There is not so much, or not now.
+    /// Returns an error with the sizes if the budget is too small, or too little of it is free now.
     pub fn try_take(&self, bytes: u64) -> Result<Share, Shortage> {
         let Inner { permits, given_back, bytes: all, setting } = &*self.0;
         let never = || Shortage::Never { needed: bytes, bytes: *all, setting };
@@ -95,20 +97,24 @@ impl Budget {
             .filter(|needed| u64::from(*needed) * KIB <= *all)
             .ok_or_else(never)?;
         let taken = Arc::clone(permits).try_acquire_many_owned(needed);
+        // Only for the message; others may take or return memory meanwhile.
         let free = permits.available_permits() as u64 * KIB;
         let permit =
             taken.map_err(|_| Shortage::Busy { needed: bytes, free, bytes: *all, setting })?;
         Ok(Share { permit: Some(permit), given_back: Arc::clone(given_back) })
     }
 
-    /// A share, as soon as it is free. Nobody waits behind another: what is small goes on while
-    /// something large waits.
+    /// Reserves a share as soon as it is free. There is no queue: a small reservation may pass a
+    /// large one that waits.
     ///
     /// # Errors
-    /// There is not so much, or not soon.
+    /// Returns an error with the sizes if the budget is too small, or too little of it is free
+    /// until `patience` has passed.
     pub async fn take(&self, bytes: u64, patience: Duration) -> Result<Share, Shortage> {
         let end = tokio::time::Instant::now() + patience;
         loop {
+            // Created before the attempt, so that a share that is returned in between is not
+            // missed.
             let given_back = self.0.given_back.notified();
             let shortage = match self.try_take(bytes) {
                 Err(shortage @ Shortage::Busy { .. }) if tokio::time::Instant::now() < end => {
@@ -123,7 +129,7 @@ impl Budget {
         }
     }
 
-    /// Bytes that nobody has.
+    /// Free memory, bytes.
     pub fn free(&self) -> u64 {
         self.0.permits.available_permits() as u64 * KIB
     }
@@ -131,13 +137,14 @@ impl Budget {
 
 impl Drop for Share {
     fn drop(&mut self) {
+        // The permits go back first: a task that is woken must find them.
         drop(self.permit.take());
         self.given_back.notify_waiters();
     }
 }
 
-/// What a request has taken. A clone is another handle on the same: all is given back with the
-/// last.
+/// Memory reserved by a request. A clone is another handle; the memory is returned with the last
+/// one.
 #[derive(Debug, Clone)]
 pub struct Held(Arc<Holding>);
 
@@ -153,35 +160,37 @@ tokio::task_local! {
 }
 
 impl Held {
-    /// Nothing yet, of a budget for whose memory it may wait so long.
+    /// Creates an empty reservation; each later one waits at most `patience` for the budget.
     pub fn new(budget: Budget, patience: Duration) -> Self {
         Self(Arc::new(Holding { budget, patience, shares: Mutex::default() }))
     }
 
-    /// Carries a request out; [`take`] within it takes for it.
+    /// Runs a request; reservations within it belong to this request.
     pub async fn scope<T>(self, work: impl Future<Output = T>) -> T {
         HELD.scope(self, work).await
     }
 
-    /// As [`scope`](Self::scope), on a thread of its own.
+    /// Runs a closure on a blocking thread; reservations within it belong to this request.
     pub fn sync_scope<T>(self, work: impl FnOnce() -> T) -> T {
         HELD.sync_scope(self, work)
     }
 
-    /// What the request that is being carried out has taken; none outside of one.
+    /// Returns the reservation of the current request; `None` outside of a request.
     pub fn current() -> Option<Self> {
         HELD.try_with(Self::clone).ok()
     }
 
     fn keep(&self, share: Share) {
+        // A poisoned lock is usable: a push leaves the list complete or unchanged.
         self.0.shares.lock().unwrap_or_else(PoisonError::into_inner).push(share);
     }
 }
 
-/// Takes memory for the request that is being carried out, until it has been answered.
+/// Reserves memory for the current request until it has been answered. Does nothing outside of one.
 ///
 /// # Errors
-/// There is not so much, or not soon.
+/// Returns an error with the sizes if the budget is too small, or too little of it becomes free in
+/// time.
 pub async fn take(bytes: u64) -> Result<(), Shortage> {
     if let Some(held) = Held::current() {
         held.keep(held.0.budget.take(bytes, held.0.patience).await?);
@@ -189,19 +198,22 @@ pub async fn take(bytes: u64) -> Result<(), Shortage> {
     Ok(())
 }
 
-/// A share of its own for a part of a request that ends before it; none outside of one.
+/// Reserves a separate share for a part of the current request that ends before it; `None` outside
+/// of a request.
 ///
 /// # Errors
-/// There is not so much, or not soon.
+/// Returns an error with the sizes if the budget is too small, or too little of it becomes free in
+/// time.
 pub async fn share(bytes: u64) -> Result<Option<Share>, Shortage> {
     let Some(held) = Held::current() else { return Ok(None) };
     Ok(Some(held.0.budget.take(bytes, held.0.patience).await?))
 }
 
-/// As [`take`], from a thread that cannot wait.
+/// Reserves memory for the current request from a thread that cannot wait. Does nothing outside of
+/// one.
 ///
 /// # Errors
-/// There is not so much, or not now.
+/// Returns an error with the sizes if the budget is too small, or too little of it is free now.
 pub fn take_now(bytes: u64) -> Result<(), Shortage> {
     if let Some(held) = Held::current() {
         held.keep(held.0.budget.try_take(bytes)?);
@@ -209,7 +221,8 @@ pub fn take_now(bytes: u64) -> Result<(), Shortage> {
     Ok(())
 }
 
-/// Runs work on a thread that may block, with what the request has taken until the work has ended.
+/// Wraps work for a blocking thread so that it keeps the memory of the current request until it
+/// ends.
 pub fn carried<T>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> impl FnOnce() -> T + Send + 'static {
@@ -220,7 +233,7 @@ pub fn carried<T>(
     }
 }
 
-/// A future that goes on if its request's caller hangs up, with what the request has taken.
+/// Runs a future that continues after the client has disconnected, with the memory of its request.
 pub async fn carried_on<T>(held: Option<Held>, work: impl Future<Output = T>) -> T {
     match held {
         Some(held) => held.scope(work).await,

@@ -1,8 +1,8 @@
-//! The laws and ships of the database in memory, read and checked once.
+//! Laws and ships of the database in memory, read and checked once.
 //!
-//! Other processes may change the database, so that whoever needs the zoo asks for it anew; only
-//! what has changed is read again. A zoo holds a bounded number of ships, however many the database
-//! has.
+//! Other processes may change the database, so the zoo is requested for each use; only rows that
+//! have changed are read again. A zoo holds a limited number of ships, regardless of the size of
+//! the database.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -15,12 +15,12 @@ use sistership_store::{
 use crate::archive::Archive;
 use crate::search::{KnownVectors, nearest};
 
-/// The most ships that a ship is compared with.
+/// Largest number of ships that a ship is compared with.
 pub const MOST: usize = 250;
-/// The same as the limit of a page.
+/// The same number as the limit of a page.
 const PAGE: i64 = MOST as i64;
 
-/// The zoo as it was last seen.
+/// Cache of the zoo as it was last read.
 #[derive(Debug, Default)]
 pub struct Catalogue {
     laws: RwLock<Laws>,
@@ -28,14 +28,14 @@ pub struct Catalogue {
     vectors: KnownVectors,
 }
 
-/// Laws without ships, and the hashes of their texts.
+/// Laws without ships, with the hashes of their texts.
 #[derive(Debug, Clone, Default)]
 struct Laws {
     hashes: Arc<BTreeMap<String, String>>,
     zoo: Arc<Zoo>,
 }
 
-/// A law as it was read.
+/// Law with the hash of its text.
 #[derive(Debug, Clone)]
 pub struct KnownLaw {
     /// The law.
@@ -44,7 +44,7 @@ pub struct KnownLaw {
     pub sha256: String,
 }
 
-/// Ships, by their revisions, with the laws that they were read with.
+/// Ships with their revisions, and the laws that they were read with.
 #[derive(Debug, Clone, Default)]
 struct Ships {
     revisions: BTreeMap<String, i64>,
@@ -53,9 +53,10 @@ struct Ships {
 }
 
 impl Catalogue {
-    /// The laws of the database, and no ships.
+    /// Returns the laws of the database, without ships.
     pub async fn laws(&self, store: &Store) -> Result<Arc<Zoo>> {
         let (laws, seen) = (all_laws(store).await?, seen(&self.laws));
+        // Laws are insert-only, so names are enough to see whether the cache is current.
         if laws.iter().all(|law| seen.hashes.contains_key(&law.name)) {
             return Ok(seen.zoo);
         }
@@ -63,8 +64,8 @@ impl Catalogue {
         Ok(remember(&self.laws, fresh).zoo)
     }
 
-    /// The laws of the database, with the ships that a ship is compared with: all of them where
-    /// they are at most [`MOST`], else the most similar of its category, `count` of them.
+    /// Returns the laws of the database with the ships that a target is compared with: all of them
+    /// if a page holds them, else the `count` most similar ones of its category.
     pub async fn around(
         &self,
         archive: &Archive,
@@ -78,17 +79,19 @@ impl Catalogue {
             return Ok(seen.zoo);
         }
         let kept = seen.kept(laws, &heads);
+        // Concurrent calls may both read and store a zoo; each result is complete, the last one
+        // stays.
         let ships = documents(&archive.store, heads.iter().filter(|head| !kept.has(head))).await?;
         let fresh = read(move || kept.grown(&ships)).await?;
         Ok(remember(&self.ships, fresh).zoo)
     }
 
-    /// The vectors of ships that have been read.
+    /// Cache of the feature vectors of ships.
     pub fn vectors(&self) -> &KnownVectors {
         &self.vectors
     }
 
-    /// The ships that a ship is compared with, without their documents.
+    /// Returns the ships that a target is compared with, without their documents.
     async fn compared(
         &self,
         archive: &Archive,
@@ -102,7 +105,7 @@ impl Catalogue {
         }
     }
 
-    /// A law. It never changes, so that the one in memory is the right one.
+    /// Returns a law by name. A law never changes, so a cached one is valid.
     pub async fn law(&self, store: &Store, name: &str) -> Result<Option<KnownLaw>> {
         if let Some(known) = seen(&self.laws).known(name) {
             return Ok(Some(known));
@@ -113,6 +116,7 @@ impl Catalogue {
 }
 
 fn seen<T: Clone>(kept: &RwLock<T>) -> T {
+    // Values are replaced as a whole, so a poisoned lock still holds a valid one.
     kept.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
@@ -121,7 +125,7 @@ fn remember<T: Clone>(kept: &RwLock<T>, fresh: T) -> T {
     fresh
 }
 
-/// Reads documents where it holds nobody up.
+/// Parses documents on a blocking thread.
 async fn read<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
     Ok(tokio::task::spawn_blocking(work).await.map_err(sistership_store::ObjectsError::from)?)
 }
@@ -134,7 +138,7 @@ impl Laws {
         })
     }
 
-    /// These laws with what is new.
+    /// Returns the cache with the new laws added.
     fn grown(self, laws: &[Law]) -> Self {
         let mut zoo = Zoo::clone(&self.zoo);
         for law in laws.iter().filter(|law| !self.hashes.contains_key(&law.name)) {
@@ -156,9 +160,11 @@ impl Ships {
         self.revisions.get(&ship.name) == Some(&ship.revision)
     }
 
-    /// What of these can stay; nothing where a ship has gone or there are other laws.
+    /// Returns the entries that are still valid; none if a ship was removed or the laws have
+    /// changed.
     fn kept(self, laws: Arc<Zoo>, ships: &[FoundShip]) -> Self {
         let names: BTreeSet<&str> = ships.iter().map(|ship| ship.name.as_str()).collect();
+        // A removed ship or another set of laws invalidates every entry; the zoo is built anew.
         let gone = self.revisions.keys().any(|name| !names.contains(name.as_str()));
         if gone || !Arc::ptr_eq(&self.laws, &laws) || self.revisions.is_empty() {
             return Self { revisions: BTreeMap::new(), zoo: Arc::clone(&laws), laws };
@@ -166,7 +172,7 @@ impl Ships {
         self
     }
 
-    /// These ships with further ones.
+    /// Returns the cache with further ships added.
     fn grown(mut self, ships: &[Ship]) -> Self {
         let mut zoo = Zoo::clone(&self.zoo);
         for ship in ships {
@@ -177,14 +183,14 @@ impl Ships {
     }
 }
 
-/// One row that does not read must not keep the others from being served.
+/// Logs a row that cannot be parsed; the others are served.
 fn report(kind: &str, name: &str, error: Option<sistership_model::FileError>) {
     if let Some(error) = error {
         tracing::error!(%error, "the {kind} `{name}` of the database does not read and is left out");
     }
 }
 
-/// Every law of the database.
+/// Reads all laws of the database.
 async fn all_laws(store: &Store) -> Result<Vec<Law>> {
     let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
     loop {
@@ -199,7 +205,7 @@ async fn documents(store: &Store, heads: impl Iterator<Item = &FoundShip>) -> Re
     let mut ships = Vec::new();
     for head in heads {
         match store.ships().get(&head.name).await {
-            // Deleted in between.
+            // Deleted after the list was read.
             Err(StoreError::NotFound { .. }) => {}
             ship => ships.push(ship?),
         }

@@ -1,7 +1,7 @@
-//! Which ships may be the source of a refinement: one answer for pages, for `similar` over HTTP and
-//! on the command line, and for the selection of a source. A ship gives its champion where that is
-//! more than its published model, for a refined sister is the best source there is; else its
-//! published model.
+//! Eligible source models of a refinement: the same answer for pages, for `similar` over HTTP and
+//! on the command line, and for the selection of a source. A ship provides its champion if that is
+//! not the published model, because a refined sister ship is the best source; else its published
+//! model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,34 +18,34 @@ use crate::recipe::Recipe;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
-/// Champions whose documents are read at once.
+/// Number of champions whose documents are read at once.
 const AT_ONCE: usize = 25;
 
-/// The models by which the ships of a store may be sources beside their published ones.
+/// Champions that ships of a store provide as source models in place of their published ones.
 #[derive(Debug, Clone, Default)]
 pub struct SourceModels {
-    /// Champions that may serve, by ship.
+    /// Eligible champions, by ship.
     pub champions: BTreeMap<String, Model>,
-    /// The numbers of their versions.
+    /// Version numbers of these champions, by ship.
     numbers: BTreeMap<String, i64>,
-    /// Why the champion of a ship may not serve.
+    /// Reason for which the champion of a ship is not eligible, by ship.
     unusable: BTreeMap<String, String>,
 }
 
 impl SourceModels {
-    /// Those of every ship of a zoo.
+    /// Reads the champions of every ship of a zoo.
     ///
     /// # Errors
-    /// The store does not answer.
+    /// Returns an error if the store does not answer.
     pub async fn read(archive: &Archive, zoo: &Zoo) -> Result<Self> {
         let ships: Vec<String> = zoo.vessels().map(|vessel| vessel.name().to_owned()).collect();
         Self::of_ships(archive, zoo, &ships).await
     }
 
-    /// Those of some ships.
+    /// Reads the champions of some ships.
     ///
     /// # Errors
-    /// The store does not answer.
+    /// Returns an error if the store does not answer.
     pub async fn of_ships(archive: &Archive, zoo: &Zoo, ships: &[String]) -> Result<Self> {
         let mut models = Self::default();
         for some in ships.chunks(AT_ONCE) {
@@ -81,10 +81,12 @@ impl SourceModels {
         self.explained(similar_with(zoo, target, definition, trials, &self.champions))
     }
 
-    /// A ranking by these champions that says why a champion may not serve.
+    /// Adds to a ranking the reason for which a champion is not eligible.
     pub fn explained(&self, mut similarity: Similarity) -> Similarity {
         for ranked in similarity.ranking.iter_mut().filter(|ranked| ranked.model.is_none()) {
             let reason = self.unusable.get(&ranked.ship);
+            // The last reason is the one for the missing model; the champion's reason is more
+            // specific.
             if let Some((said, reason)) = ranked.reasons.last_mut().zip(reason) {
                 said.clone_from(reason);
             }
@@ -92,10 +94,10 @@ impl SourceModels {
         similarity
     }
 
-    /// The version that a ship gives as a source; none where that is its published model.
+    /// Returns the version that a ship provides as a source; `None` for its published model.
     ///
     /// # Errors
-    /// The store does not answer.
+    /// Returns an error if the store does not answer.
     pub async fn version(&self, archive: &Archive, ship: &str) -> Result<Option<Version>> {
         match self.numbers.get(ship) {
             Some(number) => Ok(Some(archive.store.versions().get(ship, *number).await?)),
@@ -104,17 +106,18 @@ impl SourceModels {
     }
 }
 
-/// The ships of a store that are most similar to a target, at most `count`, and whether each may be
-/// its source, before trials are looked at.
+/// Returns the ships of a store that are most similar to a target, at most `count`, with the
+/// eligibility of each as its source before trials are considered.
 ///
 /// # Errors
-/// The store does not answer.
+/// Returns an error if the store does not answer.
 pub async fn most_similar_ships(
     archive: &Archive,
     zoo: Arc<Zoo>,
     target: Vessel,
     count: usize,
 ) -> Result<Vec<RankedSource>> {
+    // Two passes: similarity selects the ships, then only their champions are read.
     let (near, named) = (Arc::clone(&zoo), target.clone());
     let ships = blocking(move || {
         let ranking = similar(&near, &named, None, &[]).ranking.into_iter();
@@ -133,11 +136,12 @@ async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) 
     Ok(tokio::task::spawn_blocking(work).await?)
 }
 
-/// The model that a champion gives as a source; none where it is the published model, which the
-/// zoo has already.
+/// Returns the model that a champion provides as a source; `None` for the published model, which
+/// the zoo has already.
 ///
 /// # Errors
-/// Says why it may not serve. A damaged one must not keep the others from being used.
+/// Returns the reason for which it is not eligible. A damaged champion must not prevent the use of
+/// the others.
 fn source_model(zoo: &Zoo, version: &Version) -> std::result::Result<Option<Model>, String> {
     let number = version.head.number;
     let document = document(version)
@@ -146,10 +150,10 @@ fn source_model(zoo: &Zoo, version: &Version) -> std::result::Result<Option<Mode
     {
         return Ok(None);
     }
-    // What was learned beside its law is of its own trials.
+    // The learned correction is specific to the ship's own trials and is removed.
     let model = document.model.foundation();
     if let Some(effect) = model.effects.first() {
-        // What was found on a day in one place is not another ship's.
+        // An effect was identified for one ship in its own trials and does not transfer.
         return Err(format!(
             "its champion, version {number}, carries the effect {}, which is its own",
             effect.name

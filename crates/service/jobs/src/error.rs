@@ -1,4 +1,4 @@
-//! Why a version, or anything else that a job makes, cannot be made.
+//! Errors of derivations and other jobs.
 
 use sistership_identification::refine::RefineError;
 use sistership_learned::{JoinError, TrainError};
@@ -6,37 +6,38 @@ use sistership_model::FileError;
 use sistership_store::StoreError;
 use sistership_trials::samples::SamplesError;
 
-/// Why a version cannot be derived.
+/// Error of a derivation.
 #[derive(Debug, thiserror::Error)]
 pub enum DeriveError {
-    /// Something that the recipe names is not there.
+    /// An input that the recipe names is missing, or the store does not answer.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// Something that the recipe names is no longer what it was.
+    /// An input that the recipe names is damaged or has changed.
     #[error("{0}")]
     Lost(String),
-    /// A ship or law does not read.
+    /// A ship or law cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Samples do not read.
+    /// Samples cannot be read.
     #[error(transparent)]
     Samples(#[from] SamplesError),
     /// The refinement is refused, or was stopped.
     #[error(transparent)]
     Refine(#[from] RefineError),
-    /// A branch cannot be trained.
+    /// A learned correction cannot be trained.
     #[error(transparent)]
     Train(#[from] TrainError),
-    /// A branch and its weights do not belong together.
+    /// A learned correction and its weights do not belong together.
     #[error(transparent)]
     Join(#[from] JoinError),
-    /// What does not happen unless the program is at fault, or others keep writing.
+    /// A state that should not occur, unless the program has a defect or others write at the same
+    /// time.
     #[error("{0}")]
     Unexpected(String),
     /// A document cannot be written.
     #[error("a document cannot be written: {0}")]
     Json(#[from] serde_json::Error),
-    /// The thread that computed is gone.
+    /// The thread of the computation ended without a result.
     #[error("the computation broke off: {0}")]
     Broken(#[from] tokio::task::JoinError),
 }

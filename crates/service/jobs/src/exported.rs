@@ -1,4 +1,4 @@
-//! Versions written down for other tools.
+//! Export of versions to other tools.
 
 use serde::Deserialize;
 use sistership_export::{ExportError, Plan, Subject, by_name};
@@ -6,7 +6,7 @@ use sistership_model::{Law, Model};
 use sistership_store::Version;
 use utoipa::ToSchema;
 
-/// The tool that a version is written down for; C where none is named.
+/// Format of an export; C by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ExportFormat {
@@ -25,7 +25,7 @@ pub enum ExportFormat {
     Fmu3,
 }
 
-/// A version in a format.
+/// Exported version.
 #[derive(Debug, Clone)]
 pub struct Exported {
     /// The name of the file.
@@ -35,7 +35,7 @@ pub struct Exported {
 }
 
 impl ExportFormat {
-    /// Its name among those of `sistership-export`.
+    /// Its name in `sistership-export`.
     pub fn name(self) -> &'static str {
         match self {
             Self::C => "c",
@@ -47,11 +47,11 @@ impl ExportFormat {
         }
     }
 
-    /// Writes a version down by its model, with the weights of a learned correction attached, and
-    /// its law.
+    /// Writes a version as a file, from its model with the weights of a learned correction
+    /// attached, and its law.
     ///
     /// # Errors
-    /// Says why the version cannot be exported.
+    /// Returns an error if the version cannot be exported in this format.
     pub fn write(
         self,
         version: &Version,
@@ -60,6 +60,7 @@ impl ExportFormat {
         let missing = || ExportError::Archive("there is no such format".to_owned());
         let line = format!("{}/{}", version.head.model, version.head.number);
         let sha256 = version.head.sha256.clone();
+        // The exported file names the version and its hash, so that it can be traced.
         let plan = Plan::new(&Subject { model, law, version: Some(line), sha256 })?;
         let format = by_name(self.name()).ok_or_else(missing)?;
         let file = format!("{}.{}", plan.identifier, format.extension());

@@ -1,35 +1,35 @@
-//! A document that a derivation reads, by its kind and its hash.
+//! Input documents of derivations, by kind and hash.
 
 use std::fmt;
 
-/// A document that a derivation reads, by its kind and the SHA-256 of its bytes.
+/// Document that a derivation reads, by its kind and the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Input {
-    /// What it is.
+    /// Its kind.
     pub kind: InputKind,
     /// The hash.
     pub sha256: String,
 }
 
-/// The kinds of documents that a derivation reads.
+/// Kinds of documents that a derivation reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InputKind {
     /// A ship's own document.
     Ship,
     /// A law's file.
     Law,
-    /// A version that another starts from.
+    /// A source version.
     Version,
     /// The samples of a trial.
     Samples,
     /// A library of effects.
     Effects,
-    /// What a family has taught.
+    /// A prior of a family.
     Prior,
 }
 
 impl InputKind {
-    /// The input of this kind with this hash.
+    /// Returns the input of this kind with this hash.
     pub fn of(self, sha256: &str) -> Input {
         Input { kind: self, sha256: sha256.to_owned() }
     }

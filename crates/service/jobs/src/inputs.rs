@@ -1,5 +1,5 @@
-//! What a derivation may read: documents by their hashes, and nothing else. What was read is noted,
-//! so that a recipe which does not name all of it is refused as it is made.
+//! Access of a derivation to the archive: documents by their hashes, and nothing else. Every read
+//! is recorded, so that a recipe which does not name all inputs is refused when it is made.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +18,7 @@ use crate::recipe::{PriorName, Recipe};
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
-/// The one way from a derivation to the archive.
+/// The only access of a derivation to the archive, with a record of what was read.
 #[derive(Debug)]
 pub struct Inputs<'a> {
     archive: &'a Archive,
@@ -26,70 +26,71 @@ pub struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// Nothing read yet.
+    /// Creates the access, with nothing read.
     pub fn new(archive: &'a Archive) -> Self {
         Self { archive, read: Mutex::default() }
     }
 
     fn note(&self, kind: InputKind, sha256: &str) {
+        // A lock and not a cell: the inputs of one derivation may be read from several tasks.
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(kind.of(sha256));
     }
 
-    /// The ship as it was when its document had this hash.
+    /// Returns the ship at the revision whose document has this hash.
     pub async fn ship(&self, name: &str, sha256: &str) -> Result<Vessel> {
         self.note(InputKind::Ship, sha256);
         self.archive.ship(name, sha256).await
     }
 
-    /// The law of this name, whose text has this hash.
+    /// Returns the law of this name, whose text has this hash.
     pub async fn law(&self, name: &str, sha256: &str) -> Result<Law> {
         self.note(InputKind::Law, sha256);
         self.archive.law(name, sha256).await
     }
 
-    /// The model of a version.
+    /// Returns the model of a version, without the weights of its learned correction.
     pub async fn source(&self, source: &SourceVersion) -> Result<Model> {
         self.note(InputKind::Version, &source.sha256);
         self.archive.source(source).await
     }
 
-    /// The model of a version with the weights of its learned correction, if it has one: its
-    /// document names them by their hash.
+    /// Returns the model of a version with the weights of its learned correction, if it has one.
+    /// They are no input of their own: the version's document names them by their hash.
     pub async fn model(&self, source: &SourceVersion) -> Result<Model> {
         let mut model = self.source(source).await?;
         self.archive.attach(&mut model).await?;
         Ok(model)
     }
 
-    /// Trials with their samples, in their order.
+    /// Returns trials with their samples, in the order given.
     pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
         trials.iter().for_each(|trial| self.note(InputKind::Samples, &trial.sha256));
         self.archive.trials(trials).await
     }
 
-    /// The samples of one trial as they are stored.
+    /// Returns the samples of one trial as they are stored.
     pub async fn samples(&self, trial: &RecipeTrial) -> Result<Bytes> {
         self.note(InputKind::Samples, &trial.sha256);
         Ok(self.archive.objects.get(&trial.sha256).await?)
     }
 
-    /// The library of effects of this hash.
+    /// Returns the library of effects with this hash.
     pub async fn effects(&self, sha256: &str) -> Result<Library> {
         self.note(InputKind::Effects, sha256);
         self.archive.effects(sha256).await
     }
 
-    /// What a family has taught.
+    /// Returns the prior of a family at the revision that a recipe names.
     pub async fn prior(&self, name: &PriorName) -> Result<FamilyPrior> {
         self.note(InputKind::Prior, &name.sha256);
         self.archive.prior(name).await
     }
 
-    /// Whether the recipe names what was read, and all that it names was read.
+    /// Checks that the recipe names exactly what was read.
     ///
     /// # Errors
-    /// Names each input of which that is not so: a defect of the program, which must not make a
-    /// version.
+    /// Returns an error that names each input for which this is not the case: a defect of the
+    /// program, which must not make a version.
     pub fn check(&self, recipe: &Recipe) -> Result<()> {
         let (read, named) =
             (self.read.lock().unwrap_or_else(PoisonError::into_inner), recipe.inputs());

@@ -1,28 +1,29 @@
-//! How workers hold their jobs.
+//! Leases of workers on jobs.
 
 use std::time::Duration;
 
-/// How workers hold their jobs.
+/// Durations of the leases of workers on jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Leases {
-    /// After this long without a beat, another worker may take the job.
+    /// Time without a heartbeat after which another worker may take the job.
     pub lease: Duration,
-    /// How often a worker tells that it lives.
+    /// Interval of heartbeats.
     pub beat: Duration,
-    /// How often an idle worker looks for jobs that other processes have queued.
+    /// Interval at which an idle worker polls for jobs queued by other processes.
     pub poll: Duration,
-    /// How long a worker that is told to stop goes on with its job before it gives it back.
+    /// Time for which a worker that is stopped continues its job before it returns it to the queue.
     pub drain: Duration,
 }
 
 impl Leases {
-    /// The longest that a lease may be.
+    /// Longest lease.
     pub const MAX: Duration = Duration::from_secs(3600);
 
-    /// The longest that stopping may wait for jobs.
+    /// Longest time that stopping may wait for jobs.
     pub const MAX_DRAIN: Duration = Duration::from_secs(24 * 3600);
 
-    /// A lease of a length, with five beats in it: four may be missed before the job is lost.
+    /// Returns the durations for a lease with five heartbeats in it: four may be missed before the
+    /// job is lost.
     pub fn of(lease: Duration) -> Self {
         Self {
             lease,

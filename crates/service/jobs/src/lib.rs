@@ -1,5 +1,5 @@
-//! What a job does, by recipe: derive, verify, calibrate; find ships; look after an archive.
-//! Servers, workers and the command line alike come here.
+//! Jobs of Sistership: derivation and verification of versions, calibration, search for ships,
+//! bundles, and maintenance of an archive. Servers, workers and the command line share them.
 
 pub mod archive;
 pub mod budget;

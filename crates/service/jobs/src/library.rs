@@ -1,6 +1,6 @@
-//! Libraries of effects: what a diagnosis knows, and what a calibration is learned with. Each is a
-//! document under its hash, the files of its effects one after another, which the store keeps
-//! beside those of earlier releases.
+//! Libraries of effects: the effects that a diagnosis tests and that a calibration uses. A library
+//! is one document, the files of its effects one after another, stored under its hash. The store
+//! keeps the libraries of earlier releases.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,11 +8,11 @@ use sistership_model::version::sha256;
 use sistership_model::{Effect, FileError, Zoo};
 use sistership_store::{Store, StoreError};
 
-/// The library that recipes mean which do not name one: that of the releases that made them. It
-/// never changes.
+/// SHA-256 of the library of recipes that do not name one, which were made by the first releases.
+/// It never changes.
 pub const FIRST_SHA256: &str = "4ffa596faa665cb151e92fab50bfd47e95ca36c187ac9218ee4a6d1a04b0e769";
 const FIRST: &str = include_str!("../../../../models/libraries/first.yaml");
-/// The line that the file of each effect begins with.
+/// First line of the file of each effect.
 const BEGIN: &str = "kind: effect";
 
 /// A library of effects.
@@ -20,17 +20,17 @@ const BEGIN: &str = "kind: effect";
 pub struct Library {
     /// The effects, by name.
     pub effects: Vec<Arc<Effect>>,
-    /// The SHA-256 of [`Library::document`].
+    /// The SHA-256 of `document`.
     pub sha256: String,
-    /// Their files, one after another by name.
+    /// Their files, one after another, sorted by name.
     pub document: String,
 }
 
 impl Library {
-    /// Reads a library.
+    /// Parses a library.
     ///
     /// # Errors
-    /// The effect that does not read, with its number in the library.
+    /// Returns an error that names the effect that cannot be parsed, by its number in the library.
     pub fn parse(document: &str) -> Result<Self, FileError> {
         let hash = sha256(document.as_bytes());
         let read = |(index, text): (usize, String)| {
@@ -43,10 +43,11 @@ impl Library {
     }
 }
 
-/// The files that a document is made of; what comes before the first is part of it.
+/// Splits a document into its files; text before the first `kind:` line belongs to the first file.
 fn files(document: &str) -> Vec<String> {
     let mut files = vec![String::new()];
     for line in document.split_inclusive('\n') {
+        // Text before the first `kind: effect` line must not become a file of its own.
         let begun =
             files.last().is_some_and(|file| file.lines().any(|line| line.trim_end() == BEGIN));
         if begun && line.trim_end() == BEGIN {
@@ -57,10 +58,10 @@ fn files(document: &str) -> Vec<String> {
     files
 }
 
-/// The library that this program carries.
+/// Returns the library that is embedded in this program.
 ///
 /// # Errors
-/// The file that does not read; a test keeps this from happening in a release.
+/// Returns an error if a file cannot be parsed, which a test rules out for releases.
 pub fn library() -> Result<&'static Library, FileError> {
     static LIBRARY: OnceLock<Result<Library, FileError>> = OnceLock::new();
     LIBRARY.get_or_init(|| of(&Zoo::embedded()?)).as_ref().map_err(FileError::clone)
@@ -72,7 +73,7 @@ fn of(zoo: &Zoo) -> Result<Library, FileError> {
     )
 }
 
-/// Puts the libraries that this program carries into a store, beside those that are there.
+/// Stores the libraries that are embedded in this program, in addition to existing ones.
 pub async fn keep(store: &Store) -> Result<(), StoreError> {
     let current = match library() {
         Ok(library) => &library.document,

@@ -1,24 +1,24 @@
-//! Where a ship's line of versions stands: its aliases, and how they move with a new version.
+//! Aliases of a ship's versions, and how they move with a new version.
 
 use sistership_store::{Alias, AliasMove, Expect, Store, StoreError};
 
 type Result<T> = std::result::Result<T, StoreError>;
 
-/// The alias that the product is asked for.
+/// Alias of the version in use.
 pub const CHAMPION: &str = "champion";
-/// The alias of the last refinement that is not the champion.
+/// Alias of the last refinement that is not the champion.
 pub const CANDIDATE: &str = "candidate";
-/// The alias of the last version. Everyone who makes a version moves it, so that the number that a
-/// version is going to have is known beforehand.
+/// Alias of the last version. Every operation that creates a version moves it, so that the number
+/// of the version is known beforehand.
 pub const LATEST: &str = "latest";
 const PUBLISHED: &str = "published-";
 
-/// The alias of a published model, by which `ship/model` is found among the versions.
+/// Returns the alias of a published model, by which `ship/model` is found among the versions.
 pub fn alias_of(model: &str) -> String {
     format!("{PUBLISHED}{model}")
 }
 
-/// A move of an alias by the server itself.
+/// Creates a move of an alias in the name of the server.
 pub fn step(alias: &str, expect: Expect, reason: &str) -> AliasMove {
     AliasMove {
         alias: alias.to_owned(),
@@ -28,33 +28,35 @@ pub fn step(alias: &str, expect: Expect, reason: &str) -> AliasMove {
     }
 }
 
-/// What an alias must still be while it is moved.
+/// Returns the precondition that an alias is unchanged when it is moved.
 pub fn expected(current: Option<&Alias>) -> Expect {
     current.map_or(Expect::Absent, |alias| Expect::Revision(alias.revision))
 }
 
-/// Whether an alias is the server's own business.
+/// Returns true if only the server may move the alias.
 pub fn is_reserved(alias: &str) -> bool {
     alias == LATEST || alias.starts_with(PUBLISHED)
 }
 
-/// Where a line of versions stands before the next one.
+/// State of a ship's versions before a new one is created.
 pub struct Standing {
-    /// Whether it has a champion.
+    /// True if there is a champion.
     pub champion: bool,
-    /// Whether a version becomes champion only by the word of somebody else than who made it.
+    /// True if a version may become champion only by a person other than its author (four-eyes
+    /// rule).
     pub second_person: bool,
-    /// The number that the next version gets, as long as [`Standing::follow`] can be made.
+    /// Number of the next version, valid if its move of `latest` succeeds.
     pub next: i64,
     latest: Option<Alias>,
 }
 
 impl Standing {
-    /// Reads where it stands.
+    /// Reads the state of a ship's versions.
     ///
     /// # Errors
-    /// The store does not answer.
+    /// Returns an error if the store does not answer.
     pub async fn of(store: &Store, model: &str) -> Result<Self> {
+        // No transaction is needed: a version created meanwhile makes the move of `latest` fail.
         let latest = alias(store, model, LATEST).await?;
         let champion = alias(store, model, CHAMPION).await?.is_some();
         Ok(Self {
@@ -65,13 +67,14 @@ impl Standing {
         })
     }
 
-    /// The move that goes with every new version; it fails where another version was first.
+    /// Returns the move that belongs to every new version; it fails if another version was created
+    /// first.
     pub fn follow(&self, reason: &str) -> AliasMove {
         step(LATEST, expected(self.latest.as_ref()), reason)
     }
 }
 
-/// Where an alias stands, if it exists.
+/// Returns an alias, or `None` if it does not exist.
 pub async fn alias(store: &Store, model: &str, alias: &str) -> Result<Option<Alias>> {
     match store.aliases().get(model, alias).await {
         Ok(alias) => Ok(Some(alias)),

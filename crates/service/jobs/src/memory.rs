@@ -1,26 +1,27 @@
-//! The memory that deriving takes, estimated beforehand.
+//! Estimates of the memory that jobs need.
 
 use sistership_model::Law;
 
 /// Bytes of a refinement or diagnosis for each sample of its trials: the linearised model, its
-/// columns and their products, most of it while learning what the trials leave open. Measured with
+/// columns and their products, most of it during the calibration of the uncertainty. Measured with
 /// the zoo's largest law: 944 MB above the program's own for the 135,120 samples of 34 trials of
 /// the Esso Osaka (`--law low-speed --method trajectory`, decision 17).
 pub const DERIVING: u64 = 7 << 10;
-/// Terms of that law; what is held grows with their number.
+/// Number of terms of that law; the memory grows with the number of terms.
 const TERMS: u64 = 189;
-/// Bytes of any job beside that: simulations, bands, the report.
+/// Bytes of any job in addition: simulations, bands, the report.
 const EVERY: u64 = 24 << 20;
-/// Bytes of a sample: time and as many as eleven channels.
+/// Bytes of a sample: time and up to eleven channels.
 const SAMPLE: u64 = 96;
-/// Bytes of a trial with so many samples.
+/// Returns the memory of a trial with this number of samples, bytes.
 pub fn trial_bytes(samples: i64) -> u64 {
     SAMPLE * u64::try_from(samples).unwrap_or(0)
 }
 
-/// Bytes of a job over so many samples, by a law where it is known.
+/// Returns the memory of a job over this number of samples, bytes, by its law if that is known.
 #[must_use]
 pub fn job_bytes(samples: u64, law: Option<&Law>) -> u64 {
+    // Linear in samples and terms; smaller laws count as the measured one, to be on the safe side.
     EVERY + DERIVING * samples * law.map_or(0, terms).max(TERMS) / TERMS
 }
 

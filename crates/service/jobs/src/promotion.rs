@@ -1,5 +1,5 @@
-//! Whether a new version may become the candidate: only where it does better than the champion on
-//! the same trials left out. A worse one is kept, as every version is, and replaces nothing.
+//! Comparison of a new version with the champion: it becomes the candidate only if its error on the
+//! same held-out trials is smaller. A worse version is kept, but no alias points to it.
 
 use std::sync::Arc;
 
@@ -18,29 +18,30 @@ use crate::error::DeriveError;
 use crate::line::{CHAMPION, alias};
 use crate::version::VersionDocument;
 
-/// Strength of a prior that keeps a source as it is.
+/// Prior strength that leaves the coefficients of a source unchanged.
 const KEPT: f64 = 1e9;
 
-/// How a new version compares with the champion, by the standardised squared error.
+/// Comparison of a new version with the champion, by the standardised squared error.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Comparison {
-    /// The new version's, on manoeuvres left out.
+    /// Error of the new version on held-out manoeuvres.
     pub error: f64,
-    /// The champion's; none where it does not sail them to their end.
+    /// Error of the champion; `None` if its simulation stops early.
     pub champion: Option<f64>,
-    /// How many of the trials the champion was fitted on: there it is favoured.
+    /// Number of the trials on which the champion was fitted, where it has an advantage.
     pub seen_by_champion: usize,
-    /// How many trials were fitted.
+    /// Number of fitted trials.
     pub trials: usize,
 }
 
 impl Comparison {
-    /// Whether the new version is no candidate: it is worse where the champion had no advantage.
+    /// Returns true if the new version is no candidate: it is worse and the champion had no
+    /// advantage.
     pub fn is_worse(&self) -> bool {
         self.seen_by_champion == 0 && self.champion.is_some_and(|champion| self.error >= champion)
     }
 
-    /// The comparison in words.
+    /// Describes the comparison in one sentence.
     pub fn words(&self) -> String {
         let Self { error, champion, seen_by_champion, trials } = self;
         let champion = match champion {
@@ -55,11 +56,11 @@ impl Comparison {
     }
 }
 
-/// How a version that a refinement gave compares with the ship's champion, where it has one;
+/// Compares the version of a refinement with the ship's champion; `None` without a champion.
 /// `hashes` are those of its trials' samples, in their order.
 ///
 /// # Errors
-/// The champion does not read.
+/// Returns an error if the champion cannot be read.
 pub async fn against_champion(
     archive: &Archive,
     ship: &str,
@@ -73,6 +74,7 @@ pub async fn against_champion(
     let law = archive.law(&champion.model.law, champion.recipe.law_sha256()).await?;
     let compare = move || {
         let ingredients = &refined.ingredients;
+        // Trials are compared by the hash of their samples, because names may repeat.
         let trials: Vec<(&Trial, &str)> =
             ingredients.trials.iter().zip(hashes.iter().map(String::as_str)).collect();
         compared(&Contest {
@@ -86,24 +88,26 @@ pub async fn against_champion(
     Ok(tokio::task::spawn_blocking(compare).await?)
 }
 
-/// What is compared.
+/// Inputs of the comparison.
 #[derive(Debug, Clone, Copy)]
 struct Contest<'a> {
-    /// The champion as it is kept.
+    /// Document of the champion.
     champion: &'a VersionDocument,
     /// Its law.
     law: &'a Law,
     /// The ship.
     target: &'a Vessel,
-    /// Every trial of the new version, with the hashes of their samples.
+    /// Every trial of the new version, with the hash of its samples.
     trials: &'a [(&'a Trial, &'a str)],
     /// The new version's refinement.
     refinement: &'a Refinement,
 }
 
-/// Compares; none where the new version has no error, or the champion cannot be simulated there.
+/// Compares the errors; `None` if the new version has none, or if the champion cannot be simulated
+/// on these trials.
 fn compared(contest: &Contest<'_>) -> Option<Comparison> {
     let refinement = contest.refinement;
+    // The held-out error of the chosen step, which the champion's error is comparable with.
     let error = refinement.options.iter().find(|option| option.chosen)?.error?;
     let fitted: Vec<&(&Trial, &str)> = contest
         .trials
@@ -120,13 +124,16 @@ fn compared(contest: &Contest<'_>) -> Option<Comparison> {
     })
 }
 
-/// The champion's error as it is; outer none where it cannot be simulated on these trials.
+/// Returns the error of the unchanged champion; the outer `None` if it cannot be simulated on these
+/// trials, the inner one if its simulation stops early.
 fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     if contest.champion.model.branch.is_some() {
         return corrected_error(contest);
     }
     let trials: Vec<&Trial> = contest.trials.iter().map(|(trial, _)| *trial).collect();
     let Contest { champion, law, target, refinement, .. } = *contest;
+    // The same cross-validation as for the new version, with a prior so strong that nothing is
+    // fitted.
     let settings = Settings {
         held_out: refinement.settings.held_out.clone(),
         restart_s: refinement.settings.restart_s,
@@ -151,8 +158,8 @@ fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     Some(weighed.first()?.error)
 }
 
-/// The error of a champion with a learned correction, which carrying over to another ship would
-/// leave out: of its own simulations, by the scales of the refinement.
+/// Returns the error of a champion with a learned correction, from its own simulations with the
+/// scales of the refinement: the transfer to another ship would remove the correction.
 fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     let settings = &contest.refinement.settings;
     let trials = contest.trials.iter().map(|(trial, _)| *trial);
@@ -161,6 +168,7 @@ fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     let model = &contest.champion.model;
     let mut ship = Ship::new(model, contest.law).ok()?;
     let speeds = fitted.iter().flat_map(|trial| trial.channel(Channel::U).unwrap_or_default());
+    // The physical range must contain the fastest fitted trial, as in the refinement.
     ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
     let replayed =
         ReplayedTrials::new(contest.law, Some(ship.lpp_m()), &fitted, Thinning::from(settings));

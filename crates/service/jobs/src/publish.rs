@@ -1,4 +1,4 @@
-//! The models that a ship's own document publishes, as versions of its line.
+//! Publication of the models of a ship's own document as versions.
 
 use sistership_model::version::sha256;
 use sistership_model::{Vessel, Zoo};
@@ -12,14 +12,14 @@ use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
-/// How a published version is made.
+/// Method name of a published version.
 const METHOD: &str = "published-source";
 const REASON: &str = "published with the ship's document";
-/// How often another process may get in between.
+/// Number of attempts when other processes write at the same time.
 const TRIES: usize = 5;
 
-/// Makes a version of each published model that is new or has changed; the first becomes champion
-/// where there is none.
+/// Creates a version of each published model that is new or has changed; the first becomes champion
+/// if there is none.
 pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &str) -> Result<()> {
     for file in &vessel.file.models {
         let no_law = || DeriveError::Unexpected(format!("there is no law `{}`", file.law));
@@ -51,6 +51,8 @@ async fn put(
     name: &str,
     published: &VersionDocument,
 ) -> Result<()> {
+    // Optimistic concurrency: the version is created only if its aliases have not moved since they
+    // were read.
     for _ in 0..TRIES {
         let current = alias(store, &new.model, &alias_of(name)).await?;
         if let Some(current) = &current
@@ -59,7 +61,7 @@ async fn put(
             return Ok(());
         }
         match store.versions().create(new, &moves(store, &new.model, name, current).await?).await {
-            // Another process was first; see what it has done.
+            // Another process was first: read the aliases again.
             Err(StoreError::PreconditionFailed { .. }) => {}
             other => return Ok(other.map(drop)?),
         }
@@ -76,13 +78,14 @@ async fn moves(
     let standing = Standing::of(store, model).await?;
     let mut moves =
         vec![step(&alias_of(name), expected(current.as_ref()), REASON), standing.follow(REASON)];
+    // The first published model of a ship without champion becomes the version in use.
     if !standing.champion {
         moves.push(step(CHAMPION, Expect::Absent, REASON));
     }
     Ok(moves)
 }
 
-/// Whether the version that stands for a published model has the same model by the same law.
+/// Returns true if the version of a published model has the same model and the same law.
 async fn same(store: &Store, current: &Alias, published: &VersionDocument) -> Result<bool> {
     let there = document(&store.versions().get(&current.model, current.version_number).await?)?;
     Ok(there.model == published.model && there.recipe.law_sha256() == published.recipe.law_sha256())

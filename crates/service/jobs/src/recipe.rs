@@ -1,5 +1,5 @@
-//! How versions are derived: the recipes that [`sistership_model::version`] knows, that of a
-//! diagnosis, of a member of a family, and of a model that was made elsewhere.
+//! Recipes of versions: those of [`sistership_model::version`], of a diagnosis, of a learned
+//! correction, of a member of a family, and of a model that was made elsewhere.
 
 use std::collections::BTreeSet;
 
@@ -12,64 +12,64 @@ use sistership_model::version::{self, PopulationMember, RecipeTrial, SourceVersi
 use crate::input::{Input, InputKind};
 use crate::library::FIRST_SHA256;
 
-/// How a version is derived.
+/// Derivation of a version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Recipe {
-    /// By adding the effects that a diagnosis finds.
+    /// Addition of the effects that a diagnosis finds.
     Diagnosis(DiagnosisRecipe),
-    /// As a member of a family, from statistics.
+    /// Refinement of a member of a family, from statistics.
     Family(FamilyRecipe),
-    /// By training a learned branch beside a version.
+    /// Training of a learned correction of a version.
     Training(TrainingRecipe),
-    /// Not at all: the model was made elsewhere.
+    /// Registration of a model that was made elsewhere.
     Registered(RegisteredRecipe),
-    /// From a ship's own document, or by refinement.
+    /// Publication by a ship's own document, or refinement.
     Plain(version::Recipe),
 }
 
-/// How a diagnosis is derived. Everything it starts from is named by the SHA-256 of its bytes.
+/// Derivation of a diagnosis. Every input is named by the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DiagnosisRecipe {
     /// Always `diagnosis`.
     pub kind: DiagnosisKind,
-    /// The version diagnosed.
+    /// The version that was diagnosed.
     pub diagnosed: SourceVersion,
-    /// The law's file.
+    /// SHA-256 of the law's file.
     pub law_sha256: String,
     /// The trials, in the order in which they were given.
     pub trials: Vec<RecipeTrial>,
-    /// The library of effects, see [`crate::library::Library`].
+    /// SHA-256 of the library of effects.
     pub effects_sha256: String,
     /// Every setting.
     pub settings: Value,
-    /// The program that did it.
+    /// Revision of the program.
     pub code_revision: String,
 }
 
-/// How a version with a learned branch is derived. Everything it starts from is named by the
-/// SHA-256 of its bytes; its document names the weights that came of it.
+/// Derivation of a version with a learned correction. Every input is named by the SHA-256 of its
+/// bytes; its document names the resulting weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingRecipe {
     /// Always `branch`.
     pub kind: TrainingKind,
-    /// The version that the branch was trained beside.
+    /// The version that the correction belongs to.
     pub foundation: SourceVersion,
-    /// The law's file.
+    /// SHA-256 of the law's file.
     pub law_sha256: String,
     /// The trials, in the order in which they were given.
     pub trials: Vec<RecipeTrial>,
-    /// The library of effects, see [`crate::library::Library`].
+    /// SHA-256 of the library of effects.
     pub effects_sha256: String,
     /// Every setting, the seed among them.
     pub settings: Training,
-    /// The program that did it.
+    /// Revision of the program.
     pub code_revision: String,
 }
 
-/// The word `branch`.
+/// Value of `kind` of a training recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrainingKind {
@@ -77,15 +77,15 @@ pub enum TrainingKind {
     Branch,
 }
 
-/// What is known of a model that was made elsewhere.
+/// Origin of a model that was made elsewhere.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegisteredRecipe {
     /// Always `registered`.
     pub kind: RegisteredKind,
-    /// The law's file.
+    /// SHA-256 of the law's file.
     pub law_sha256: String,
-    /// Who made it, with what, in the words of whoever registered it.
+    /// Author and method of the model, as stated on registration.
     pub origin: String,
 }
 
@@ -106,8 +106,8 @@ pub enum DiagnosisKind {
     Diagnosis,
 }
 
-/// How the model of a member is derived from statistics. Everything it starts from is named by the
-/// SHA-256 of its bytes.
+/// Derivation of a member's model from statistics. Every input is named by the SHA-256 of its
+/// bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamilyRecipe {
@@ -115,21 +115,21 @@ pub struct FamilyRecipe {
     pub kind: FamilyKind,
     /// The version that it started from: its own, or the foundation.
     pub start: SourceVersion,
-    /// Its document, where the foundation was carried over to it.
+    /// SHA-256 of the ship's document, if the foundation was transferred to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship_sha256: Option<String>,
-    /// What the family is founded on.
+    /// The version that the family is founded on.
     pub foundation: SourceVersion,
-    /// The family's prior; where absent, the foundation held the coefficients.
+    /// The family's prior; by default the coefficients of the foundation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior: Option<PriorName>,
-    /// The law's file.
+    /// SHA-256 of the law's file.
     pub law_sha256: String,
-    /// The trials, in the order in which they were taken.
+    /// The trials, in the order in which they were used.
     pub trials: Vec<RecipeTrial>,
     /// Every setting.
     pub settings: BulkSettings,
-    /// The program that did it.
+    /// Revision of the program.
     pub code_revision: String,
 }
 
@@ -141,20 +141,20 @@ pub enum FamilyKind {
     Family,
 }
 
-/// What a family has taught, by name.
+/// Reference to the prior of a family.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PriorName {
     /// The family.
     pub family: String,
-    /// Which time.
+    /// Its revision.
     pub revision: i64,
     /// The hash of its document.
     pub sha256: String,
 }
 
 impl Recipe {
-    /// The hash of the law's file.
+    /// Returns the hash of the law's file.
     pub fn law_sha256(&self) -> &str {
         match self {
             Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
@@ -168,7 +168,7 @@ impl Recipe {
         }
     }
 
-    /// The program that followed it; none for a published model.
+    /// Returns the revision of the program; `None` for a published or registered model.
     pub fn code_revision(&self) -> Option<&str> {
         match self {
             Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
@@ -179,7 +179,7 @@ impl Recipe {
         }
     }
 
-    /// The trials that it names.
+    /// Returns the trials that it names.
     pub fn trials(&self) -> &[RecipeTrial] {
         match self {
             Self::Diagnosis(DiagnosisRecipe { trials, .. })
@@ -190,7 +190,7 @@ impl Recipe {
         }
     }
 
-    /// The hash of the ship's document, where it names one.
+    /// Returns the hash of the ship's document, if it names one.
     pub fn ship_sha256(&self) -> Option<&str> {
         match self {
             Self::Plain(
@@ -202,7 +202,7 @@ impl Recipe {
         }
     }
 
-    /// The version that it starts from; none for a published model.
+    /// Returns the version that it starts from; `None` for a published or registered model.
     pub fn starts_from(&self) -> Option<&SourceVersion> {
         match self {
             Self::Plain(version::Recipe::Refinement { source, .. }) => source.as_ref(),
@@ -213,8 +213,8 @@ impl Recipe {
         }
     }
 
-    /// The hash of the library of effects; of a refinement that does not name one, that of the
-    /// releases which made such.
+    /// Returns the hash of the library of effects; for a refinement that does not name one, that of
+    /// the first library.
     pub fn effects_sha256(&self) -> Option<&str> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),
@@ -228,7 +228,7 @@ impl Recipe {
         }
     }
 
-    /// What a family has taught, where it held the coefficients.
+    /// Returns the prior of a family, if that was the prior of the coefficients.
     pub fn prior(&self) -> Option<&PriorName> {
         match self {
             Self::Family(recipe) => recipe.prior.as_ref(),
@@ -236,7 +236,7 @@ impl Recipe {
         }
     }
 
-    /// Every version that it names.
+    /// Returns every version that it names.
     pub fn versions(&self) -> Vec<&SourceVersion> {
         let foundation = match self {
             Self::Family(recipe) => Some(&recipe.foundation),
@@ -246,7 +246,7 @@ impl Recipe {
         self.starts_from().into_iter().chain(foundation).chain(population).collect()
     }
 
-    /// The ships of its population, where that was the prior.
+    /// Returns the ships of its population, if that was the prior.
     pub fn population(&self) -> &[PopulationMember] {
         match self {
             Self::Plain(version::Recipe::Refinement { population, .. }) => population,
@@ -254,10 +254,11 @@ impl Recipe {
         }
     }
 
-    /// Everything that the version is derived from.
+    /// Returns all inputs of the derivation.
     pub fn inputs(&self) -> BTreeSet<Input> {
         let mut inputs = BTreeSet::from([InputKind::Law.of(self.law_sha256())]);
         if let Self::Plain(version::Recipe::Refinement { across: Some(across), .. }) = self {
+            // Across laws the source model is evaluated with its own law.
             inputs.insert(InputKind::Law.of(&across.source_law_sha256));
         }
         let laws = self.population().iter().map(|member| InputKind::Law.of(&member.law_sha256));
@@ -266,13 +267,15 @@ impl Recipe {
         inputs.extend(
             self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)),
         );
+        // Weights of learned corrections are no inputs of their own: a version's document names
+        // them.
         inputs.extend(self.trials().iter().map(|trial| InputKind::Samples.of(&trial.sha256)));
         inputs.extend(self.effects_sha256().map(|hash| InputKind::Effects.of(hash)));
         inputs.extend(self.prior().map(|prior| InputKind::Prior.of(&prior.sha256)));
         inputs
     }
 
-    /// The version that a diagnosis started from.
+    /// Returns the version that was diagnosed.
     pub fn diagnosed(&self) -> Option<&SourceVersion> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.diagnosed),

@@ -1,8 +1,8 @@
-//! Types of other crates in the REST document.
+//! Schemas of types of other crates in the API document.
 
 use utoipa::openapi::{Ref, RefOr, Schema};
 
-/// A reference to a type's schema, which the document has by the name that schemars gives it.
+/// Returns a reference to a type's schema, which the document has under its schemars name.
 #[must_use]
 pub fn described<T: schemars::JsonSchema>() -> RefOr<Schema> {
     Ref::from_schema_name(T::schema_name()).into()

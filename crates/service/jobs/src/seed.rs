@@ -1,4 +1,4 @@
-//! The zoo that the program carries, put into the database where it is not there yet.
+//! Copy of the embedded zoo into the database.
 
 use sistership_model::{FileError, Vessel, Zoo};
 use sistership_store::{NewShip, Store, StoreError};
@@ -9,19 +9,19 @@ use crate::error::DeriveError;
 use crate::library;
 use crate::publish::publish;
 
-/// Why the zoo cannot be put in.
+/// Error of the copy.
 #[derive(Debug, thiserror::Error)]
 pub enum SeedError {
     /// The database or the object store cannot be used.
     #[error("cannot open the store: {0}")]
     Store(#[from] StoreError),
-    /// The zoo that the program carries does not read.
+    /// The embedded zoo cannot be parsed.
     #[error("the zoo is damaged: {0}")]
     Zoo(#[from] FileError),
 }
 
-/// Puts in what is missing; several processes may do so at once, and one that was killed half-way
-/// is continued. Where there is no room for it, the next start puts it in.
+/// Stores the missing ships and laws of the embedded zoo; several processes may do so at once, and
+/// an interrupted copy is continued. Without space on the disk it is left to the next start.
 pub async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     match put_in(store, catalogue).await {
         Err(SeedError::Store(error)) if error.is_out_of_space() => {
@@ -37,6 +37,7 @@ async fn put_in(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     let embedded =
         tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
     library::keep(store).await?;
+    // Laws before ships, ships before versions: each row refers to the ones before.
     laws(store, &embedded).await?;
     ships(store, &embedded).await?;
     let zoo = catalogue.laws(store).await?;
@@ -46,8 +47,8 @@ async fn put_in(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     Ok(())
 }
 
-/// Makes the versions of a ship of the program's own, unless it was deleted. Those of other ships
-/// are looked after by [`crate::search`].
+/// Creates the versions of a ship of the embedded zoo, unless the ship was deleted.
+/// [`crate::search`] does so for other ships.
 async fn publish_one(store: &Store, zoo: &Zoo, name: &str) -> Result<(), SeedError> {
     let ship = match store.ships().get(name).await {
         Err(StoreError::NotFound { .. }) => return Ok(()),
@@ -79,9 +80,10 @@ async fn laws(store: &Store, embedded: &Zoo) -> Result<(), SeedError> {
 
 async fn ships(store: &Store, embedded: &Zoo) -> Result<(), SeedError> {
     for vessel in embedded.vessels() {
+        // Created, never updated: a user may have changed a ship of the zoo.
         let ship = new_ship(vessel).map_err(|error| broken(&error))?;
         match store.ships().create(&ship).await {
-            // It is there, changed, or was deleted: in each case somebody's decision.
+            // It exists, was changed or was deleted: a decision of a user in each case.
             Err(StoreError::Conflict { .. }) => {}
             other => drop(other?),
         }
@@ -89,7 +91,7 @@ async fn ships(store: &Store, embedded: &Zoo) -> Result<(), SeedError> {
     Ok(())
 }
 
-/// A ship as the store keeps it.
+/// Returns a ship as a row of the store.
 pub fn new_ship(vessel: &Vessel) -> Result<NewShip, serde_json::Error> {
     Ok(NewShip {
         name: vessel.name().to_owned(),

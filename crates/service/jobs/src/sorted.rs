@@ -1,8 +1,9 @@
-//! Reports in one order of their keys.
+//! Canonical order of keys in JSON documents.
 
 use serde_json::{Map, Value};
 
-/// The same value with every map in the order of its keys, however the JSON library is built.
+/// Returns the value with every map in the order of its keys, regardless of the features of the
+/// JSON library.
 pub fn sorted(value: Value) -> Value {
     match value {
         Value::Array(items) => Value::Array(items.into_iter().map(sorted).collect()),

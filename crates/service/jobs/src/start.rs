@@ -1,5 +1,5 @@
-//! Where a refinement starts: at a version, at the most similar ship, or at what a search finds;
-//! and the recipe that follows from it.
+//! Start of a refinement: a version, the most similar ship, or the result of a model selection; and
+//! the recipe that follows from it.
 
 use std::sync::Arc;
 
@@ -23,35 +23,37 @@ use crate::sorted::sorted;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
-/// Where a refinement starts.
+/// Start of a refinement.
 #[derive(Debug)]
 pub struct Start {
-    /// None where the trials alone make the model.
+    /// The source model; `None` if the model is identified from the trials alone.
     pub source: Option<Version>,
-    /// The law to fit; the source's where absent.
+    /// The law to fit; by default the source's.
     pub law: Option<String>,
-    /// The ships whose population is the prior; none where something else is.
+    /// Versions of the population that is the prior; empty with another prior.
     pub population: Vec<Version>,
     /// Every setting.
     pub settings: Settings,
-    /// How ships ranked, where they were compared.
+    /// Ranking of the ships, if they were compared.
     pub similarity: Option<Similarity>,
-    /// What was tried, where it was searched.
+    /// Selection report, if the start was selected.
     pub ladder: Option<Ladder>,
 }
 
 impl Start {
-    /// As a person named it.
+    /// Creates the start that a person named.
     pub fn at(source: Version, law: Option<String>, settings: Settings) -> Self {
+        // One order of lists, so that the same settings give the same recipe and the same bytes.
         let settings = settings.as_ordered();
+        // Nothing was compared, so there is neither a ranking nor a selection report.
         let source = Some(source);
         Self { source, law, population: Vec::new(), settings, similarity: None, ladder: None }
     }
 
-    /// With the ships of a population, where the settings ask for that.
+    /// Adds the versions of a population, if the settings have that prior.
     ///
     /// # Errors
-    /// A published model has no version.
+    /// Returns an error if a published model has no version.
     pub async fn with_population(
         self,
         archive: &Archive,
@@ -65,10 +67,10 @@ impl Start {
         Ok(Self { population: published(archive, &members).await?, ..self })
     }
 
-    /// The recipe of a refinement of a ship from here.
+    /// Returns the recipe of a refinement of a ship with this start.
     ///
     /// # Errors
-    /// A law is not there, or a setting is not finite.
+    /// Returns an error if a law is missing, or if a setting is not finite.
     pub async fn recipe(
         &self,
         archive: &Archive,
@@ -79,6 +81,7 @@ impl Start {
         let mut population = Vec::new();
         for version in &self.population {
             let law_sha256 = archive.store.laws().get(&version.head.law).await?.sha256;
+            // Each member has the law of its own published model.
             population.push(PopulationMember { version: from(version), law_sha256 });
         }
         Ok(Recipe::Refinement {
@@ -95,12 +98,13 @@ impl Start {
         })
     }
 
-    /// The name of the law where no source tells it, the law that is fitted, and both where they
-    /// differ.
+    /// Returns the name of the law if there is no source, the law that is fitted, and both laws if
+    /// they differ.
     async fn laws(&self, archive: &Archive) -> Result<(Option<String>, Law, Option<AcrossLaws>)> {
         let laws = archive.store.laws();
         let Some(source) = &self.source else {
             let neither = || DeriveError::Lost("neither a source nor a law is named".into());
+            // Without a source the law must be named; it is identified from the trials alone.
             let name = self.law.clone().ok_or_else(neither)?;
             let law = laws.get(&name).await?;
             return Ok((Some(name), law, None));
@@ -109,6 +113,8 @@ impl Start {
         match self.law.as_ref().filter(|law| **law != source.head.law) {
             None => Ok((None, source_law, None)),
             Some(law) => {
+                // The source has another law: its accelerations are the prior, so both laws are
+                // inputs.
                 let across = AcrossLaws { law: law.clone(), source_law_sha256: source_law.sha256 };
                 Ok((None, laws.get(law).await?, Some(across)))
             }
@@ -116,19 +122,19 @@ impl Start {
     }
 }
 
-/// This program's library of effects, which the store keeps from now on if it did not.
+/// Returns this program's library of effects, after storing it.
 ///
 /// # Errors
-/// The store does not answer.
+/// Returns an error if the store does not answer.
 pub async fn library_of(archive: &Archive) -> Result<&'static Library> {
     library::keep(&archive.store).await?;
     library().map_err(DeriveError::File)
 }
 
-/// The best start of all that can be tried.
+/// Selects the best start of all candidates.
 ///
 /// # Errors
-/// It was cancelled, or nothing could be simulated to its end.
+/// Returns an error if it was cancelled, or if no candidate could be simulated to the end.
 pub async fn searched(
     archive: &Archive,
     zoo: Arc<Zoo>,
@@ -148,6 +154,7 @@ pub async fn searched(
     })
     .await??;
     let entrant = best.entrant;
+    // A candidate without a source law is a blank model, identified from the trials alone.
     let source = match &entrant.source_law {
         None => None,
         Some(_) => {
@@ -165,10 +172,10 @@ pub async fn searched(
     })
 }
 
-/// The best eligible ship of the store, measured on the trials.
+/// Returns the best eligible source of the store on the trials, with the ranking.
 ///
 /// # Errors
-/// None is eligible.
+/// Returns an error with the reasons if no ship is eligible.
 pub async fn most_similar(
     archive: &Archive,
     zoo: Arc<Zoo>,
@@ -189,7 +196,7 @@ pub async fn most_similar(
     Ok((source_version(archive, &models, (&best.ship, model)).await?, similarity))
 }
 
-/// The version that a ship gives as a source: its champion, else its published model.
+/// Returns the version that a ship provides as a source: its champion, else its published model.
 async fn source_version(
     archive: &Archive,
     models: &SourceModels,
@@ -209,7 +216,7 @@ fn from(source: &Version) -> SourceVersion {
     }
 }
 
-/// The versions of the published models of a population.
+/// Returns the versions of the published models of a population.
 async fn published(archive: &Archive, members: &[Member]) -> Result<Vec<Version>> {
     let mut versions = Vec::new();
     for member in members {
@@ -218,10 +225,11 @@ async fn published(archive: &Archive, members: &[Member]) -> Result<Vec<Version>
     Ok(versions)
 }
 
-/// The version of a published model.
+/// Returns the version of a published model.
 async fn published_version(archive: &Archive, name: &str) -> Result<Version> {
     let (ship, model) = name.split_once('/').unwrap_or((name, ""));
     let found = alias(&archive.store, ship, &alias_of(model)).await?;
+    // The server creates the versions of published models when it starts.
     let missing = || {
         DeriveError::Lost(format!(
             "the model `{name}` has no version; start the server again to make it"

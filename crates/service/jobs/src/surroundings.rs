@@ -1,4 +1,4 @@
-//! What a simulation is surrounded by where nobody recorded it: a steady current, a steady wind.
+//! Environment of a simulation: a steady current, a steady wind.
 
 use std::collections::BTreeMap;
 
@@ -7,9 +7,9 @@ use sistership_model::quantity::Quantity;
 
 use crate::library::library;
 
-/// The form of an effect that is the same everywhere and always, with its velocity to the north and
-/// the east, m/s: of the current where it goes, of the wind where it comes from; `source` is who
-/// says so. None where the library has no such form.
+/// Returns the constant form of an effect, with its velocity components to north and east, m/s: for
+/// the current where it flows to, for the wind where it comes from; `source` is the citation.
+/// `None` if the library has no such form.
 pub fn steady(name: &str, [north, east]: [f64; 2], source: &str) -> Option<AppliedEffect> {
     let effect = library().ok()?.effects.iter().find(|effect| effect.name == name)?;
     let form = effect.forms.iter().find(|form| form.file.name == "constant")?;

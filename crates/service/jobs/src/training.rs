@@ -1,4 +1,4 @@
-//! The recipe of a learned branch, from what is asked.
+//! Recipe of a learned correction.
 
 use sistership_identification::refine::RefineError;
 use sistership_learned::{
@@ -14,10 +14,11 @@ use crate::error::DeriveError;
 use crate::recipe::{TrainingKind, TrainingRecipe};
 use crate::start::library_of;
 
-/// The recipe of a branch beside a version, everything settled that was not asked.
+/// Returns the recipe of a learned correction of a version, with all settings resolved.
 ///
 /// # Errors
-/// The version has a branch already or does not sail, or something of it is missing.
+/// Returns an error if the version has a learned correction already or cannot be simulated, or if a
+/// part of it is missing.
 pub async fn training_recipe(
     archive: &Archive,
     version: &Version,
@@ -27,6 +28,7 @@ pub async fn training_recipe(
     let stored = document(version)?;
     let law_sha256 = stored.recipe.law_sha256().to_owned();
     let law = archive.law(&stored.model.law, &law_sha256).await?;
+    // The samples are read here, because defaults such as the window depend on them.
     let read = archive.trials(&trials).await?;
     let read: Vec<&Trial> = read.iter().collect();
     let settings = settings
@@ -45,10 +47,11 @@ pub async fn training_recipe(
     })
 }
 
-/// Tries every kind on trials left out of its training; `settings` leave the kind open.
+/// Compares all kinds on held-out trials; `settings` leave the kind open.
 ///
 /// # Errors
-/// As [`training_recipe`], and where a trial cannot be learned from, or it was stopped.
+/// Same as [`training_recipe`]; also if a trial cannot be used for training, or if it was
+/// cancelled.
 pub async fn chosen(
     archive: &Archive,
     version: &Version,
@@ -62,6 +65,7 @@ pub async fn chosen(
     let work = move || -> Result<BranchChoice, DeriveError> {
         let read: Vec<&Trial> = read.iter().collect();
         let told = |kind: BranchKind| progress(0.1, &format!("trying {}", kind.name()));
+        // The foundation is the same in every fold.
         let folds = HeldOutFold::of_one(&stored.model, read.len());
         let on = HeldOutTrials { law: &law, trials: &read, folds: &folds };
         let choice = choose(&stored.model, &on, (&settings, Kinds::Every), &told)?;
@@ -70,11 +74,11 @@ pub async fn chosen(
     tokio::task::spawn_blocking(work).await?
 }
 
-/// The version of a line without a learned correction that one with such a correction came of; the
-/// version itself where it has none, nothing where it was made elsewhere.
+/// Returns the number of the version without learned correction from which a corrected version
+/// comes; the version itself if it has none, `None` if it was made elsewhere.
 ///
 /// # Errors
-/// The store does not answer, or a version does not read.
+/// Returns an error if the store does not answer, or if a version cannot be read.
 pub async fn foundation_of(
     archive: &Archive,
     ship: &str,
@@ -83,6 +87,7 @@ pub async fn foundation_of(
     let mut number = number;
     loop {
         let stored = document(&archive.store.versions().get(ship, number).await?)?;
+        // Diagnoses may have added effects to a corrected version, so there may be several steps.
         if stored.model.branch.is_none() {
             return Ok(Some(number));
         }

@@ -1,4 +1,4 @@
-//! A version held against what its ship has sailed, by ITTC 7.5-02-06-03.
+//! Validation of a version against its ship's trials, by ITTC 7.5-02-06-03.
 
 use std::collections::BTreeSet;
 
@@ -14,28 +14,28 @@ use crate::archive::{Archive, document, vessel};
 use crate::error::DeriveError;
 use crate::memory::trial_bytes;
 
-/// Trials that are read at most: enough for repeats of every standard manoeuvre.
+/// Largest number of trials: enough for repeats of every standard manoeuvre.
 const MOST_TRIALS: usize = 48;
-/// Models drawn for what the posterior leaves open: a standard deviation of 40 draws is known to
-/// 1/sqrt(2 * 39), 11 %.
+/// Number of models drawn for the uncertainty of the posterior: the relative standard error of a
+/// standard deviation of 40 draws is 1/sqrt(2 * 39), 11 %.
 const DRAWS: usize = 40;
 
-/// What a validation is made of.
+/// Inputs of a validation.
 #[derive(Debug)]
 pub struct ToValidate {
     model: Model,
     law: Law,
     vessel: Vessel,
     trials: Vec<sistership_store::Trial>,
-    /// Hashes of the samples that the version, or one that it came of, was fitted on.
+    /// Hashes of the samples that the version, or one that it comes from, was fitted on.
     fitted: BTreeSet<String>,
 }
 
 impl ToValidate {
-    /// Gathers a version, its ship as it is now, and its turning circles and zigzags.
+    /// Loads a version, its ship at the present revision, and its turning circles and zigzags.
     ///
     /// # Errors
-    /// The version, its law or its ship is missing or damaged.
+    /// Returns an error if the version, its law or its ship is missing or damaged.
     pub async fn gather(archive: &Archive, version: &Version) -> Result<Self, DeriveError> {
         let ship = &version.head.model;
         let own = document(version)?;
@@ -47,7 +47,7 @@ impl ToValidate {
         Ok(Self { model, law, vessel, trials: manoeuvres(archive, ship).await?, fitted })
     }
 
-    /// The samples that it reads.
+    /// Names and hashes of the samples that it reads.
     pub fn samples(&self) -> Vec<RecipeTrial> {
         let of = |trial: &sistership_store::Trial| RecipeTrial {
             name: trial.name.clone(),
@@ -56,15 +56,15 @@ impl ToValidate {
         self.trials.iter().map(of).collect()
     }
 
-    /// Bytes that it takes: the samples, and as much again for their simulations.
+    /// Memory that it needs, bytes: the samples, and as much again for their simulations.
     pub fn demand(&self) -> u64 {
         2 * self.trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum::<u64>()
     }
 
-    /// Validates; `samples` are those of [`ToValidate::samples`].
+    /// Validates the version; `samples` are those of its trials, in the same order.
     ///
     /// # Errors
-    /// The model cannot be sailed.
+    /// Returns an error if the model cannot be simulated.
     pub fn validation(&self, samples: &[Trial]) -> Result<Validation, PlantError> {
         let of_ship = self.trials.iter().zip(samples).map(|(row, trial)| TrialOfShip {
             name: &row.name,
@@ -73,17 +73,19 @@ impl ToValidate {
         });
         let of_ship: Vec<TrialOfShip<'_>> = of_ship.collect();
         let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
+        // A model without posterior is validated without the uncertainty of its parameters.
         let drawn = draws(&self.model, sampling).unwrap_or_default();
         validate(&self.vessel, &self.model, &self.law, &drawn, &of_ship)
     }
 }
 
-/// The samples that a version and those of its own ship before it were fitted on.
+/// Returns the hashes of the samples that a version and its ancestors were fitted on.
 async fn fitted(archive: &Archive, version: &Version) -> Result<BTreeSet<String>, DeriveError> {
     let mut all = BTreeSet::new();
     let mut next = Some(version.clone());
     while let Some(one) = next {
         all.extend(document(&one)?.recipe.trials().iter().map(|trial| trial.sha256.clone()));
+        // Parents only: the source of a refinement may be another ship, whose trials are others.
         next = match &one.head.parent {
             Some(id) => Some(archive.store.versions().by_id(id).await?),
             None => None,
@@ -92,11 +94,12 @@ async fn fitted(archive: &Archive, version: &Version) -> Result<BTreeSet<String>
     Ok(all)
 }
 
-/// The turning circles and zigzags of a ship, the newest last.
+/// Reads the turning circles and zigzags of a ship, oldest first.
 async fn manoeuvres(
     archive: &Archive,
     ship: &str,
 ) -> Result<Vec<sistership_store::Trial>, DeriveError> {
+    // Manoeuvres are known by name only, so all rows of the ship are read until there are enough.
     let (mut found, mut page) = (Vec::new(), Page::first(200));
     loop {
         let rows = archive.store.trials().list(ship, &page).await?;

@@ -1,4 +1,4 @@
-//! Whether a version is what its recipe gives, byte for byte.
+//! Verification that a version is what its recipe gives, byte for byte.
 
 use std::sync::Arc;
 
@@ -13,13 +13,13 @@ use crate::memory::{DERIVING, trial_bytes};
 use crate::recipe::Recipe;
 use crate::version::VersionDocument;
 
-/// Numbers that differ by a smaller share of themselves have been rounded differently.
+/// Relative difference below which numbers count as rounded differently.
 const ROUNDING: f64 = 1e-6;
 
-/// What came of deriving a version again.
+/// Result of deriving a version again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Verification {
-    /// The line of versions, which is the ship's name.
+    /// The name of the ship.
     pub model: String,
     /// The version's number.
     pub number: i64,
@@ -29,20 +29,20 @@ pub struct Verification {
     pub stored_sha256: String,
     /// The hash of the bytes derived now.
     pub derived_sha256: String,
-    /// Whether all three are the same.
+    /// True if all three are the same.
     pub identical: bool,
-    /// The program that made the version, as its recipe records it; none for a published model.
+    /// Revision of the program that made the version, from its recipe; null for a published model.
     pub made_by: Option<String>,
-    /// This program.
+    /// Revision of this program.
     pub checked_by: String,
-    /// Where the two first differ (a JSON pointer), and other remarks.
+    /// First difference of the two (a JSON pointer), and other remarks.
     pub remarks: Vec<String>,
 }
 
 /// Derives a version again from its recipe and compares the bytes.
 ///
 /// # Errors
-/// Says what the recipe needs and the store does not have, or why the refinement is refused now.
+/// Returns an error if an input of the recipe is missing, or if the derivation is refused.
 pub async fn verify(
     archive: &Archive,
     ship: &str,
@@ -51,7 +51,7 @@ pub async fn verify(
     verify_with(archive, ship, number, Arc::new(|_, _| true)).await
 }
 
-/// The memory that [`verify`] is estimated to take, bytes.
+/// Estimates the memory that a verification needs, bytes.
 pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
     let trials = match document(&archive.store.versions().get(ship, number).await?)?.recipe {
         Recipe::Plain(sistership_model::version::Recipe::Refinement { trials, .. }) => trials,
@@ -61,16 +61,17 @@ pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, D
     };
     let mut bytes = 0;
     for trial in &trials {
-        // Samples are compressed to about a third.
+        // Samples are compressed to about a third of their size in memory.
         bytes += 3 * archive.objects.size(&trial.sha256).await? / trial_bytes(1) * DERIVING;
     }
     Ok(bytes)
 }
 
-/// The same with progress, and a way to stop it.
+/// Derives a version again and compares the bytes, with a progress callback that can stop it.
 ///
 /// # Errors
-/// As [`verify`].
+/// Returns an error if an input of the recipe is missing, or if the derivation is refused or
+/// stopped.
 pub async fn verify_with(
     archive: &Archive,
     ship: &str,
@@ -80,10 +81,11 @@ pub async fn verify_with(
     let version = archive.store.versions().get(ship, number).await?;
     let stored = document(&version)?;
     let derived = match &stored.recipe {
+        // Nothing to derive: the document is checked and serialised again.
         Recipe::Registered(recipe) => checked(archive, &stored, &recipe.law_sha256).await?,
         recipe => {
             let derived = derive(archive, ship, recipe, progress).await?;
-            // The document names them by hash; those that are kept must be whole.
+            // The document names weights by hash only; the stored ones must be intact, too.
             archive.attach(&mut stored.model.clone()).await?;
             derived.document.canonical()?
         }
@@ -110,8 +112,8 @@ pub async fn verify_with(
     })
 }
 
-/// A model that was made elsewhere comes of nothing but itself: it is written again, and checked
-/// against its law.
+/// Checks a model that was made elsewhere against its law, and serialises it again: it has no
+/// derivation.
 async fn checked(
     archive: &Archive,
     stored: &VersionDocument,
@@ -134,6 +136,7 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
                 .to_owned(),
         );
     }
+    // A derivation copies the recorded recipe, so the revision itself is no difference.
     if let Some(other) = made_by.filter(|revision| *revision != code_revision()) {
         remarks.push(format!(
             "made by revision {other}, checked by {}: the recorded revision was put back before \
@@ -157,7 +160,8 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
     remarks
 }
 
-/// The largest relative difference of two documents that differ in the last digits of numbers only.
+/// Returns the largest relative difference of two documents that differ only in the last digits of
+/// numbers; `None` for any other difference.
 fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
     let largest = |mut all: &mut dyn Iterator<Item = Option<f64>>| {
         (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)))
@@ -172,13 +176,14 @@ fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
         (Value::Number(a), Value::Number(b)) => {
             let (a, b) = (a.as_f64()?, b.as_f64()?);
             let share = if a == b { 0.0 } else { (a - b).abs() / a.abs().max(b.abs()) };
+            // Both zero is handled by equality, so the denominator is positive.
             (share < ROUNDING).then_some(share)
         }
         _ => (stored == derived).then_some(0.0),
     }
 }
 
-/// The first place at which two documents differ.
+/// Describes the first place at which two documents differ.
 fn difference(stored: &Value, derived: &Value, path: String) -> Option<String> {
     match (stored, derived) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a

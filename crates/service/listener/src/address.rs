@@ -1,12 +1,12 @@
-//! Whom connections are counted for.
+//! Addresses by which connections are counted.
 
 use std::net::{IpAddr, Ipv6Addr};
 
-/// The bits of an IPv6 address that one customer of a network holds.
+/// Mask of the part of an IPv6 address that one customer of a network holds.
 const NETWORK: u128 = !0 << 64;
 
-/// An IPv4 address; of IPv6 the network of 64 bits, within which whoever has one address has all of
-/// them.
+/// Returns the address by which a client is counted: an IPv4 address itself; of IPv6 the network of
+/// 64 bits, as one client can use any address in it.
 pub fn party(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(v6) if !v6.is_loopback() => Ipv6Addr::from_bits(v6.to_bits() & NETWORK).into(),

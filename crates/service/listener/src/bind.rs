@@ -1,19 +1,19 @@
-//! The address that is listened on.
+//! Binding of the listening socket.
 
 use std::net::SocketAddr;
 
 use tokio::net::{TcpListener, TcpSocket};
 
-/// Connections that the system holds until they are taken.
+/// Maximum number of connections that wait to be accepted.
 const BACKLOG: u32 = 1024;
-/// What the system keeps of an answer that is not read. It also is how finely reading is seen: the
-/// system tells of room only when a third of this has been read.
+/// Size of the system's send buffer of a connection, bytes. It also sets the resolution at which
+/// reading is seen: the socket becomes writable again only after a third of this has been read.
 const SEND_BUFFER: u32 = 128 << 10;
 
-/// Takes an address.
+/// Binds an address and listens on it.
 ///
 /// # Errors
-/// The system does not give it.
+/// Returns an error if the system refuses the address.
 pub fn bind(listen: SocketAddr) -> std::io::Result<TcpListener> {
     let socket = if listen.is_ipv4() { TcpSocket::new_v4() } else { TcpSocket::new_v6() }?;
     #[cfg(unix)]

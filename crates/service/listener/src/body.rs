@@ -1,4 +1,4 @@
-//! Bodies of requests with a deadline by progress, and bodies of answers that tell when they end.
+//! Bodies of requests with a deadline by progress, and bodies of answers that report their end.
 
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,10 +14,10 @@ use tokio::time::{Instant, Sleep, sleep_until};
 
 use crate::pace::Pace;
 
-/// Bytes, and time, for the rest of a body that is refused before its end. Whoever still sends it
-/// would find the connection reset, not the answer that waits behind: RFC 9112, section 9.6. Four
-/// times the largest document; beyond it, as after two seconds, the connection is closed all the
-/// same.
+/// Maximum size, and maximum time, for discarding the rest of a body that is refused before its
+/// end. Otherwise a client that still sends would find the connection reset instead of the answer:
+/// RFC 9112, section 9.6. The size is four times the largest document; beyond either bound the
+/// connection is closed all the same.
 const REST_BYTES: usize = 16 << 20;
 const REST_TIME: Duration = Duration::from_secs(2);
 
@@ -29,7 +29,7 @@ pub(super) struct Received {
     rest: Rest,
 }
 
-/// What nobody has read of a request's body when it was let go.
+/// The unread rest of a request's body after the handler has dropped it.
 #[derive(Clone, Default)]
 pub(super) struct Rest(Arc<Mutex<Option<Incoming>>>);
 
@@ -38,7 +38,7 @@ impl Rest {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Throws it away as it comes, as far as that may go.
+    /// Discards the rest as it arrives, within the bounds of size and time.
     pub(super) async fn discard(&self) {
         let Some(mut body) = self.slot().take() else { return };
         let mut left = REST_BYTES;
@@ -77,15 +77,18 @@ impl HttpBody for Received {
     ) -> Poll<Option<Result<Frame<Bytes>, BoxError>>> {
         let Some(body) = &mut self.body else { return Poll::Ready(None) };
         if let Poll::Ready(frame) = Pin::new(body).poll_frame(context) {
+            // Each byte extends the deadline of the transfer.
             let bytes = frame.iter().flatten().filter_map(Frame::data_ref).map(Bytes::len).sum();
             self.pace.received(bytes);
             return Poll::Ready(frame.map(|frame| frame.map_err(BoxError::from)));
         }
         let until = self.pace.awaits_body();
+        // Resetting a timer is costly, so that it is only done if the deadline has moved.
         if self.deadline.deadline() != until {
             self.deadline.as_mut().reset(until);
         }
         ready!(self.deadline.as_mut().poll(context));
+        // The deadline has passed: the handler gets an error instead of the rest of the body.
         self.pace.too_slow();
         self.pace.received(0);
         Poll::Ready(Some(Err("the body came too slowly".into())))
@@ -101,7 +104,8 @@ impl HttpBody for Received {
 }
 
 impl Drop for Received {
-    /// Who lets a body go waits for it no longer.
+    /// Ends the wait for the body and keeps its unread rest, to be discarded after the answer is
+    /// made.
     fn drop(&mut self) {
         self.pace.received(0);
         *self.rest.slot() = self.body.take().filter(|body| !body.is_end_stream());

@@ -1,4 +1,4 @@
-//! One connection: HTTP/1 over a stream that is watched.
+//! One connection: HTTP/1 over a monitored stream.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -25,12 +25,12 @@ use crate::seats::{Seat, Seats};
 use crate::stopping::Stopping;
 use crate::stream::Stream;
 
-/// Headers of one request.
+/// Maximum number of headers of a request.
 const MAX_HEADERS: usize = 100;
-/// What a connection may buffer before the body.
+/// Maximum size of the head of a request, bytes.
 const HEAD_BYTES: usize = 32 << 10;
 
-/// A connection that has a place.
+/// A connection with a permit.
 pub(super) struct Connection {
     router: Router,
     limits: Limits,
@@ -70,6 +70,8 @@ impl Connection {
                     }
                     break;
                 }
+                // Requests in progress are still answered; the branch is disabled after its first
+                // use.
                 () = stopping.wait(), if !told => {
                     told = true;
                     served.as_mut().graceful_shutdown();
@@ -80,15 +82,17 @@ impl Connection {
                 }
             }
         }
-        // Whoever stops the server waits for this: what may be upgraded cannot be watched itself.
+        // The shutdown waits for this: a connection that can be upgraded cannot be watched itself.
         drop(watcher);
     }
 
     async fn answer(self: Arc<Self>, request: Request<Incoming>) -> hyper::Result<Response<Sent>> {
+        // Pipelined requests are answered only as fast as the client reads.
         self.pace.taken().await;
         self.pace.begin();
+        // Health checks are answered without a permit; other requests wait a while for one.
         let crowded = !is_health(request.uri().path()) && !self.seat.taken().await;
-        // Who waits to be told whether to send the body has not begun to.
+        // A client that sent `Expect` waits for the word to continue and has sent no body.
         let waits = request.headers().contains_key(header::EXPECT);
         let (pace, rest) = (Arc::clone(&self.pace), Rest::default());
         let mut request =
@@ -101,6 +105,8 @@ impl Connection {
         });
         let answered = TowerToHyperService::new(self.router.clone()).call(request).await;
         let response = answered.unwrap_or_else(|never| match never {});
+        // The unread rest is discarded before the answer is sent, otherwise the client may see a
+        // reset.
         if !(crowded || waits || pace.is_too_slow()) {
             pace.awaits_body();
             rest.discard().await;

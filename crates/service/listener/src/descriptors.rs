@@ -1,16 +1,16 @@
-//! The descriptors that a process may open: as many as its connections need, or fewer connections.
+//! File descriptors of the process: as many as its connections need, else fewer connections.
 
 use crate::limits::Limits;
 use crate::seats::RESERVE;
 
-/// Descriptors for all but connections: database, samples, uploads, the log.
+/// Descriptors other than those of connections: database, samples, uploads, the log.
 const OTHER_DESCRIPTORS: usize = 128;
 
-/// The least that a server is of use with.
+/// Minimum number of connections of a useful server.
 const FEWEST: usize = 16;
 
-/// The limits that the system has descriptors for. The process' own bound is raised as far as it
-/// may be.
+/// Returns the limits for which the system has file descriptors, after raising the limit of the
+/// process as far as possible.
 pub fn suited(limits: Limits) -> Limits {
     let Some(have) = raised(needed_by(&limits)) else { return limits };
     let fit = fitting(limits, have);
@@ -26,20 +26,22 @@ pub fn suited(limits: Limits) -> Limits {
     fit
 }
 
-/// Descriptors that a server with these limits needs.
+/// Returns the number of descriptors that a server with these limits needs.
 fn needed_by(limits: &Limits) -> usize {
     limits.connections + RESERVE + OTHER_DESCRIPTORS
 }
 
 fn fitting(mut limits: Limits, have: usize) -> Limits {
     let lacking = needed_by(&limits).saturating_sub(have);
+    // At least a minimum, unless fewer were configured.
     limits.connections =
         limits.connections.saturating_sub(lacking).max(FEWEST.min(limits.connections));
     limits.connections_per_address = limits.connections_per_address.min(limits.connections);
     limits
 }
 
-/// What the process may open; none for no bound. Raised to what it needs where the system lets it.
+/// Raises the limit of descriptors to `needed` where possible; returns the limit, none if there is
+/// no limit.
 #[cfg(unix)]
 fn raised(needed: usize) -> Option<usize> {
     use rustix::process::{Resource, getrlimit, setrlimit};

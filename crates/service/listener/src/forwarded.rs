@@ -1,4 +1,4 @@
-//! Whom a request comes from where a proxy hands it on.
+//! Address of the client of a request that a proxy has forwarded.
 
 use std::net::IpAddr;
 use std::str::FromStr;
@@ -7,14 +7,14 @@ use axum::http::HeaderMap;
 
 use crate::address::party;
 
-/// A network of addresses, such as `10.0.0.0/8`; an address alone is a network of one.
+/// A network of addresses, such as `10.0.0.0/8`; a single address is a network of one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Network {
     address: IpAddr,
     bits: u32,
 }
 
-/// Which header a trusted proxy writes.
+/// Header in which a trusted proxy states the client's address.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ForwardedHeader {
     /// `X-Forwarded-For`, by most proxies.
@@ -24,18 +24,20 @@ pub enum ForwardedHeader {
     Forwarded,
 }
 
-/// The proxies whose word for a client's address is taken.
+/// Proxies that are trusted to state a client's address.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TrustedProxies {
-    /// Their networks.
+    /// Networks of the proxies.
     pub networks: Vec<Network>,
-    /// The header that they write. Another one may be the client's own, and is not read.
+    /// Header that they write. The other one may come from the client, and is not read.
     pub header: ForwardedHeader,
 }
 
 impl Network {
     fn contains(&self, address: IpAddr) -> bool {
         let same = |mine: u128, other: u128, width: u32| {
+            // `checked_shr` refuses a shift by all 128 bits (a prefix of 0 bits): both sides are
+            // then 0 and equal.
             let outside = width - self.bits;
             mine.checked_shr(outside).unwrap_or(0) == other.checked_shr(outside).unwrap_or(0)
         };
@@ -76,11 +78,13 @@ impl FromStr for ForwardedHeader {
 }
 
 impl TrustedProxies {
-    /// Whom a request is counted for: its peer, or where that is a trusted proxy the last address of
-    /// the header that is none.
+    /// Returns the address by which a request is counted: the peer or, if that is a trusted proxy,
+    /// the last address of the header that is not a trusted proxy.
     pub fn client(&self, peer: IpAddr, headers: &HeaderMap) -> IpAddr {
         let mut client = peer;
         let mut hops = self.hops(headers);
+        // From the last hop backwards; the first address that is not a trusted proxy is the client.
+        // Addresses before it were written by the client itself and prove nothing.
         while self.trusts(client) {
             match hops.pop().and_then(|hop| address(&hop)) {
                 Some(before) => client = before,
@@ -94,7 +98,7 @@ impl TrustedProxies {
         self.networks.iter().any(|network| network.contains(address))
     }
 
-    /// The addresses of the header, the last proxy's word last.
+    /// Returns the addresses of the header, that of the last proxy last.
     fn hops(&self, headers: &HeaderMap) -> Vec<String> {
         let name = match self.header {
             ForwardedHeader::XForwardedFor => "x-forwarded-for",
@@ -109,14 +113,14 @@ impl TrustedProxies {
     }
 }
 
-/// The parameter `for` of an element of `Forwarded`; nothing where it has none.
+/// Returns the parameter `for` of an element of `Forwarded`; empty if it has none.
 fn forwarded_for(element: &str) -> String {
     let pairs = element.split(';').filter_map(|pair| pair.split_once('='));
     let mut named = pairs.filter(|(name, _)| name.trim().eq_ignore_ascii_case("for"));
     named.next().map_or_else(String::new, |(_, node)| node.trim().trim_matches('"').to_owned())
 }
 
-/// The address of a node, with or without a port.
+/// Parses the address of a node, with or without a port.
 fn address(node: &str) -> Option<IpAddr> {
     let node = node.trim();
     let bracketed = node.strip_prefix('[').and_then(|rest| rest.split(']').next());

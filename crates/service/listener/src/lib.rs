@@ -1,5 +1,5 @@
-//! Taking connections: bounded in number, in the time for heads, bodies and answers by their
-//! progress, and in the time to end. It knows HTTP, and no ship.
+//! Listener for HTTP connections: bounded in number, in the time for heads, in the progress of
+//! bodies and answers, and in the time to shut down. It knows HTTP, and no ship.
 
 mod address;
 mod bind;

@@ -5,21 +5,22 @@ use std::time::Duration;
 /// Bounds on connections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Until a request's head has been read.
+    /// Maximum time to read the head of a request.
     pub header_time: Duration,
-    /// Connections at a time; where they are all at work, further ones are refused.
+    /// Maximum number of connections; while all of them are busy, further ones are refused.
     pub connections: usize,
-    /// Connections of one address at a time (of IPv6: of a network of 64 bits).
+    /// Maximum number of connections of one address (for IPv6: of a network of 64 bits).
     pub connections_per_address: usize,
-    /// Bytes a second, on average, that a request's body must bring and a reader of an answer must
-    /// take. Long below any link in use: a satellite terminal for ships has 2400 bit/s and more.
+    /// Minimum average rate of a request's body and of the reader of an answer, bytes per second.
+    /// It is far below any link in use: a satellite terminal for ships has 2400 bit/s and more.
     pub least_rate: usize,
-    /// Without a byte of a body until it is given up; what comes faster than it must earns more, up
-    /// to a minute.
+    /// Time without a byte of a body after which it is given up; bytes above the minimum rate
+    /// extend it, up to a minute.
     pub body_grace: Duration,
-    /// The same for answers. Longer, as the system tells of reading by tens of kilobytes.
+    /// The same for answers; longer, because the system reports reading in steps of tens of
+    /// kilobytes.
     pub answer_grace: Duration,
-    /// How long a server that is told to stop waits for what is under way.
+    /// Maximum time for requests in progress when the server stops.
     pub stop_time: Duration,
 }
 

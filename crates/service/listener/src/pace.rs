@@ -1,4 +1,5 @@
-//! How a connection gets on: what it waits for, and for how long its other end has done too little.
+//! Progress of a connection: its present wait, and the time for which the other end has made too
+//! little progress.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,10 +10,10 @@ use tokio::time::Instant;
 
 use crate::limits::Limits;
 
-/// The most time that bytes can earn in advance.
+/// Maximum time that bytes can earn in advance.
 const MOST_CREDIT: Duration = Duration::from_secs(60);
 
-/// Time that the other end may still let pass: it begins with a grace, and each byte earns some.
+/// Remaining time of the other end for a transfer: it starts with a grace, and each byte adds some.
 #[derive(Debug, Clone, Copy)]
 struct Credit {
     grace: Duration,
@@ -26,42 +27,45 @@ impl Credit {
         Self { grace, left: grace, most: grace.max(MOST_CREDIT), since: None }
     }
 
-    /// Begins to wait, unless it does; gives when the credit will have run out.
+    /// Begins to wait, unless it waits already; returns the deadline.
     fn wait(&mut self, now: Instant) -> Instant {
         *self.since.get_or_insert(now) + self.left
     }
 
     fn earn(&mut self, bytes: usize, rate: usize, now: Instant) {
         self.settle(now);
+        // At the minimum rate, the time earned equals the time that the bytes took.
         let earned = Duration::from_secs_f64(bytes as f64 / rate.max(1) as f64);
         self.left = (self.left + earned).min(self.most);
     }
 
-    /// Ends waiting and takes what it took.
+    /// Ends the wait and subtracts its duration.
     fn settle(&mut self, now: Instant) {
         if let Some(since) = self.since.take() {
             self.left = self.left.saturating_sub(now.saturating_duration_since(since));
         }
     }
 
-    /// How long it waits, or has waited before for no more than a few bytes; none while it does
-    /// not.
+    /// Returns the duration of the present wait, including earlier waits that were interrupted by
+    /// only a few bytes; none while it does not wait.
     fn waited(&self, now: Instant) -> Option<Duration> {
         let waited = now.saturating_duration_since(self.since?);
+        // With little earned, `left` is below the grace, and the difference is the time wasted
+        // before.
         Some(waited.max((self.grace + waited).saturating_sub(self.left)))
     }
 }
 
 #[derive(Debug)]
 struct State {
-    /// Since when a request's head is awaited; none while a request is under way.
+    /// Start of the wait for a request's head; none while a request is processed.
     head: Option<Instant>,
     body: Credit,
     answer: Credit,
     cut: bool,
 }
 
-/// How one connection gets on; its stream, its bodies and the table of seats share it.
+/// Progress of one connection, shared by its stream, its bodies and the table of connections.
 #[derive(Debug)]
 pub(crate) struct Pace {
     rate: usize,
@@ -95,44 +99,45 @@ impl Pace {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A request's head has been read.
+    /// Records that a request's head has been read.
     pub(super) fn begin(&self) {
         let mut state = self.state();
         state.head = None;
         state.body = Credit::new(self.grace);
     }
 
-    /// An answer has been made, if not yet sent.
+    /// Records that an answer is complete, though possibly not yet sent.
     pub(super) fn end(&self) {
         let mut state = self.state();
         state.head = Some(Instant::now());
         state.body.since = None;
     }
 
-    /// A body is awaited, until the moment that this gives.
+    /// Records the wait for the body; returns its deadline.
     pub(super) fn awaits_body(&self) -> Instant {
         self.state().body.wait(Instant::now())
     }
 
-    /// Some of the body has come, or the end of it.
+    /// Records the arrival of bytes of the body, or of its end.
     pub(super) fn received(&self, bytes: usize) {
         self.state().body.earn(bytes, self.rate, Instant::now());
     }
 
-    /// The other end takes nothing of the answer; it may do so until the moment that this gives.
+    /// Records that the other end does not read the answer; returns the deadline.
     pub(super) fn awaits_reader(&self) -> Instant {
         self.state().answer.wait(Instant::now())
     }
 
-    /// Some of the answer has been taken.
+    /// Records that bytes of the answer were accepted by the system.
     pub(super) fn sent(&self, bytes: usize) {
         self.state().answer.earn(bytes, self.rate, Instant::now());
         self.written.notify_waiters();
     }
 
-    /// Waits until the other end has taken what was sent to it, so that answers do not pile up.
+    /// Waits until the other end has read what was sent to it, so that answers do not accumulate.
     pub(super) async fn taken(&self) {
         loop {
+            // Created before the test, so that a notification between test and wait is not lost.
             let written = self.written.notified();
             if self.state().answer.since.is_none() {
                 return;
@@ -141,15 +146,16 @@ impl Pace {
         }
     }
 
-    /// How long the connection has waited for its other end; none while the server has something to
-    /// do for it.
+    /// Returns the time for which the connection has waited for its other end; none while the
+    /// server processes a request.
     pub(super) fn stuck(&self, now: Instant) -> Option<Duration> {
         let state = self.state();
+        // In this order: an unread answer counts even while the next request is awaited.
         let head = || state.head.map(|since| now.saturating_duration_since(since));
         state.answer.waited(now).or_else(|| state.body.waited(now)).or_else(head)
     }
 
-    /// Cuts the connection if it still waits for its other end; says whether it does.
+    /// Closes the connection if it still waits for its other end; returns true if it does.
     pub(super) fn cut_if_stuck(&self) -> bool {
         let mut state = self.state();
         let stuck =
@@ -161,7 +167,7 @@ impl Pace {
         stuck
     }
 
-    /// Cuts the connection, whatever it does.
+    /// Closes the connection in any state.
     pub(super) fn cut(&self) {
         self.state().cut = true;
         self.cut.notify_one();
@@ -171,7 +177,7 @@ impl Pace {
         self.state().cut
     }
 
-    /// Waits until the connection is cut.
+    /// Waits until the connection is to be closed.
     pub(super) async fn until_cut(&self) {
         self.cut.notified().await;
     }
@@ -180,7 +186,7 @@ impl Pace {
         self.slow.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the body of its request came too slowly to be read.
+    /// Returns true if the body of the request came too slowly.
     pub(crate) fn is_too_slow(&self) -> bool {
         self.slow.load(Ordering::Relaxed)
     }

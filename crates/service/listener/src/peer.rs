@@ -1,4 +1,4 @@
-//! What a request's connection says of it.
+//! Connection of a request, as an extension of the request.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -6,46 +6,47 @@ use std::sync::Arc;
 use crate::pace::Pace;
 use crate::seats::Seat;
 
-/// What answers even where there is no seat for a request.
+/// Paths that are answered even without a permit.
 const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
 
-/// What a request's connection says of it.
+/// Connection of a request.
 #[derive(Clone)]
 pub struct Peer {
-    /// The other end of the connection.
+    /// Address of the other end.
     pub address: IpAddr,
-    /// How its connection gets on.
+    /// Progress of the connection.
     pub(crate) pace: Arc<Pace>,
-    /// Its connection's place, which is kept while this is.
+    /// Permit of the connection, held as long as this value.
     pub(crate) _seat: Arc<Seat>,
-    /// There is no seat for it: it is refused, unless it asks for health.
+    /// True if there is no free connection: the request is refused, unless it is a health check.
     pub crowded: bool,
 }
 
-/// Whether a path tells of health.
+/// Returns true if a path is a health check.
 pub fn is_health(path: &str) -> bool {
     HEALTH.contains(&path)
 }
 
 impl Peer {
-    /// Whether its connection is cut because its body or its reading came too slowly.
+    /// Returns true if the connection is closed because its body was sent, or its answer read, too
+    /// slowly.
     #[must_use]
     pub fn is_too_slow(&self) -> bool {
         self.pace.is_too_slow()
     }
 
-    /// Waits until its connection has to give way to others; for whoever keeps it after the answer,
-    /// as a WebSocket does.
+    /// Waits until the connection must be closed in favour of others; for handlers that keep it
+    /// after the answer, such as a WebSocket.
     pub async fn until_cut(&self) {
         self.pace.until_cut().await;
     }
 
-    /// The server has something to do for whoever keeps the connection.
+    /// Records that the server works for a kept connection.
     pub fn works(&self) {
         self.pace.begin();
     }
 
-    /// The server waits for the other end.
+    /// Records that the server waits for the other end.
     pub fn waits(&self) {
         self.pace.end();
     }

@@ -1,9 +1,9 @@
-//! Who has a connection: bounded in all and for each address, with a reserve in which whoever finds
-//! no seat is told so.
+//! Permits of connections: bounded in total and for each address, with a reserve in which requests
+//! without a permit are refused with an answer.
 //!
-//! Nobody who waits for the server is sent away. Where seats run out, the connection whose other
-//! end has let the server wait longest gives way: a body that does not come, an answer that is not
-//! read, a request that is not made.
+//! A connection that waits for the server is never closed. When permits run out, the connection
+//! that has waited longest for its other end is closed: for a body that does not arrive, an answer
+//! that is not read, or a request that is not sent.
 
 use std::collections::HashMap;
 use std::net::IpAddr;
@@ -16,17 +16,17 @@ use tokio::time::Instant;
 use crate::limits::Limits;
 use crate::pace::Pace;
 
-/// Connections beyond the seats: they get health and refusals.
+/// Number of connections beyond the permits, for health checks and refusals.
 pub(super) const RESERVE: usize = 128;
-/// How long an other end may take its time before it gives way to others: some round trips around
-/// the world.
+/// Time for which a wait for the other end is tolerated before the connection may be closed for
+/// another: some round trips around the world.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// How long a request waits for a seat before it is refused.
+/// Maximum wait of a request for a permit before it is refused.
 const WAIT: Duration = Duration::from_secs(1);
-/// How often a request that waits looks whether others have become slow.
+/// Interval at which a waiting request checks again for slow connections.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// The seats of a listener.
+/// The connections of a listener.
 pub(super) struct Seats {
     connections: usize,
     share: usize,
@@ -38,7 +38,7 @@ pub(super) struct Seats {
 struct Table {
     next: u64,
     entries: HashMap<u64, Entry>,
-    /// Seats by address.
+    /// Number of permits by address.
     shares: HashMap<IpAddr, usize>,
     seated: usize,
 }
@@ -49,7 +49,7 @@ struct Entry {
     pace: Arc<Pace>,
 }
 
-/// A place in the table, until it is dropped.
+/// An entry of the table, removed when this is dropped.
 pub(super) struct Seat {
     id: u64,
     seats: Arc<Seats>,
@@ -65,8 +65,8 @@ impl Seats {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A place for a new connection: a seat, else one in the reserve; none where all of that waits
-    /// for the server.
+    /// Admits a new connection: with a permit, else in the reserve; none if all connections of the
+    /// reserve wait for the server.
     pub(super) fn admit(self: &Arc<Self>, party: IpAddr, pace: &Arc<Pace>) -> Option<Seat> {
         let mut table = self.table();
         let seated = self.room(&mut table, party);
@@ -78,25 +78,27 @@ impl Seats {
         Some(Seat { id, seats: Arc::clone(self) })
     }
 
-    /// Makes room for one more seat of an address, if it can be had.
+    /// Frees a permit for an address, if possible; returns true if there is one.
     fn room(&self, table: &mut Table, party: IpAddr) -> bool {
+        // An address at its limit can only replace a connection of its own.
         if table.shares.get(&party).copied().unwrap_or(0) >= self.share {
             return table.evict(PATIENCE, |entry| entry.seated && entry.party == party);
         }
         if table.seated < self.connections {
             return true;
         }
+        // The address with the most permits gives one up first.
         let most = table.shares.iter().max_by_key(|(_, seats)| **seats).map(|(party, _)| *party);
         table.evict(PATIENCE, |entry| entry.seated && Some(entry.party) == most)
             || table.evict(PATIENCE, |entry| entry.seated)
     }
 
-    /// Cuts who has waited longest, when the system has no more sockets.
+    /// Closes the connection that has waited longest, when the system has no more sockets.
     pub(super) fn spare(&self) -> bool {
         self.table().evict(Duration::ZERO, |_| true)
     }
 
-    /// Cuts all that are left.
+    /// Closes all remaining connections.
     pub(super) fn clear(&self) {
         self.table().entries.values().for_each(|entry| entry.pace.cut());
     }
@@ -128,15 +130,17 @@ impl Table {
         }
     }
 
-    /// Cuts, of some connections, the one whose other end has been awaited longest; says whether
-    /// there was one.
+    /// Closes the selected connection that has waited longest for its other end, if it has waited
+    /// for at least `patience`; returns true if there was one.
     fn evict(&mut self, patience: Duration, of: impl Fn(&Entry) -> bool) -> bool {
         let now = Instant::now();
         let waited = self.entries.iter().filter(|(_, entry)| of(entry));
+        // Connections for which the server works have no waiting time and are never chosen.
         let waited = waited.filter_map(|(id, entry)| Some((entry.pace.stuck(now)?, *id)));
         let Some((_, id)) = waited.filter(|(waited, _)| *waited >= patience).max() else {
             return false;
         };
+        // Tested again under the lock of the connection: it may have made progress meanwhile.
         let cut = self.entries.get(&id).is_some_and(|entry| entry.pace.cut_if_stuck());
         if cut {
             self.remove(id);
@@ -146,7 +150,8 @@ impl Table {
 }
 
 impl Seat {
-    /// Whether a request may be carried out here. One in the reserve waits a while for a seat.
+    /// Returns true if a request may be processed. A connection in the reserve waits a while for a
+    /// permit.
     pub(super) async fn taken(&self) -> bool {
         let until = Instant::now() + WAIT;
         loop {
@@ -155,11 +160,12 @@ impl Seat {
                 Some(false) if Instant::now() < until => {}
                 _ => return false,
             }
+            // A freed permit wakes this early; the timeout finds connections that have become slow.
             drop(tokio::time::timeout(LOOK, self.seats.freed.notified()).await);
         }
     }
 
-    /// Whether it has a seat now; none where there is no use in waiting for one.
+    /// Tries to get a permit: true with one, false if waiting may help, none otherwise.
     fn sit(&self) -> Option<bool> {
         let mut table = self.seats.table();
         let entry = table.entries.get(&self.id)?;
@@ -168,6 +174,7 @@ impl Seat {
             return Some(true);
         }
         if !self.seats.room(&mut table, party) {
+            // With half of the reserve in use, further requests are refused at once.
             return (table.entries.len() - table.seated <= RESERVE / 2).then_some(false);
         }
         table.entries.get_mut(&self.id)?.seated = true;

@@ -1,4 +1,4 @@
-//! Connections as they come, until the word to stop.
+//! Acceptance of connections until the server stops.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -13,15 +13,15 @@ use crate::limits::Limits;
 use crate::seats::Seats;
 use crate::stopping::Stopping;
 
-/// What the system takes of an answer beyond what is on its way to a reader. Answers that nobody
-/// reads are made no further than that: 600 connections with 400 requests each would have had the
-/// work of ten times as many done for nothing.
+/// Bytes of an answer that the system accepts beyond those in flight. Answers that are not read are
+/// produced no further: otherwise 600 connections with 400 requests each would have had the work of
+/// ten times as many done for nothing.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 const NOT_SENT: u32 = 16 << 10;
-/// A pause when the system has no more sockets.
+/// Delay before the next attempt when the system has no more sockets.
 const BREATH: Duration = Duration::from_millis(100);
 
-/// Serves until it is told to stop, then lets what is under way end.
+/// Serves until the stop signal, then waits for the requests in progress.
 pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
     let server = Server {
         router,
@@ -32,6 +32,7 @@ pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut s
     };
     loop {
         tokio::select! {
+            // No new connections after the signal; those that exist are ended below.
             () = stopping.wait() => break,
             taken = listener.accept() => match taken {
                 Ok((stream, from)) => server.serve(stream, from),
@@ -39,6 +40,7 @@ pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut s
             },
         }
     }
+    // Closed first: no connection is queued that would not be served.
     drop(listener);
     if tokio::time::timeout(limits.stop_time, server.graceful.shutdown()).await.is_err() {
         tracing::warn!("connections were cut: they did not end in time");
@@ -46,7 +48,8 @@ pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut s
     }
 }
 
-/// Sends what there is at once, and takes no more than can be sent soon.
+/// Sets the options of a connection: data is sent without delay, and no more is accepted than can
+/// be sent soon.
 fn prepare(stream: &TcpStream) -> std::io::Result<()> {
     #[cfg(any(target_os = "linux", target_os = "android"))]
     socket2::SockRef::from(stream).set_tcp_notsent_lowat(NOT_SENT)?;
@@ -76,12 +79,13 @@ impl Server {
         }
     }
 
-    /// A connection could not be taken: one that waits makes room for it, or some time passes.
+    /// Handles a failed acceptance: closes a waiting connection, or pauses.
     async fn lacks(&self, error: &std::io::Error) {
         tracing::warn!(%error, "a connection could not be taken");
         if !self.seats.spare() {
             tokio::time::sleep(BREATH).await;
         }
+        // Lets the closed connection release its socket before the next attempt.
         tokio::task::yield_now().await;
     }
 }

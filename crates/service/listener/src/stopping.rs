@@ -1,26 +1,26 @@
-//! The word that the server shall stop.
+//! Stop signal of the server.
 
 use tokio::sync::watch;
 
-/// Listens for the word. A clone listens as well.
+/// Receiver of the stop signal; clones receive it as well.
 #[derive(Debug, Clone)]
 pub struct Stopping(watch::Receiver<bool>);
 
 impl Stopping {
-    /// Who sends `true`, or goes, stops the server.
+    /// Creates a signal; sending `true`, or dropping the sender, stops the server.
     pub fn new() -> (watch::Sender<bool>, Self) {
         let (sender, receiver) = watch::channel(false);
         (sender, Self(receiver))
     }
 
-    /// Whether the server shall stop.
+    /// Returns true if the server is to stop.
     pub fn now(&self) -> bool {
         *self.0.borrow() || self.0.has_changed().is_err()
     }
 
-    /// Waits until it shall.
+    /// Waits for the signal.
     pub async fn wait(&mut self) {
-        // An error means that the sender is gone, which says the same.
+        // An error means that the sender was dropped, which stops the server too.
         drop(self.0.wait_for(|stop| *stop).await);
     }
 }

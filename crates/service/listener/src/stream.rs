@@ -1,4 +1,4 @@
-//! A connection's socket, with a deadline by progress for what its other end does not read.
+//! Socket of a connection, with a deadline by progress for data that the other end does not read.
 
 use std::io;
 use std::pin::Pin;
@@ -11,7 +11,7 @@ use tokio::time::{Instant, Sleep, sleep_until};
 
 use crate::pace::Pace;
 
-/// A socket that tells how its other end reads, and fails where it does not.
+/// A socket that reports the progress of its other end, and fails if there is none.
 pub(super) struct Stream {
     socket: TcpStream,
     pace: Arc<Pace>,
@@ -23,17 +23,19 @@ impl Stream {
         Self { socket, pace, deadline: Box::pin(sleep_until(Instant::now())) }
     }
 
-    /// The outcome of a write, or that nobody has read for too long.
+    /// Records the result of a write; returns an error if the other end has not read for too long.
     fn written(
         &mut self,
         context: &mut Context<'_>,
         written: Poll<io::Result<usize>>,
     ) -> Poll<io::Result<usize>> {
         match written {
+            // Bytes that the system accepts count as read, within the size of its send buffer.
             Poll::Ready(Ok(bytes)) => self.pace.sent(bytes),
             Poll::Ready(Err(_)) => {}
             Poll::Pending => {
                 let until = self.pace.awaits_reader();
+                // Resetting a timer is costly, so that it is only done if the deadline has moved.
                 if self.deadline.deadline() != until {
                     self.deadline.as_mut().reset(until);
                 }
@@ -92,7 +94,7 @@ impl AsyncWrite for Stream {
 }
 
 impl Drop for Stream {
-    /// What the other end has not read is thrown away: the system would keep it for minutes.
+    /// Discards unread data of a closed connection: the system would keep it for minutes.
     fn drop(&mut self) {
         if self.pace.is_cut() {
             drop(self.socket.set_zero_linger());

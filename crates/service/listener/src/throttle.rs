@@ -1,8 +1,8 @@
-//! Who has presented wrong keys of late: some mistakes are free, then further ones wait.
+//! Limits on wrong API keys by address: some attempts are free, then further ones must wait.
 //!
-//! The right key is never refused, else one program on an address could shut out the others behind
-//! it. So this does not make a short key safe: it bounds what guessing costs the server, and tells
-//! of it in the log.
+//! The right key is never refused, otherwise one program could lock out others at the same address.
+//! So this does not make a short key safe: it bounds the cost of guessing for the server, and logs
+//! it.
 
 use std::collections::HashMap;
 use std::net::IpAddr;
@@ -11,16 +11,16 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-/// Mistakes that are free.
+/// Number of free failed attempts.
 const FREE: f64 = 10.0;
-/// The time after which one mistake is forgotten.
+/// Time after which one failed attempt is forgotten.
 const FORGOTTEN: Duration = Duration::from_secs(6);
-/// The most that an address is made to wait for.
+/// Maximum count of an address, which bounds its waiting time.
 const MOST: f64 = 2.0 * FREE;
-/// Addresses that are remembered.
+/// Maximum number of addresses in the table.
 const ADDRESSES: usize = 4096;
 
-/// Wrong keys by address, in a table that forgets.
+/// Failed attempts by address.
 #[derive(Default)]
 pub struct Throttle(Mutex<HashMap<IpAddr, Mistakes>>);
 
@@ -39,7 +39,8 @@ impl Mistakes {
 }
 
 impl Throttle {
-    /// Counts a wrong key; gives how long further ones are refused, where there were too many.
+    /// Counts a wrong key; returns the time for which further ones are refused, if there were too
+    /// many.
     pub fn wrong(&self, from: IpAddr) -> Option<Duration> {
         self.wrong_at(from, Instant::now())
     }
@@ -52,6 +53,7 @@ impl Throttle {
         let mistakes = table.entry(from).or_insert(Mistakes { count: 0.0, at: now });
         let before = mistakes.now(now);
         *mistakes = Mistakes { count: (before + 1.0).min(MOST), at: now };
+        // Logged once for each time that the limit is reached, not for every attempt.
         if before < FREE && mistakes.count >= FREE {
             tracing::warn!(%from, "many wrong API keys from this address");
         }
@@ -59,7 +61,8 @@ impl Throttle {
     }
 }
 
-/// Forgets what is forgotten anyway, and the address with the fewest mistakes.
+/// Removes expired entries and, if the table is still full, the address with the fewest failed
+/// attempts.
 fn make_room(table: &mut HashMap<IpAddr, Mistakes>, now: Instant) {
     table.retain(|_, mistakes| mistakes.now(now) > 0.0);
     let fewest =

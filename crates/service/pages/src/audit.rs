@@ -1,4 +1,4 @@
-//! What has been done by whom.
+//! The page of the audit log.
 
 use askama::Template;
 use sistership_jobs::Archive;
@@ -10,7 +10,7 @@ use crate::error::{PageError, Result};
 use crate::form::Fields;
 use crate::shell::Shell;
 
-/// Entries on one page.
+/// Number of entries on one page.
 const ENTRIES: i64 = 50;
 
 #[derive(Template)]
@@ -34,12 +34,13 @@ struct EntryRow {
     after: String,
 }
 
-/// The page, the latest first; `actor` or `subject` choose.
+/// Returns the page, the latest entry first; `actor` or `subject` filter.
 ///
 /// # Errors
-/// A field is wrong, or the store does not answer.
+/// Returns an error if a field is wrong or the store fails.
 pub async fn page(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
     let (actor, subject) = (query.text("actor"), query.text("subject"));
+    // The store filters by one of the two only.
     let filter = match (actor, subject) {
         (Some(_), Some(_)) => {
             return Err(PageError::invalid("subject", "choose by one of the two"));

@@ -1,11 +1,11 @@
-//! What stands before the content of a page: it is known before the content is computed.
+//! The part of a page before its content, which is known before the content is computed.
 
 use askama::Template;
 
 use crate::error::Result;
 use crate::shell::Shell;
 
-/// With what the content of every page begins.
+/// First characters of the content of every page.
 const CONTENT: &str = "<main id=\"content\" tabindex=\"-1\">";
 
 #[derive(Template)]
@@ -15,22 +15,22 @@ struct BlankPage<'a> {
     title: &'a str,
 }
 
-/// A page as far as its content; `place` is its place in the navigation.
+/// Returns a page up to its content; `place` is its place in the navigation.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn beginning(shell: Shell, title: &str, place: &'static str) -> Result<String> {
     let mut page = BlankPage { shell: shell.at(place), title }.render()?;
     page.truncate(before_content(&page));
     Ok(page)
 }
 
-/// A page from its content on.
+/// Returns a page from its content on.
 pub fn from_content(page: &str) -> &str {
     &page[before_content(page)..]
 }
 
-/// The length of what stands before the content.
+/// Length of the part before the content, bytes.
 fn before_content(page: &str) -> usize {
     page.find(CONTENT).map_or(0, |at| at + CONTENT.len())
 }

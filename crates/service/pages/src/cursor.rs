@@ -1,4 +1,4 @@
-//! Where a page of a list ends, in a form that an address can hold.
+//! Cursors of lists, in a form that a URL can hold.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
@@ -7,12 +7,15 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{PageError, Result};
 
-/// The key as text.
+/// Returns a key as text: JSON in URL-safe Base64.
 pub(crate) fn cursor<K: Serialize>(key: Option<&K>) -> Option<String> {
     Some(BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(key?).ok()?))
 }
 
-/// The key that a text stands for.
+/// Returns the key of a text.
+///
+/// # Errors
+/// Returns an error if the text is no cursor of this list.
 pub(crate) fn key<K: DeserializeOwned>(after: Option<&str>) -> Result<Option<K>> {
     let read = |text: &str| {
         let bytes = BASE64_URL_SAFE_NO_PAD.decode(text).ok();

@@ -1,9 +1,12 @@
-//! Times as people read them.
+//! Times for people.
 
-/// A time as `2026-11-21 10:06` UTC; the civil calendar from days, after Howard Hinnant.
+/// Formats a time, µs since 1970, as `2026-11-21 10:06` UTC; the civil calendar from days, after
+/// Howard Hinnant.
 pub(crate) fn date(us: i64) -> String {
     let seconds = us.div_euclid(1_000_000);
     let (days, second) = (seconds.div_euclid(86_400), seconds.rem_euclid(86_400));
+    // Days since 1 March of the year 0; an era is 400 years of 146097 days, and years begin in
+    // March, so that the leap day is their last.
     let shifted = days + 719_468;
     let (era, day_of_era) = (shifted.div_euclid(146_097), shifted.rem_euclid(146_097));
     let year_of_era =

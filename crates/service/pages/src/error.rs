@@ -1,33 +1,33 @@
-//! Why a page cannot be shown.
+//! Errors of pages.
 
 use sistership_jobs::error::DeriveError;
 use sistership_model::FileError;
 use sistership_store::StoreError;
 
-/// Why a page cannot be shown.
+/// Error of a page.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
-    /// The archive does not give what the page shows.
+    /// The archive does not give the data of the page.
     #[error(transparent)]
     Derive(#[from] DeriveError),
-    /// A field of the page's form is at fault.
+    /// A field of the page's form is wrong.
     #[error("{field}: {message}")]
     Invalid {
-        /// The field's name.
+        /// Name of the field.
         field: String,
-        /// What is wrong, and what would be right.
+        /// Description of the error and its correction.
         message: String,
     },
-    /// The page cannot be written.
+    /// The page cannot be rendered.
     #[error("the page cannot be written: {0}")]
     Render(#[from] askama::Error),
 }
 
-/// What a page or a part of it comes to.
+/// Result of a page or of a part of it.
 pub type Result<T, E = PageError> = std::result::Result<T, E>;
 
 impl PageError {
-    /// A field that is at fault.
+    /// Returns the error of a wrong field.
     pub fn invalid(field: &str, message: impl Into<String>) -> Self {
         Self::Invalid { field: field.to_owned(), message: message.into() }
     }

@@ -1,5 +1,5 @@
-//! Families of ships that share a foundation: the list, and one with the member first whose model
-//! holds least.
+//! Families of ships with a common foundation: the list, and the page of one family with its ships,
+//! the least reliable model first.
 
 use askama::Template;
 use sistership_jobs::Archive;
@@ -14,9 +14,9 @@ use crate::picture::svg;
 use crate::shell::Shell;
 use crate::sparkline::sparkline;
 
-/// Families on one page.
+/// Number of families on one page.
 const FAMILIES: i64 = 50;
-/// Ships on the page of a family.
+/// Number of ships on the page of a family.
 const SHIPS: i64 = 50;
 
 #[derive(Template)]
@@ -34,10 +34,10 @@ struct FamilyRow {
     created: String,
 }
 
-/// The list, by name.
+/// Returns the list, by name.
 ///
 /// # Errors
-/// A field is wrong, or the store does not answer.
+/// Returns an error if a field is wrong or the store fails.
 pub async fn list(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
     let families = archive.store.families();
     let page = Page { after: key(query.text("after"))?, limit: FAMILIES };
@@ -45,6 +45,7 @@ pub async fn list(archive: &Archive, shell: Shell, query: &Fields) -> Result<Str
     let next = cursor(list.next.as_ref());
     let mut rows = Vec::new();
     for family in list.items {
+        // Counted by the store for each family; a page has few.
         rows.push(FamilyRow {
             members: families.count(&family.name).await?,
             created: date(family.created_us),
@@ -75,10 +76,10 @@ struct MemberRow {
     trend: Option<String>,
 }
 
-/// One family.
+/// Returns the page of one family.
 ///
 /// # Errors
-/// There is none of this name, or the store does not answer.
+/// Returns an error if there is no family of this name or the store fails.
 pub async fn one(archive: &Archive, shell: Shell, name: &str) -> Result<String> {
     let family = archive.store.families().get(name).await?;
     let head = archive.store.versions().by_id(&family.foundation).await?.head;
@@ -97,7 +98,8 @@ pub async fn one(archive: &Archive, shell: Shell, name: &str) -> Result<String> 
     Ok(page.render()?)
 }
 
-/// The largest residual of each trial over the axes, the oldest first, and whether it was fitted.
+/// Returns, for each trial, the largest residual over the axes, whether the trial was fitted, and
+/// its time, µs; the oldest first.
 fn residuals(member: &MemberDrift) -> Vec<(f64, bool, i64)> {
     let trials = member.drift.iter().flat_map(|drift| &drift.trials);
     trials.map(|trial| (trial.largest(), trial.fitted, trial.at_us)).collect()
@@ -117,6 +119,7 @@ impl MemberRow {
             effects: member.condition.effects.join(", "),
             worst: worst.map_or_else(|| "-".to_owned(), |worst| format!("{worst:.2}")),
             newest: newest.unwrap_or_default(),
+            // Trials that were not fitted have a dot: only they test the model.
             trend: sparkline(all.iter().map(|(worst, fitted, _)| (*worst, !fitted)))
                 .as_ref()
                 .map(svg)

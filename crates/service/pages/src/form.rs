@@ -1,9 +1,9 @@
-//! What a form or a query has sent.
+//! Fields of a form or a query.
 
 use crate::error::{PageError, Result};
 
-/// Fields in the order in which they came; one may be there several times. What is left empty
-/// counts as absent.
+/// Fields in the order in which they came; a field may occur several times. An empty field counts
+/// as absent.
 #[derive(Debug, Clone, Default)]
 pub struct Fields(Vec<(String, String)>);
 
@@ -14,32 +14,33 @@ impl From<Vec<(String, String)>> for Fields {
 }
 
 impl Fields {
-    /// The text of a field, without spaces about it.
+    /// Text of a field, without spaces around it.
     pub fn text(&self, name: &str) -> Option<&str> {
         let own = self.0.iter().filter(|(known, _)| known == name);
         own.map(|(_, text)| text.trim()).find(|text| !text.is_empty())
     }
 
-    /// The texts of a field that may be there several times.
+    /// Texts of a field that may occur several times.
     pub fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a str> {
         let own = self.0.iter().filter(move |(known, _)| known == name);
         own.map(|(_, text)| text.trim()).filter(|text| !text.is_empty())
     }
 
-    /// The text of a field that must be there.
+    /// Returns the text of a required field.
     ///
     /// # Errors
-    /// It is not.
+    /// Returns an error if the field is absent.
     pub fn needed(&self, name: &str) -> Result<&str> {
         self.text(name).ok_or_else(|| PageError::invalid(name, "is empty; fill it in"))
     }
 
-    /// A number.
+    /// Returns a number, `None` if the field is absent; a decimal comma is accepted.
     ///
     /// # Errors
-    /// The text is no finite number.
+    /// Returns an error if the text is no finite number.
     pub fn number(&self, name: &str) -> Result<Option<f64>> {
         let read = |text: &str| {
+            // `inf` and `nan` parse as numbers.
             let number = text.replace(',', ".").parse().ok();
             number.filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 PageError::invalid(name, format!("`{text}` is no number; write one such as 12.5"))
@@ -48,10 +49,10 @@ impl Fields {
         self.text(name).map(read).transpose()
     }
 
-    /// A number within a range, or the default where there is none.
+    /// Returns a number within a range, or the default if the field is absent.
     ///
     /// # Errors
-    /// It is no number, or outside.
+    /// Returns an error if the text is no number, or outside the range.
     pub fn within(&self, name: &str, range: (f64, f64), default: f64) -> Result<f64> {
         let number = self.number(name)?.unwrap_or(default);
         match (range.0..=range.1).contains(&number) {
@@ -63,10 +64,10 @@ impl Fields {
         }
     }
 
-    /// A whole number.
+    /// Returns a whole number.
     ///
     /// # Errors
-    /// It is missing or none.
+    /// Returns an error if the field is absent or no whole number.
     pub fn whole(&self, name: &str) -> Result<i64> {
         let text = self.needed(name)?;
         text.parse().map_err(|_| PageError::invalid(name, format!("`{text}` is no whole number")))

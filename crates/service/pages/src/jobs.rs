@@ -1,4 +1,4 @@
-//! Jobs: what was asked, and where it stands.
+//! Pages of the jobs: the list, and one job with its request and state.
 
 use askama::Template;
 use serde_json::Value;
@@ -12,7 +12,7 @@ use crate::form::Fields;
 use crate::rows::JobRow;
 use crate::shell::Shell;
 
-/// Jobs on one page.
+/// Number of jobs on one page.
 const JOBS: i64 = 50;
 const STATES: [JobState; 5] = [
     JobState::Queued,
@@ -33,10 +33,10 @@ struct JobsPage {
     next: Option<String>,
 }
 
-/// The list, the latest first; `ship` and `state` choose.
+/// Returns the list, the latest first; `ship` and `state` filter.
 ///
 /// # Errors
-/// A field is wrong, or the store does not answer.
+/// Returns an error if a field is wrong or the store fails.
 pub async fn list(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
     let state = query.text("state").map(state).transpose()?;
     let filter = JobFilter { ship: query.text("ship").map(str::to_owned), state };
@@ -76,10 +76,10 @@ struct JobPage {
     request: String,
 }
 
-/// One job.
+/// Returns the page of one job.
 ///
 /// # Errors
-/// There is none of this id, or the store does not answer.
+/// Returns an error if there is no job of this id or the store fails.
 pub async fn one(archive: &Archive, shell: Shell, id: &str) -> Result<String> {
     let job = archive.store.jobs().get(id).await?;
     Ok(JobPage::of(shell, job).render()?)
@@ -92,6 +92,7 @@ impl JobPage {
             .as_deref()
             .and_then(|text| serde_json::from_str(text).ok())
             .unwrap_or_default();
+        // Times that have not been reached have no row.
         let times = [
             ("Asked for", Some(job.created_us)),
             ("Begun", job.started_us),
@@ -114,7 +115,7 @@ impl JobPage {
     }
 }
 
-/// The request as it is kept, without the hash of its key.
+/// Formats the stored request, without the hash of its key.
 fn asked(request: &str) -> String {
     let mut asked: Value = serde_json::from_str(request).unwrap_or_default();
     if let Some(fields) = asked.as_object_mut() {

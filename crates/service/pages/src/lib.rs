@@ -1,8 +1,8 @@
-//! The pages for people: what the store holds, as HTML that stands alone. Tied to no route: a page
-//! takes an archive and what was asked, and gives its text.
+//! The pages for people: the contents of the store, as self-contained HTML. Independent of routes:
+//! a page takes an archive and a query, and returns its text.
 //!
-//! Pages that simulate are made in two steps: `gather` reads, `html` computes, so that the caller
-//! chooses the thread.
+//! Pages that simulate are made in two steps, of which the first reads and the second computes, so
+//! that the caller chooses the thread.
 
 pub mod audit;
 mod beginning;

@@ -1,4 +1,4 @@
-//! Versions by the names that people give them: `ship`, `ship/number`, `ship/alias`.
+//! Resolution of version names: `ship`, `ship/number`, `ship/alias`.
 
 use sistership_jobs::Archive;
 use sistership_jobs::archive::document;
@@ -9,7 +9,7 @@ use sistership_store::{StoreError, Version, VersionHead};
 
 use crate::error::{PageError, Result};
 
-/// A version ready to sail.
+/// A version with its document and law, ready to be simulated.
 pub(crate) struct NamedVersion {
     pub head: VersionHead,
     pub document: VersionDocument,
@@ -17,7 +17,10 @@ pub(crate) struct NamedVersion {
 }
 
 impl NamedVersion {
-    /// The version that a name stands for; `field` is where it was written.
+    /// Returns the version that a name refers to; `field` is named in errors.
+    ///
+    /// # Errors
+    /// Returns an error if the name refers to nothing, or if the archive fails.
     pub async fn find(archive: &Archive, field: &str, name: &str) -> Result<Self> {
         let version = version(archive, field, name).await?;
         let mut document = document(&version)?;

@@ -1,4 +1,4 @@
-//! A ship that is to be: what a person types in becomes a vessel document.
+//! The form of a new ship: its fields become a vessel document.
 
 use askama::Template;
 use serde_json::{Map, Value, json};
@@ -7,7 +7,7 @@ use crate::error::{PageError, Result};
 use crate::form::Fields;
 use crate::shell::Shell;
 
-/// Particulars that the form asks for: name, words, whether similarity and transfer need it.
+/// Particulars in the form: name, label, and whether similarity and transfer need it.
 pub const PARTICULARS: [(&str, &str, bool); 14] = [
     ("lpp_m", "Length between perpendiculars, m", true),
     ("beam_m", "Beam, m", true),
@@ -25,7 +25,7 @@ pub const PARTICULARS: [(&str, &str, bool); 14] = [
     ("lateral_area_m2", "Lateral area above water, m²", false),
 ];
 
-/// The key of the one source.
+/// Key of the single source.
 const SOURCE: &str = "typed-in";
 
 #[derive(Template)]
@@ -35,29 +35,31 @@ struct NewShipPage<'a> {
     particulars: &'static [(&'static str, &'static str, bool)],
 }
 
-/// The form.
+/// Returns the form.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn page(shell: &Shell) -> Result<String> {
     Ok(NewShipPage { shell, particulars: &PARTICULARS }.render()?)
 }
 
-/// The vessel document that a form's fields say, as `models/schema/vessel.json` describes it.
+/// Returns the vessel document of a form's fields, as `models/schema/vessel.json` describes it.
 ///
 /// # Errors
-/// Names the field that is missing or no number.
+/// Returns an error that names a field which is missing or no number.
 pub fn document(form: &Fields) -> Result<Value> {
     let text = |name: &str| {
         let text = form.text(name).map(str::trim).filter(|text| !text.is_empty());
         text.ok_or_else(|| PageError::invalid(name, "must be given".to_owned()))
     };
     let mut values = Map::new();
+    // Optional particulars that are empty are left out of the document.
     for (name, _, needed) in PARTICULARS {
         match form.text(name).map(str::trim).filter(|text| !text.is_empty()) {
             None if needed => return Err(PageError::invalid(name, "must be given".to_owned())),
             None => {}
             Some(text) => {
+                // A decimal comma is accepted.
                 let value: Option<f64> = text.replace(',', ".").parse().ok();
                 let value = value
                     .filter(|value| value.is_finite())

@@ -1,26 +1,26 @@
-//! A picture as inline SVG, and the shapes that several pages draw.
+//! Plots as inline SVG, and the shapes that several pages draw.
 
 use askama::Template;
 use sistership_report::plots::{Plot, Shape};
 
 use crate::error::Result;
 
-/// The SVG of a plot.
+/// Renders a plot as SVG.
 pub(crate) fn svg(plot: &Plot) -> Result<String> {
     Ok(plot.render()?)
 }
 
-/// A straight line.
+/// Returns a straight line.
 pub(crate) fn line(from: (f64, f64), to: (f64, f64), class: &'static str) -> Shape {
     Shape::Line { from, to, class }
 }
 
-/// A text.
+/// Returns a text.
 pub(crate) fn text(at: (f64, f64), text: impl Into<String>, class: &'static str) -> Shape {
     Shape::Text { at, text: text.into(), class }
 }
 
-/// A closed polygon.
+/// Returns a closed polygon.
 pub(crate) fn polygon(corners: &[(f64, f64)], class: &'static str) -> Shape {
     let corners: Vec<String> = corners.iter().map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
     Shape::Path { d: format!("M{}Z", corners.join("L")), class }

@@ -1,4 +1,4 @@
-//! A page that says why something was not done.
+//! The page of an error.
 
 use askama::Template;
 
@@ -15,10 +15,10 @@ struct ProblemPage<'a> {
     instance: &'a str,
 }
 
-/// The page; `faults` are places with what is wrong there.
+/// Returns the page; `faults` are fields with their errors.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn problem(
     title: &str,
     detail: &str,

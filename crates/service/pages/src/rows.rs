@@ -20,13 +20,14 @@ impl JobRow {
     pub fn of(job: Job) -> Self {
         let percent = (100.0 * job.progress.clamp(0.0, 1.0)).round() as u32;
         let (state, created, outcome) = (job.state.as_str(), date(job.created_us), outcome(&job));
+        // A result takes precedence over an error, and this over the last message.
         let message = outcome.or(job.error).unwrap_or(job.message);
         let (id, kind, ship) = (job.id, job.kind, job.ship.unwrap_or_default());
         Self { id, kind, ship, state, percent, message, created }
     }
 }
 
-/// What came of a job that is done.
+/// Returns the result of a completed job in words.
 fn outcome(job: &Job) -> Option<String> {
     let result: Value = serde_json::from_str(job.result.as_deref()?).ok()?;
     if let Some(verdict) = result["verdict"].as_str() {
@@ -37,7 +38,7 @@ fn outcome(job: &Job) -> Option<String> {
     Some(format!("version {version}, {alias}{from}"))
 }
 
-/// What a diagnosis has found.
+/// Returns the result of a diagnosis in words.
 fn found(verdict: &str, result: &Value) -> String {
     let diagnosed = result["diagnosed"].as_str().unwrap_or_default();
     let effects: Vec<&str> =

@@ -1,4 +1,4 @@
-//! What every page has around its content: navigation, style, script and the policy that allows
+//! Frame of every page around its content: navigation, style, script, and the policy that allows
 //! nothing else.
 
 use std::sync::LazyLock;
@@ -7,15 +7,15 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest as _, Sha256};
 
-/// The style of every page.
+/// Style sheet of every page.
 pub(crate) const STYLE: &str = include_str!("../templates/style.css");
-/// The script of every page; each page is complete without it.
+/// Script of every page; each page is complete without it.
 pub(crate) const SCRIPT: &str = include_str!("../templates/script.js");
 
-/// The name of the field in which a form sends its token.
+/// Name of the form field with the token.
 pub const TOKEN: &str = "form_token";
 
-/// The places of the navigation.
+/// Entries of the navigation.
 const PLACES: [(&str, &str); 8] = [
     ("/", "Fleet"),
     ("/compare", "Compare"),
@@ -26,67 +26,68 @@ const PLACES: [(&str, &str); 8] = [
     ("/users", "Users"),
     ("/audit", "Audit"),
 ];
-/// Those for admins.
+/// Entries for admins.
 const ADMINS: [&str; 2] = ["/users", "/audit"];
 
-/// What is around the content of a page.
+/// Frame around the content of a page.
 #[derive(Debug, Clone, Default)]
 pub struct Shell {
-    /// The place in the navigation; empty where it is none of them.
+    /// Entry of the navigation; empty if the page belongs to none.
     pub(crate) place: &'static str,
-    /// What forms send, so that no other web site can send them.
+    /// Token of the forms, which no other web site knows.
     pub(crate) token: String,
-    /// Who looks at it, where anybody has said.
+    /// User of the page, if one is identified.
     pub(crate) signed_in: Option<SignedIn>,
 }
 
-/// Who looks at a page.
+/// User of a page.
 #[derive(Debug, Clone)]
 pub struct SignedIn {
-    /// As the audit names them.
+    /// Name in the audit.
     pub name: String,
-    /// Whether they give rights, and read the audit.
+    /// True if the user manages rights and reads the audit.
     pub is_admin: bool,
-    /// Whether they can sign out.
+    /// True if the user can sign out.
     pub by_session: bool,
 }
 
 impl Shell {
-    /// For pages whose forms send this token.
+    /// Returns the frame of pages whose forms carry this token.
     pub fn new(token: impl Into<String>) -> Self {
         Self { place: "", token: token.into(), signed_in: None }
     }
 
-    /// The same with who looks at it.
+    /// Returns the frame with a user.
     #[must_use]
     pub fn with(self, signed_in: Option<SignedIn>) -> Self {
         Self { signed_in, ..self }
     }
 
-    /// Whether whoever looks at it has signed in.
+    /// Returns true if the user has signed in.
     pub(crate) fn by_session(&self) -> bool {
         self.signed_in.as_ref().is_some_and(|who| who.by_session)
     }
 
-    /// The places of the navigation that this one may go to.
+    /// Entries of the navigation that the user may open.
     pub(crate) fn places(&self) -> Vec<(&'static str, &'static str)> {
+        // Without an identified user, on a loopback interface, all entries are shown.
         let admin = self.signed_in.as_ref().is_none_or(|who| who.is_admin);
         PLACES.into_iter().filter(|(place, _)| admin || !ADMINS.contains(place)).collect()
     }
 
-    /// Whether it is at this place.
+    /// Returns true if the page belongs to this entry.
     pub(crate) fn is_at(&self, place: &str) -> bool {
         self.place == place
     }
 
-    /// At a place of the navigation.
+    /// Returns the frame of a page that belongs to an entry of the navigation.
     pub(crate) fn at(self, place: &'static str) -> Self {
         Self { place, ..self }
     }
 }
 
-/// What a page may load and do: its own style and script by their hashes (Content Security Policy
-/// Level 3, W3C), requests and forms to this server, and nothing else.
+/// Content Security Policy of pages: their own style and script by their hashes (Content Security
+/// Policy Level 3, W3C), requests and forms to this server, and nothing else.
 pub fn policy() -> &'static str {
     static POLICY: LazyLock<String> = LazyLock::new(|| {
         let hash = |text: &str| BASE64_STANDARD.encode(Sha256::digest(text.as_bytes()));

@@ -1,12 +1,14 @@
-//! What a champion leaves of trials over time, in the room of a word.
+//! Sparkline of a champion's unexplained force in its trials over time, as small as a word.
 
 use sistership_report::plots::{Plot, Shape, path};
 
 const SIZE: (f64, f64) = (110.0, 26.0);
 
-/// Residuals in the order of the trials; those that are marked have a dot. None of fewer than two.
+/// Plots residuals in the order of the trials; marked ones have a dot. Returns `None` for fewer
+/// than two, or if all are zero.
 pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<Plot> {
     let all: Vec<(f64, bool)> = all.collect();
+    // Scaled to the largest value, so that the line always fills the height.
     let most = all.iter().map(|(left, _)| *left).fold(0.0, f64::max);
     if all.len() < 2 || most <= 0.0 {
         return None;

@@ -1,4 +1,4 @@
-//! A trial: its track and channels, what the checks remarked, and which versions were made of it.
+//! The page of a trial: track and channels, warnings of the checks, and versions fitted to it.
 
 use askama::Template;
 use serde::Deserialize;
@@ -21,10 +21,10 @@ use crate::picture::svg;
 use crate::plot::{LINES, Track, channels, ground, legend};
 use crate::shell::Shell;
 
-/// Versions of the ship that are looked through.
+/// Number of the ship's versions that are searched.
 const VERSIONS: i64 = 30;
 
-/// What the page is made of.
+/// Inputs of the page.
 pub struct Gathered {
     shell: Shell,
     trial: Trial,
@@ -54,7 +54,7 @@ struct TrialPage<'a> {
     manifest: String,
 }
 
-/// The trials that a version was made of.
+/// The part of a version's document that names its trials.
 #[derive(Deserialize)]
 struct MadeOf {
     recipe: Recipe,
@@ -66,12 +66,13 @@ struct Recipe {
     trials: Vec<RecipeTrial>,
 }
 
-/// Reads what the page shows.
+/// Reads the inputs of the page.
 ///
 /// # Errors
-/// There is no such trial, or the archive does not give its samples.
+/// Returns an error if there is no such trial, or if the archive does not give its samples.
 pub async fn gather(archive: &Archive, shell: Shell, id: &str) -> Result<Gathered> {
     let trial = archive.store.trials().get(id).await?;
+    // The key of the object is the hash by which recipes name the samples.
     let named = RecipeTrial { name: trial.name.clone(), sha256: trial.object_key.clone() };
     let samples = archive.trials(&[named]).await?.pop().unwrap_or_default();
     Ok(Gathered {
@@ -92,12 +93,13 @@ async fn champion(archive: &Archive, ship: &str) -> Result<Option<Champion>> {
     Ok(Some(Champion { number, model: version.model, law }))
 }
 
-/// The versions of the ship that were made of a trial, with their method.
+/// Returns number and method of the ship's versions that were fitted to a trial.
 async fn made_of(archive: &Archive, trial: &Trial) -> Result<Vec<(i64, String)>> {
     let mut found = Vec::new();
     let versions = archive.store.versions();
     for head in versions.list(&trial.ship, &Page::first(VERSIONS)).await?.items {
         let text = versions.get(&trial.ship, head.number).await?.document;
+        // Documents that cannot be parsed are skipped: the list is for information only.
         let made: Option<MadeOf> = serde_json::from_str(&text).ok();
         if made.is_some_and(|made| made.recipe.trials.iter().any(|one| one.sha256 == trial.sha256))
         {
@@ -108,14 +110,15 @@ async fn made_of(archive: &Archive, trial: &Trial) -> Result<Vec<(i64, String)>>
 }
 
 impl Gathered {
-    /// The page; the champion is simulated for it.
+    /// Returns the page, for which the champion is simulated.
     ///
     /// # Errors
-    /// The page cannot be written.
+    /// Returns an error if the page cannot be rendered.
     pub fn html(&self) -> Result<String> {
         let mut tracks = vec![Track::measured(&self.samples)];
         let (mut errors, mut said) = (Vec::new(), None);
         if let Some(champion) = &self.champion {
+            // A champion that cannot be simulated leaves the measured track alone, with the reason.
             match champion.sailed(&self.samples) {
                 Ok((track, found)) => {
                     tracks.push(track);
@@ -148,10 +151,13 @@ fn pretty(json: &str) -> String {
 }
 
 impl Champion {
-    /// What it says of a trial whose rudder and revolutions it is given, and its errors; or why it
-    /// says nothing.
+    /// Simulates the rudder and revolutions of a trial; returns the track and its errors.
+    ///
+    /// # Errors
+    /// Returns the reason, in words, for which the champion cannot be simulated.
     fn sailed(&self, trial: &Samples) -> Result<(Track, Vec<(String, String)>), String> {
         let mut ship = Ship::new(&self.model, &self.law).map_err(|error| error.to_string())?;
+        // The trial may be faster than the approach speed of the model.
         let speeds = trial.channel(Channel::U).into_iter().flatten();
         ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
         let run =

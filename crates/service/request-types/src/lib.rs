@@ -1,6 +1,6 @@
-//! Fields of requests that are checked as they are read, and described by the same figures:
-//! whatever the document says of a name, a text, a count or a number is what
-//! [`Deserialize`](serde::Deserialize) checks, so that neither drifts from the other.
+//! Types of request fields that are checked when they are read, and described by the same limits:
+//! the schema in the OpenAPI document and the check of [`Deserialize`](serde::Deserialize) cannot
+//! differ.
 
 mod number;
 mod text;
@@ -13,12 +13,12 @@ pub use whole::*;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{AdditionalProperties, ObjectBuilder, Schema, Type};
 
-/// The schema of a text that is one of several words.
+/// Returns the schema of a text that is one of several words.
 pub fn one_of(words: impl IntoIterator<Item = &'static str>) -> RefOr<Schema> {
     ObjectBuilder::new().schema_type(Type::String).enum_values(Some(words)).build().into()
 }
 
-/// The schema of an object of which the keys are not fixed here.
+/// Returns the schema of an object with arbitrary keys.
 pub fn any_object() -> RefOr<Schema> {
     ObjectBuilder::new()
         .schema_type(Type::Object)

@@ -1,9 +1,9 @@
-//! Numbers: times, speeds, angles.
+//! Number types: times, speeds, angles.
 
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
 
-/// A number with a rule of its own.
+/// Declares a type of number with a rule.
 macro_rules! number {
     ($(#[$about:meta])* $name:ident: $fits:expr, $says:literal, $schema:expr) => {
         $(#[$about])*
@@ -11,7 +11,7 @@ macro_rules! number {
         pub struct $name(f64);
 
         impl $name {
-            /// The number itself.
+            /// Returns the number.
             pub fn get(self) -> f64 {
                 self.0
             }
@@ -21,6 +21,7 @@ macro_rules! number {
             fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
                 let (value, fits): (f64, fn(f64) -> bool) = (f64::deserialize(from)?, $fits);
                 let wrong = || serde::de::Error::custom(format!("must be {}, is {value}", $says));
+                // The rule alone would accept an infinity where it has no maximum.
                 if value.is_finite() && fits(value) { Ok(Self(value)) } else { Err(wrong()) }
             }
         }
@@ -38,7 +39,7 @@ macro_rules! number {
 }
 
 number! {
-    /// A depth, a speed or a time: above 0.
+    /// A positive depth, speed or time.
     Positive: |value| value > 0.0, "above 0", |number| number.exclusive_minimum(Some(0))
 }
 number! {
@@ -63,7 +64,7 @@ number! {
         |number| number.minimum(Some(-90)).maximum(Some(90)).extensions(not_zero())
 }
 
-/// What a schema adds to say that 0 is refused; the extension is taken for the keyword `not`, see
+/// Returns the extension by which a schema excludes 0; it becomes the keyword `not`, see
 /// `routes::document`.
 fn not_zero() -> Option<utoipa::openapi::extensions::Extensions> {
     Some([("x-not".to_owned(), serde_json::json!({ "const": 0 }))].into_iter().collect())

@@ -1,4 +1,4 @@
-//! Texts: names, words, remarks and what stands in headers.
+//! Text types: names, words, remarks and values of headers.
 
 use std::marker::PhantomData;
 use std::str::FromStr;
@@ -8,15 +8,15 @@ use regex::Regex;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ObjectBuilder, Schema, Type};
 
-/// What a text may be.
+/// Rule of a type of text.
 pub struct TextRule {
-    /// Fewest characters.
+    /// Minimum length, characters.
     pub min: usize,
-    /// Most characters.
+    /// Maximum length, characters.
     pub max: usize,
-    /// What it looks like, as a regular expression that Rust, ECMAScript and Python read alike.
+    /// Regular expression in the common syntax of Rust, ECMAScript and Python.
     pub pattern: &'static str,
-    /// What would be right, in words.
+    /// Description of valid texts.
     pub says: &'static str,
 }
 
@@ -36,7 +36,7 @@ impl TextRule {
     }
 }
 
-/// A text with a rule of its own.
+/// Declares a type of text with a rule.
 macro_rules! text {
     ($(#[$about:meta])* $name:ident: $min:literal..=$max:literal, $pattern:expr, $says:literal) => {
         $(#[$about])*
@@ -46,7 +46,7 @@ macro_rules! text {
         impl $name {
             const RULE: TextRule = TextRule { min: $min, max: $max, pattern: $pattern, says: $says };
 
-            /// The text itself.
+            /// Returns the text.
             #[allow(dead_code, reason = "not every text is kept")]
             pub fn into_string(self) -> String {
                 self.0
@@ -57,6 +57,7 @@ macro_rules! text {
             type Err = String;
 
             fn from_str(text: &str) -> Result<Self, String> {
+                // Compiled once for each type; an invalid pattern would refuse every text.
                 static REGEX: LazyLock<Option<Regex>> = LazyLock::new(|| Regex::new($pattern).ok());
                 Self::RULE.check(&REGEX, text).map(|()| Self(text.to_owned()))
             }
@@ -130,23 +131,23 @@ text! {
         with spaces will do"
 }
 text! {
-    /// Who or what an entry of the audit is about.
+    /// Author or subject of an audit entry.
     AuditName: 1..=300, r"^[^\s\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 300 characters, such as \
         `ann` or `ship:kvlcc2`"
 }
 text! {
-    /// A version by a name that people give it.
+    /// Name of a version for people.
     ModelName: 1..=129, "^[a-z0-9][a-z0-9-]{0,63}(/[a-z0-9][a-z0-9-]{0,63})?$",
         "`ship` (its champion), `ship/number` or `ship/alias`, in lower-case letters, digits and \
          hyphens"
 }
 text! {
-    /// A word of a person that is kept: a reason, an origin, a name.
+    /// A stored remark of a person: a reason, an origin, a name.
     Remark: 1..=1000, r"^[^\x00]*[^\s\x00][^\x00]*$", "1 to 1000 characters that are not all white \
         space, without NUL"
 }
 text! {
-    /// An address of the web.
+    /// URL of a web server.
     WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "an address of the web of 10 to \
         2000 characters, such as `https://example.com/hook`"
 }
@@ -156,7 +157,7 @@ text! {
         characters"
 }
 text! {
-    /// `next` of the page before.
+    /// Cursor: `next` of the previous page.
     Cursor: 1..=4096, "^[0-9A-Za-z_-]+$", "the `next` of a page of this list; leave it out for the \
         first page"
 }
@@ -171,7 +172,7 @@ text! {
         "`*` or the quoted ETag of the last answer, such as \"3\""
 }
 
-/// Checks while it visits: libraries then know the field that an error belongs to.
+/// Visitor that checks the text, so that libraries know the field of an error.
 struct Written<T>(PhantomData<T>);
 
 impl<T: FromStr<Err = String>> serde::de::Visitor<'_> for Written<T> {

@@ -1,14 +1,14 @@
-//! Whole numbers: counts, limits, numbers of versions.
+//! Types of whole numbers: counts, limits, numbers of versions.
 
 use sistership_store::MAX_LIMIT;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
 
-/// The greatest whole number that every reader of JSON holds exactly.
+/// Largest whole number that every reader of JSON represents exactly.
 pub const MAX_WHOLE: i64 = (1 << 53) - 1;
 
-/// A whole number with a least and a greatest value; `deserialize_str` reads it from a path or a
-/// query, `deserialize_i64` from a body.
+/// Declares a type of whole number with a minimum and a maximum; `deserialize_str` reads it from a
+/// path or a query, `deserialize_i64` from a body.
 macro_rules! whole {
     ($(#[$about:meta])* $name:ident: $min:expr, $max:expr, $read:ident $(, default $default:expr)?) => {
         $(#[$about])*
@@ -16,7 +16,7 @@ macro_rules! whole {
         pub struct $name(i64);
 
         impl $name {
-            /// The number itself.
+            /// Returns the number.
             pub fn get(self) -> i64 {
                 self.0
             }
@@ -62,11 +62,11 @@ macro_rules! whole {
 }
 
 whole! {
-    /// The most items of a page.
+    /// Maximum number of items of a page.
     Limit: 1, MAX_LIMIT, deserialize_str, default 100
 }
 whole! {
-    /// The most members of a family that are looked at.
+    /// Maximum number of members of a family that are read.
     MemberLimit: 1, MAX_LIMIT, deserialize_str, default 50
 }
 whole! {
@@ -74,15 +74,15 @@ whole! {
     Number: 1, MAX_WHOLE, deserialize_str
 }
 whole! {
-    /// How many models are drawn from a posterior.
+    /// Number of models drawn from a posterior.
     SampleCount: 2, 1000, deserialize_i64, default 100
 }
 whole! {
-    /// How many models drawn from a posterior sail in a session.
+    /// Number of models drawn from a posterior that are simulated in a session.
     DrawCount: 2, 200, deserialize_i64, default 100
 }
 whole! {
-    /// How many steps a session is asked to sail.
+    /// Number of steps that a session simulates.
     StepCount: 1, 10_000, deserialize_i64, default 1
 }
 whole! {
@@ -94,8 +94,8 @@ whole! {
     MomentUs: 1, MAX_WHOLE, deserialize_i64
 }
 
-/// Reads a number as JSON, a path or a query writes it: 3 and 3.0 are one number to a reader of
-/// JSON Schema.
+/// Visitor that reads a number from JSON, a path or a query: 3 and 3.0 are the same number for JSON
+/// Schema.
 struct Whole<T>(fn(Option<i64>) -> Result<T, String>);
 
 impl<T> serde::de::Visitor<'_> for Whole<T> {
@@ -114,6 +114,7 @@ impl<T> serde::de::Visitor<'_> for Whole<T> {
     }
 
     fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<T, E> {
+        // Beyond 2^53 a float no longer represents each whole number.
         let whole = value.fract() == 0.0 && value.abs() <= MAX_WHOLE as f64;
         self.0(whole.then_some(value as i64)).map_err(E::custom)
     }

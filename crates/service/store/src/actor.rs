@@ -1,4 +1,4 @@
-//! Who does what is written: whoever the present task works for.
+//! The author of changes: the person, key or program for which the present task works.
 
 use std::future::Future;
 
@@ -6,44 +6,45 @@ tokio::task_local! {
     static ACTING: Actor;
 }
 
-/// The name of the program itself, where nobody has asked it.
+/// Author of changes that the program makes by itself, outside of a request.
 const PROGRAM: &str = "sistership";
-/// Whoever has the archive's own files: what commands do on them.
+/// Author of changes made by commands that work directly on the archive's files.
 const COMMAND_LINE: &str = "command-line";
 
-/// Somebody who changes what is kept.
+/// Author of a change to the store.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Actor {
-    /// A user's name, `key:PREFIX` of a service key, or one of the names that no user may have.
+    /// Name of a user, `key:PREFIX` of a service key, or a reserved name of the program.
     pub name: String,
-    /// From where: an address, a job, a process.
+    /// Origin of the request: a network address, a job or a process.
     pub origin: String,
 }
 
 impl Actor {
-    /// Somebody of this name who asks from there.
+    /// Creates an author with a name and the origin of the request.
     pub fn new(name: impl Into<String>, origin: impl Into<String>) -> Self {
         Self { name: name.into(), origin: origin.into() }
     }
 
-    /// A command on the archive's own files.
+    /// Returns the author of commands on the archive's own files.
     pub fn command_line() -> Self {
         Self::new(COMMAND_LINE, format!("process {}", std::process::id()))
     }
 
-    /// Whoever the present task works for; the program itself where nobody is named.
+    /// Returns the author of the present task; the program itself outside of [`Actor::acting`].
     pub fn current() -> Self {
         let program = || Self::new(PROGRAM, format!("process {}", std::process::id()));
         ACTING.try_with(Clone::clone).unwrap_or_else(|_| program())
     }
 
-    /// Does something in this one's name. Tasks that the work spawns must be given it anew.
+    /// Runs a future in the name of this author. A task-local does not follow `tokio::spawn`: tasks
+    /// that the work spawns must be wrapped again.
     pub async fn acting<T>(self, work: impl Future<Output = T>) -> T {
         ACTING.scope(self, work).await
     }
 
-    /// Whether it is no person and no key: the program, or whoever has the archive's own files and
-    /// with them every right.
+    /// Returns true if the author is neither a person nor a key: the program, or a command with
+    /// direct access to the archive's files, which has every right.
     pub(crate) fn is_program(&self) -> bool {
         self.name == PROGRAM || self.name == COMMAND_LINE
     }

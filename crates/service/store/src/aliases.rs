@@ -15,12 +15,12 @@ use crate::store::Store;
 use crate::version;
 use crate::webhooks;
 
-/// The alias whose moves others are told of.
+/// The alias whose moves are reported to webhooks.
 const CHAMPION: &str = "champion";
 
 statements! {
-    // Moves within one model wait for each other, so that the history tells where an alias came
-    // from. SQLite's writers wait for each other anyway.
+    // The row of the model is locked, so that moves within one model are serial and the history has
+    // no gap. SQLite has one writer and needs no row lock.
     LOCK = pair("SELECT name FROM models WHERE name = $1", "SELECT name FROM models WHERE name = \
         $1 FOR UPDATE");
     PUT = same("INSERT INTO aliases (model, alias, version_number, revision) VALUES ($1, $2, $3, \
@@ -32,21 +32,22 @@ statements! {
         alias = $2");
     LIST = same("SELECT model, alias, version_number, revision FROM aliases \
         WHERE model = $1 AND alias > COALESCE($2, '') ORDER BY alias LIMIT $3");
+    // Descending list: without a cursor it starts below i64::MAX, that is, at the latest revision.
     HISTORY = same("SELECT id, model, alias, from_number, to_number, revision, reason, actor, \
         moved_us FROM alias_moves WHERE model = $1 AND alias = $2 AND revision < COALESCE($3, \
         9223372036854775807) ORDER BY revision DESC LIMIT $4");
 }
 
 record! {
-    /// Where an alias stands.
+    /// An alias and the version that it points to.
     pub struct Alias {
         /// The model.
         pub model: String,
         /// The alias: `champion`, `candidate`, any.
         pub alias: String,
-        /// The version it stands for.
+        /// Number of the version that it points to.
         pub version_number: i64,
-        /// 1 at first, one more with each move.
+        /// Revision of the alias: 1 at first, increased by one with each move.
         pub revision: i64,
     }
 }
@@ -60,17 +61,17 @@ record! {
         pub model: String,
         /// The alias.
         pub alias: String,
-        /// The version it stood for; none at first.
+        /// Number of the version before the move; none for the first one.
         pub from_number: Option<i64>,
-        /// The version it stands for since.
+        /// Number of the version after the move.
         pub to_number: i64,
-        /// The revision it got.
+        /// Revision of the alias after the move.
         pub revision: i64,
-        /// Why.
+        /// Reason of the move.
         pub reason: String,
-        /// Who.
+        /// Author of the move.
         pub actor: String,
-        /// When.
+        /// Time of the move, microseconds since 1970.
         pub moved_us: i64,
     }
 }
@@ -83,14 +84,14 @@ record! {
     }
 }
 
-/// What the caller believes of an alias that is to move.
+/// Precondition on the present revision of an alias that is to move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expect {
-    /// Nothing.
+    /// No condition.
     Any,
-    /// That it does not exist.
+    /// The alias does not exist yet.
     Absent,
-    /// That it is at this revision.
+    /// The alias is at this revision.
     Revision(i64),
 }
 
@@ -104,32 +105,36 @@ impl Expect {
     }
 }
 
-/// A move to make.
+/// A requested move of an alias.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AliasMove {
     /// The alias.
     pub alias: String,
-    /// What must be true of it beforehand.
+    /// Precondition of the move (compare-and-swap).
     pub expect: Expect,
-    /// Why it moves.
+    /// Reason of the move, kept in the history.
     pub reason: String,
-    /// Who moves it.
+    /// Author of the move, kept in the history.
     pub actor: String,
 }
 
-/// The aliases of a store.
+/// Repository of aliases.
 #[derive(Debug, Clone, Copy)]
 pub struct Aliases<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Names for versions that move, and how they have moved.
+    /// Returns the repository of aliases and their history.
     pub fn aliases(&self) -> Aliases<'_> {
         Aliases(self)
     }
 }
 
 impl Aliases<'_> {
-    /// Moves an alias of a model to the version `to`, if it is where the move expects it.
+    /// Moves an alias of a model to the version number `to`.
+    ///
+    /// # Errors
+    /// Returns an error if the precondition of the move does not hold, or if the version does not
+    /// exist.
     pub async fn move_to(&self, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
         let mut tx = self.0.begin().await?;
         let alias = shift(self.0, &mut tx, model, to, change).await?;
@@ -137,20 +142,20 @@ impl Aliases<'_> {
         Ok(alias)
     }
 
-    /// Where an alias stands.
+    /// Returns an alias of a model.
     pub async fn get(&self, model: &str, alias: &str) -> Result<Alias> {
         let found = self.0.database().optional(GET, args![model: model, alias: alias]).await?;
         found.ok_or_else(|| StoreError::missing("alias", format!("{model}/{alias}")))
     }
 
-    /// The aliases of a model by name.
+    /// Lists the aliases of a model, ordered by name.
     pub async fn list(&self, model: &str, page: &Page) -> Result<List<Alias>> {
         let values = args![model: model, after: &page.after, limit: page.fetch()?];
         let aliases = self.0.database().all(LIST, values).await?;
         Ok(page.of(aliases, |alias: &Alias| alias.alias.clone()))
     }
 
-    /// How an alias has moved, the latest first, by revision.
+    /// Lists the moves of an alias, the latest first; the cursor is the revision.
     pub async fn history(
         &self,
         model: &str,
@@ -172,6 +177,7 @@ pub(crate) async fn shift(
     change: &AliasMove,
 ) -> Result<Alias> {
     checks::name("alias", &change.alias)?;
+    // The lock comes before the read of the present revision: between both no other move may pass.
     lock(tx, model).await?;
     version::check_exists(tx, model, to).await?;
     let before: Option<Alias> = tx.optional(GET, args![model: model, alias: &change.alias]).await?;
@@ -187,6 +193,7 @@ pub(crate) async fn shift(
     if change.alias == CHAMPION {
         let about =
             json!({ "from": from, "version": to, "reason": change.reason, "actor": change.actor });
+        // Within the same transaction: a move that is undone is never reported.
         webhooks::tell(store, tx, webhooks::CHAMPION_MOVED, model, about).await?;
     }
     Ok(after)

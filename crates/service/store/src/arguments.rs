@@ -1,14 +1,16 @@
-//! The values of a statement, each with the name of its field, checked before any of them is sent.
+//! Arguments of SQL statements, each with the name of its field, checked before any of them is
+//! sent.
 
 use crate::checks;
 use crate::error::Result;
 
-/// The values of `$1`, `$2`, ..., in order.
+/// Arguments of a statement, the values of `$1`, `$2`, ... in order.
 pub(crate) type Args<'a> = &'a [(&'static str, Arg<'a>)];
 
-/// One value.
+/// One argument of a statement; `None` is SQL's NULL.
 #[derive(Clone, Copy)]
 pub(crate) enum Arg<'a> {
+    // The three types that both databases store; a bool is an integer, a document a text.
     Text(Option<&'a str>),
     Integer(Option<i64>),
     Real(Option<f64>),
@@ -38,7 +40,8 @@ macro_rules! bind {
 }
 pub(crate) use bind;
 
-/// No NUL, no NaN, no text beyond the limit, in whatever statement.
+/// Checks all arguments of a statement: no NUL character, no NaN or infinity, no text beyond the
+/// limit of length.
 pub(crate) fn check(args: Args<'_>) -> Result<()> {
     args.iter().try_for_each(|(field, arg)| match arg {
         Arg::Text(Some(value)) => checks::text(field, value),
@@ -95,7 +98,7 @@ impl From<Option<f64>> for Arg<'_> {
     }
 }
 
-/// Names as a JSON list, one argument however many they are.
+/// Encodes names as a JSON list, so that a list of any length is one argument.
 pub(crate) fn names_list(names: &[String]) -> String {
     serde_json::Value::from(names).to_string()
 }

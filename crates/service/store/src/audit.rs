@@ -1,5 +1,5 @@
-//! The audit: what has been done by whom, the latest first, and whether all of it is as it was
-//! entered.
+//! The audit log: changes with their authors, the latest first, and the check that no entry was
+//! changed afterwards.
 
 use crate::arguments::args;
 use crate::chain::AuditHead;
@@ -10,7 +10,7 @@ use crate::page::{List, Page};
 use crate::statements::{same, statements};
 use crate::store::Store;
 
-/// Entries that are checked at a time.
+/// Number of entries that are read and checked at a time.
 const ROWS: i64 = 1000;
 
 /// The columns of an entry.
@@ -37,36 +37,37 @@ statements! {
     BEYOND = entries!("number > $1 ORDER BY number LIMIT 1");
 }
 
-/// Which entries to list.
+/// Selection of audit entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AuditFilter<'a> {
-    /// All of them.
+    /// All entries.
     All,
-    /// Those of one actor.
+    /// Entries of one author.
     Actor(&'a str),
-    /// Those about one thing.
+    /// Entries about one subject, such as `ship:NAME`.
     Subject(&'a str),
 }
 
-/// The audit of a store.
+/// Repository of audit entries.
 #[derive(Debug, Clone, Copy)]
 pub struct Audit<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// What has been done by whom.
+    /// Returns the audit log.
     pub fn audit(&self) -> Audit<'_> {
         Audit(self)
     }
 }
 
 impl Audit<'_> {
-    /// Entries, the latest first, by number.
+    /// Lists entries, the latest first; the cursor is the number of the entry.
     pub async fn list(
         &self,
         filter: AuditFilter<'_>,
         page: &Page<i64>,
     ) -> Result<List<AuditEntry, i64>> {
         let (database, limit) = (self.0.database(), page.fetch()?);
+        // A statement for each filter, so that each uses an index.
         let of = |statement, whom| async move {
             database.all(statement, args![after: page.after, limit: limit, whom: whom]).await
         };
@@ -78,19 +79,21 @@ impl Audit<'_> {
         Ok(page.of(entries, |entry: &AuditEntry| entry.number))
     }
 
-    /// The number and the hash of the last entry, as they were noted beside it: who keeps a copy of
-    /// them elsewhere can tell later whether entries up to there were written anew.
+    /// Returns number and hash of the last entry, as they are stored in a row of their own. A copy
+    /// of both that is kept elsewhere shows later if entries up to that number were replaced.
     pub async fn head(&self) -> Result<AuditHead> {
         let head = self.0.database().optional(HEAD, &[]).await?;
         Ok(head.unwrap_or(AuditHead { number: 0, sha256: String::new() }))
     }
 
-    /// What is not as it was entered: entries that were changed, taken out, put in, or cut off at
-    /// the end. Others may add some meanwhile. Returns also how many entries there were.
+    /// Verifies the hash chain: finds entries that were changed, removed, inserted, or cut off at
+    /// the end. Entries may be added meanwhile. Returns also the number of entries.
     pub async fn faults(&self) -> Result<(i64, Vec<Fault>)> {
         let head = self.head().await?;
         let (mut faults, mut last) = (Vec::new(), AuditHead { number: 0, sha256: String::new() });
         loop {
+            // The head was read first: entries that are added while this runs lie beyond it and are
+            // not judged.
             let values = args![after: last.number, until: head.number, limit: ROWS];
             let entries: Vec<AuditEntry> = self.0.database().all(FOLLOWING, values).await?;
             if entries.is_empty() {
@@ -105,7 +108,7 @@ impl Audit<'_> {
         Ok((head.number, faults))
     }
 
-    /// What is wrong with the end of the list.
+    /// Checks that the list ends with the entry that the head names.
     async fn end(&self, head: &AuditHead, last: &AuditHead) -> Result<Option<Fault>> {
         if last != head {
             let message =
@@ -115,7 +118,7 @@ impl Audit<'_> {
         let beyond: Option<AuditEntry> =
             self.0.database().optional(BEYOND, args![number: head.number]).await?;
         match beyond {
-            // Entered since the head was read.
+            // The head has advanced, so the entry was added since the head was read.
             Some(_) if self.head().await?.number > head.number => Ok(None),
             Some(entry) => {
                 Ok(Some(fault(entry.number, "comes after the last entry as noted".into())))
@@ -125,7 +128,8 @@ impl Audit<'_> {
     }
 }
 
-/// What is wrong with an entry that follows another.
+/// Returns the fault of an entry that follows `last`, if there is one: its number, the hash of its
+/// predecessor, or its own hash.
 fn wrong(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
     let expected = last.number + 1;
     if entry.number != expected {

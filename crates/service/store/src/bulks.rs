@@ -1,4 +1,5 @@
-//! Refinements of all members of a family: chunks of ships as jobs, and one outcome for each ship.
+//! Bulk refinements of all members of a family: chunks of ships as jobs, and one outcome for each
+//! ship.
 
 use serde_json::json;
 
@@ -21,6 +22,8 @@ statements! {
     INSERT = same("INSERT INTO bulk_refinements (id, family, request, ships, created_us) VALUES \
         ($1, $2, $3, $4, $5) RETURNING id, family, request, ships, created_us");
     GET = same("SELECT id, family, request, ships, created_us FROM bulk_refinements WHERE id = $1");
+    // '~' sorts after every id (letters, digits and hyphens): without a cursor the list starts at
+    // the latest one.
     LIST = same("SELECT id, family, request, ships, created_us FROM bulk_refinements \
         WHERE family = COALESCE($1, family) AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
     CHUNK = same("INSERT INTO bulk_chunks (bulk, number, job) VALUES ($1, $2, $3)");
@@ -29,19 +32,24 @@ statements! {
         c.bulk = $1 GROUP BY j.state ORDER BY j.state");
     JOBS = same(job!("SELECT", "FROM jobs WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = \
         $1) AND state = COALESCE($2, state) ORDER BY id"));
+    // A queued chunk is cancelled at once; a running one is only marked, and its worker stops it.
     CANCEL = same("UPDATE jobs SET cancel_requested = 1, \
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
         WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('queued', \
         'running')");
+    // Attempts and lost workers are reset, as for a new job; the fence stays and keeps old workers
+    // out.
     RETRY = same("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = 0, \
         message = '', error = NULL, worker = NULL, finished_us = NULL, cancel_requested = 0 \
         WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('failed', \
         'cancelled')");
     KEEP = same("INSERT INTO bulk_outcomes (bulk, ship, outcome, version_id, worst_change, \
         document, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7)");
+    // Only a candidate can be promoted; any other outcome changes no row.
     PROMOTED = same("UPDATE bulk_outcomes SET outcome = 'champion' WHERE bulk = $1 AND ship = $2 \
         AND outcome = 'candidate'");
+    // Outer join: outcomes without a version are listed too.
     OUTCOMES = same("SELECT o.bulk, o.ship, o.outcome, v.number AS version, o.worst_change, \
         o.document, o.created_us FROM bulk_outcomes o LEFT JOIN versions v ON v.id = o.version_id \
         WHERE o.bulk = $1 AND o.outcome = COALESCE($2, o.outcome) AND o.ship > COALESCE($3, '') \
@@ -51,47 +59,47 @@ statements! {
 }
 
 record! {
-    /// A refinement of all members of a family.
+    /// A bulk refinement of a family.
     pub struct Bulk {
         /// Its id.
         pub id: String,
         /// The family.
         pub family: String,
-        /// What was asked, JSON.
+        /// Request, JSON.
         pub request: String,
-        /// How many ships are to be refined.
+        /// Number of ships to refine.
         pub ships: i64,
-        /// When it was asked for.
+        /// Time of the request, microseconds since 1970.
         pub created_us: i64,
     }
 }
 
 record! {
-    /// Chunks in one state.
+    /// Number of chunks in one state.
     pub struct ChunkCount {
         /// The state.
         pub state: JobState,
-        /// How many.
+        /// Number of chunks.
         pub jobs: i64,
-        /// When the first of them was begun.
+        /// Start of the earliest chunk, microseconds since 1970.
         pub started_us: Option<i64>,
-        /// When the last of them ended.
+        /// End of the latest chunk, microseconds since 1970.
         pub finished_us: Option<i64>,
     }
 }
 
 record! {
-    /// Ships with one outcome.
+    /// Number of ships with one outcome.
     pub struct OutcomeCount {
         /// `champion`, `candidate`, `unchanged` or `refused`.
         pub outcome: String,
-        /// How many.
+        /// Number of ships.
         pub ships: i64,
     }
 }
 
 record! {
-    /// What has become of a ship.
+    /// Outcome of a bulk refinement for one ship.
     pub struct BulkOutcome {
         /// The refinement.
         pub bulk: String,
@@ -99,18 +107,19 @@ record! {
         pub ship: String,
         /// `champion`, `candidate`, `unchanged` or `refused`.
         pub outcome: String,
-        /// The number of the version that came of it, if one did.
+        /// Number of the resulting version, if there is one.
         pub version: Option<i64>,
-        /// By how much its worst metric is worse than before; below zero where all are better.
+        /// Largest deterioration of a metric relative to the version before; negative if all
+        /// improved.
         pub worst_change: Option<f64>,
-        /// Before and after, or why not, JSON.
+        /// Metrics before and after, or the reason of a refusal, JSON.
         pub document: String,
         /// When.
         pub created_us: i64,
     }
 }
 
-/// What a worker has made of a ship.
+/// Outcome of one ship, as a worker submits it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewOutcome {
     /// The ship.
@@ -119,26 +128,26 @@ pub struct NewOutcome {
     pub outcome: String,
     /// The version and the aliases that move to it.
     pub version: Option<(NewVersion, Vec<AliasMove>)>,
-    /// By how much its worst metric is worse than before.
+    /// Largest deterioration of a metric relative to the version before.
     pub worst_change: Option<f64>,
-    /// Before and after, or why not, JSON.
+    /// Metrics before and after, or the reason of a refusal, JSON.
     pub document: String,
 }
 
-/// The bulk refinements of a store.
+/// Repository of bulk refinements.
 #[derive(Debug, Clone, Copy)]
 pub struct Bulks<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Refinements of whole families.
+    /// Returns the repository of bulk refinements.
     pub fn bulks(&self) -> Bulks<'_> {
         Bulks(self)
     }
 }
 
 impl Bulks<'_> {
-    /// Queues a refinement with its chunks, all or nothing. `chunk` writes the request of a chunk
-    /// from the id of the refinement and the ships of the chunk.
+    /// Queues a bulk refinement with its chunks, all or nothing. `chunk` writes the request of a
+    /// chunk from the id of the bulk refinement and the ships of the chunk.
     pub async fn create(
         &self,
         family: &str,
@@ -178,12 +187,12 @@ impl Bulks<'_> {
         Ok(page.of(bulks, |bulk: &Bulk| bulk.id.clone()))
     }
 
-    /// How many chunks stand where.
+    /// Counts the chunks by state.
     pub async fn chunks(&self, id: &str) -> Result<Vec<ChunkCount>> {
         self.0.database().all(CHUNKS, args![bulk: id]).await
     }
 
-    /// The jobs of the chunks in a state, or all.
+    /// Returns the jobs of the chunks, optionally of one state only.
     pub async fn jobs(&self, id: &str, state: Option<JobState>) -> Result<Vec<Job>> {
         self.0.database().all(JOBS, args![bulk: id, state: state.map(JobState::as_str)]).await
     }
@@ -194,8 +203,7 @@ impl Bulks<'_> {
         self.all(CANCEL, "bulk-refinement.cancel", id, values).await
     }
 
-    /// Puts the chunks that failed or were cancelled back in the queue; ships that have an outcome
-    /// keep it.
+    /// Queues the failed and cancelled chunks again; ships that have an outcome keep it.
     pub async fn retry(&self, id: &str) -> Result<u64> {
         self.all(RETRY, "bulk-refinement.retry", id, &[("bulk", id.into())]).await
     }
@@ -217,7 +225,7 @@ impl Bulks<'_> {
         Ok(changed)
     }
 
-    /// What has become of the ships, by name.
+    /// Lists the outcomes, ordered by ship.
     pub async fn outcomes(
         &self,
         id: &str,
@@ -229,12 +237,12 @@ impl Bulks<'_> {
         Ok(page.of(outcomes, |outcome: &BulkOutcome| outcome.ship.clone()))
     }
 
-    /// How many ships have which outcome.
+    /// Counts the ships by outcome.
     pub async fn counts(&self, id: &str) -> Result<Vec<OutcomeCount>> {
         self.0.database().all(COUNTS, args![bulk: id]).await
     }
 
-    /// Makes a candidate of this refinement champion, by a person's word.
+    /// Promotes a candidate of this bulk refinement to champion, on the decision of a person.
     pub async fn promote(
         &self,
         id: &str,
@@ -244,6 +252,7 @@ impl Bulks<'_> {
     ) -> Result<()> {
         let mut tx = self.0.begin().await?;
         crate::aliases::shift(self.0, &mut tx, ship, version, change).await?;
+        // Without a candidate the transaction is dropped, and the move of the alias with it.
         if tx.execute(PROMOTED, args![bulk: id, ship: ship]).await? == 0 {
             return Err(StoreError::conflict(
                 "outcome",
@@ -254,8 +263,8 @@ impl Bulks<'_> {
         tx.commit().await
     }
 
-    /// Keeps what a worker has made of a chunk and ends its job, all or nothing: a worker that has
-    /// lost the job to another (an older `fence`) leaves nothing behind, and no ship gets two
+    /// Stores the outcomes of a chunk and completes its job, all or nothing: a worker that has lost
+    /// the job to another one (its `fence` is older) changes nothing, and no ship gets two
     /// outcomes.
     pub async fn commit(
         &self,
@@ -274,7 +283,7 @@ impl Bulks<'_> {
     }
 }
 
-/// What stands for a refinement of a family in the audit.
+/// Returns the subject of audit entries about a bulk refinement.
 fn subject(id: &str) -> String {
     format!("bulk-refinement:{id}")
 }

@@ -1,6 +1,6 @@
-//! How entries come into the audit: as the last statements of the transaction that they tell of.
-//! Whoever adds some holds the row of the last one until the commit, so that entries have an order;
-//! as nothing is waited for after that, no two can wait for each other.
+//! Appending of audit entries, as the last statements of the transaction that they describe. The
+//! writer holds the row of the last entry until the commit, which gives the entries an order; as it
+//! waits for nothing else after that, no deadlock is possible.
 
 use crate::arguments::args;
 use crate::connections::DatabaseTransaction;
@@ -10,7 +10,7 @@ use crate::record::record;
 use crate::statements::{same, statements};
 
 statements! {
-    // Takes the numbers, and the lock; the hash is still that of the entry before.
+    // Reserves `$1` numbers and locks the row; the hash is still that of the entry before.
     TAKE = same("INSERT INTO audit_head (one, number, sha256) VALUES (1, $1, '') \
         ON CONFLICT (one) DO UPDATE SET number = audit_head.number + $1 RETURNING number, sha256");
     ENTER = same("INSERT INTO audit (number, at_us, actor, origin, action, subject, state_before, \
@@ -19,22 +19,23 @@ statements! {
 }
 
 record! {
-    /// The last entry.
+    /// Number and hash of the last audit entry.
     pub struct AuditHead {
-        /// Its number; 0 where there is none.
+        /// Number of the entry; 0 if there is none.
         pub number: i64,
         /// Its hash.
         pub sha256: String,
     }
 }
 
-/// Enters what a transaction has done.
+/// Appends the entries of a transaction to the hash chain.
 pub(crate) async fn enter(tx: &mut DatabaseTransaction, entries: Vec<Entry>) -> Result<()> {
     let Ok(count) = i64::try_from(entries.len()) else { return Ok(()) };
     if count == 0 {
         return Ok(());
     }
     let AuditHead { number, mut sha256 } = tx.one(TAKE, args![count: count]).await?;
+    // `number` is the last one reserved; the first one of this transaction is `number - count + 1`.
     for (number, entry) in (number - count + 1..).zip(entries) {
         let entry = entry.numbered(number, sha256);
         let values = args![number: number, at_us: entry.at_us, actor: &entry.actor,
@@ -43,6 +44,7 @@ pub(crate) async fn enter(tx: &mut DatabaseTransaction, entries: Vec<Entry>) -> 
             state_after: &entry.state_after, previous_sha256: &entry.previous_sha256,
             sha256: &entry.sha256];
         tx.execute(ENTER, values).await?;
+        // The next entry refers to this hash.
         sha256 = entry.sha256;
     }
     tx.execute(LAST, args![sha256: &sha256]).await.map(drop)

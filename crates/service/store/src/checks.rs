@@ -1,18 +1,19 @@
-//! What is refused before any database sees it.
+//! Checks of values before they are sent to a database.
 
 use serde::de::IgnoredAny;
 
 use crate::error::{Result, StoreError};
 
-/// The longest text that a field may hold.
+/// Maximum length of a text field, bytes.
 pub const MAX_TEXT_BYTES: usize = 16 << 20;
-/// The longest name of a ship, law, model, alias or kind.
+/// Maximum length of the name of a ship, law, model, alias or kind, characters.
 pub const MAX_NAME_CHARS: usize = 200;
-/// The longest text of one line: a subject of OpenID Connect (Core 1.0, 2), an address.
+/// Maximum length of a text of one line, characters: a subject of OpenID Connect (Core 1.0, 2), an
+/// address.
 const MAX_LINE_CHARS: usize = 255;
 
-/// A name that can stand in a URL path: not empty, not long, no white space, control character or
-/// slash.
+/// Checks a name that is part of a URL path: not empty, not too long, no white space, control
+/// character or slash.
 pub(crate) fn name(field: &'static str, value: &str) -> Result<()> {
     if value.is_empty() {
         return Err(StoreError::invalid(field, "must not be empty"));
@@ -26,15 +27,16 @@ pub(crate) fn name(field: &'static str, value: &str) -> Result<()> {
     }
 }
 
-/// A text that is one JSON document.
+/// Checks that a text is one JSON document.
 pub(crate) fn json(field: &'static str, value: &str) -> Result<()> {
     text(field, value)?;
+    // Checks the syntax without building the document in memory.
     serde_json::from_str::<IgnoredAny>(value)
         .map(drop)
         .map_err(|error| StoreError::invalid(field, format!("not a JSON document: {error}")))
 }
 
-/// A SHA-256 in lower-case hexadecimal.
+/// Checks that a text is a SHA-256 in lower-case hexadecimal.
 pub(crate) fn sha256(field: &'static str, value: &str) -> Result<()> {
     let hexadecimal = |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
     match value.len() == 64 && value.bytes().all(hexadecimal) {
@@ -43,7 +45,7 @@ pub(crate) fn sha256(field: &'static str, value: &str) -> Result<()> {
     }
 }
 
-/// A text without NUL (PostgreSQL has none) and not too long.
+/// Checks a text: no NUL (PostgreSQL cannot store it), and not too long.
 pub(crate) fn text(field: &'static str, value: &str) -> Result<()> {
     if value.len() > MAX_TEXT_BYTES {
         return Err(StoreError::invalid(field, format!("longer than {MAX_TEXT_BYTES} bytes")));
@@ -54,7 +56,7 @@ pub(crate) fn text(field: &'static str, value: &str) -> Result<()> {
     }
 }
 
-/// A text of one line that says something and is not long.
+/// Checks a text of one line: not empty, not too long, no control character.
 pub(crate) fn line(field: &'static str, value: &str) -> Result<()> {
     if value.is_empty() || value.chars().count() > MAX_LINE_CHARS {
         let message = format!("must have 1 to {MAX_LINE_CHARS} characters");
@@ -66,7 +68,7 @@ pub(crate) fn line(field: &'static str, value: &str) -> Result<()> {
     }
 }
 
-/// A number that is one.
+/// Checks that a number is finite.
 pub(crate) fn finite(field: &'static str, value: f64) -> Result<()> {
     match value.is_finite() {
         true => Ok(()),
@@ -74,7 +76,7 @@ pub(crate) fn finite(field: &'static str, value: f64) -> Result<()> {
     }
 }
 
-/// A number that is zero or more.
+/// Checks that a number is finite and not negative.
 pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<()> {
     finite(field, value)?;
     match value >= 0.0 {
@@ -83,7 +85,7 @@ pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<()> {
     }
 }
 
-/// A count.
+/// Checks that a count is not negative.
 pub(crate) fn count(field: &'static str, value: i64) -> Result<()> {
     match value >= 0 {
         true => Ok(()),

@@ -1,5 +1,5 @@
-//! The one transaction that ends a refinement: its version, the aliases that move to it, its
-//! report, and its job.
+//! The transaction that ends a refinement: its version, the aliases that move to it, its report,
+//! and its job.
 
 use crate::aliases::AliasMove;
 use crate::error::Result;
@@ -12,7 +12,7 @@ use crate::version::{NewVersion, VersionHead};
 use crate::versions;
 use crate::work;
 
-/// What a refinement, or the training of a learned branch, brings.
+/// Result of a refinement, or of the training of a learned correction, to be stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refinement {
     /// The version.
@@ -21,38 +21,38 @@ pub struct Refinement {
     pub moves: Vec<AliasMove>,
     /// The report on it; its `version_id` is filled in.
     pub report: Option<NewReport>,
-    /// The job that goes on from it, if one does.
+    /// The subsequent job, if there is one.
     pub next: Option<NewJob>,
 }
 
-/// What is kept of a refinement, of which the result of its job is written.
+/// Rows of a refinement as they were stored, from which the result of its job is written.
 #[derive(Debug, Clone, Copy)]
 pub struct Kept<'a> {
-    /// The version, now numbered.
+    /// The version, with its number.
     pub version: &'a VersionHead,
     /// The report on it.
     pub report: Option<&'a ReportHead>,
-    /// The job that goes on from it.
+    /// The subsequent job.
     pub next: Option<&'a Job>,
 }
 
-/// What has become of a refinement.
+/// A refinement as it was stored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Committed {
-    /// The version, now numbered.
+    /// The version, with its number.
     pub version: VersionHead,
     /// The report on it.
     pub report: Option<ReportHead>,
-    /// The job, done.
+    /// The completed job.
     pub job: Job,
 }
 
 impl Store {
-    /// Keeps what a refinement brings and ends its job, all or nothing: a worker that has lost the
-    /// job to another (an older `fence`) leaves nothing behind. `result` writes the job's result,
-    /// JSON, from what was kept. Where the version has a learned branch its weights are in
-    /// `objects`; where they are no longer there, because [`Store::remove_unreferred`] was faster,
-    /// nothing is kept.
+    /// Stores the result of a refinement and completes its job, all or nothing: a worker that has
+    /// lost the job to another one (its `fence` is older) changes nothing. `result` writes the
+    /// job's result, JSON, from the stored rows. The weights of a learned correction must be in
+    /// `objects`; if they are no longer there, because [`Store::remove_unreferred`] has removed
+    /// them meanwhile, nothing is stored.
     pub async fn commit_refinement<F>(
         &self,
         objects: Option<&Objects>,
@@ -66,6 +66,8 @@ impl Store {
         let mut tx = self.begin().await?;
         let version =
             versions::insert(self, &mut tx, &refinement.version, &refinement.moves).await?;
+        // Checked after the row of the version is written: from then on the removal of unreferenced
+        // objects waits for this transaction, or has already removed them.
         if let Some(objects) = objects {
             objects.must_have(refinement.version.weights.iter().cloned()).await?;
         }

@@ -1,5 +1,5 @@
-//! The one transaction that ends a diagnosis: its report, what was found, the version that came of
-//! it, and its job.
+//! The transaction that ends a diagnosis: its report, its findings, the resulting version, and its
+//! job.
 
 use serde_json::{Value, json};
 
@@ -16,51 +16,52 @@ use crate::versions;
 use crate::webhooks;
 use crate::work;
 
-/// What a diagnosis brings.
+/// Result of a diagnosis, to be stored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
-    /// The version with the effects and the aliases that move to it, where effects were found.
+    /// The version with the effects found and the aliases that move to it; none if no effect was
+    /// found.
     pub version: Option<(NewVersion, Vec<AliasMove>)>,
-    /// The report; its `version_id` becomes that of the version that came of it.
+    /// The report; its `version_id` becomes that of the resulting version.
     pub report: NewReport,
-    /// What was found.
+    /// The findings.
     pub found: NewDiagnosed,
-    /// The diagnosis of what is new alone, where this one is of earlier trials, too.
+    /// The diagnosis of the new trials alone, if this one includes earlier trials.
     pub of_new: Option<PartDiagnosis>,
-    /// How many times as much the champion leaves of new trials as of those that it was fitted on,
-    /// where that is known.
+    /// Ratio of the residual of the champion on new trials to that on the trials of its fit, if
+    /// known.
     pub drift: Option<f64>,
 }
 
-/// A diagnosis of a part of the trials, of which no version comes.
+/// A diagnosis of a part of the trials, which gives no version.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartDiagnosis {
     /// The report.
     pub report: NewReport,
-    /// What was found.
+    /// The findings.
     pub found: NewDiagnosed,
 }
 
-/// The verdict by which nothing is missing.
+/// The verdict of a diagnosis that finds no missing effect.
 const COMPLETE: &str = "complete";
 
-/// What has become of a diagnosis.
+/// A diagnosis as it was stored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CommittedDiagnosis {
-    /// The version, now numbered.
+    /// The resulting version, with its number.
     pub version: Option<VersionHead>,
     /// The report.
     pub report: ReportHead,
-    /// What was found.
+    /// The findings.
     pub found: Diagnosed,
-    /// The job, done.
+    /// The completed job.
     pub job: Job,
 }
 
 impl Store {
-    /// Keeps what a diagnosis brings and ends its job, all or nothing: a worker that has lost the
-    /// job to another (an older `fence`) leaves nothing behind. `result` writes the job's result,
-    /// JSON, from what was kept.
+    /// Stores the result of a diagnosis and completes its job, all or nothing: a worker that has
+    /// lost the job to another one (its `fence` is older) changes nothing. `result` writes the
+    /// job's result, JSON, from the stored rows.
     pub async fn commit_diagnosis<F>(
         &self,
         job: &str,
@@ -72,6 +73,7 @@ impl Store {
         F: FnOnce(Option<&VersionHead>, &ReportHead) -> String,
     {
         let mut tx = self.begin().await?;
+        // The part first: the diagnosis of all trials gets the later id, and is listed before it.
         let of_new = match &diagnosis.of_new {
             Some(part) => Some(self.put(&mut tx, part, None).await?),
             None => None,
@@ -84,12 +86,13 @@ impl Store {
         let report = NewReport { version_id: made_id.clone(), ..diagnosis.report.clone() };
         let all = PartDiagnosis { report, found: diagnosis.found.clone() };
         let (report, found) = self.put(&mut tx, &all, made_id.as_deref()).await?;
+        // If all trials together lack nothing, webhooks get the diagnosis of the new trials alone.
         let told = match of_new {
             Some((_, of_new)) if found.verdict == COMPLETE => of_new,
             _ => found.clone(),
         };
         tell(self, &mut tx, diagnosis, &told).await?;
-        // How the ship stands has changed.
+        // The state of the ship has changed, and with it the facts by which it is found.
         search_index::mark(self, &mut tx, &diagnosis.report.ship).await?;
         let result = result(version.as_ref(), &report);
         let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
@@ -97,7 +100,7 @@ impl Store {
         Ok(CommittedDiagnosis { version, report, found, job })
     }
 
-    /// Puts a report and what was found in.
+    /// Inserts a report and its findings.
     async fn put(
         &self,
         tx: &mut Transaction,
@@ -113,8 +116,7 @@ impl Store {
     }
 }
 
-/// Tells others of a version that lacks something, and of a champion that no longer holds as it
-/// did.
+/// Notifies webhooks of a version that lacks an effect, and of the drift of a champion.
 async fn tell(
     store: &Store,
     tx: &mut Transaction,

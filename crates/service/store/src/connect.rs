@@ -19,9 +19,9 @@ use crate::postgres_pool::PostgresPool;
 const BUSY: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
 const POSTGRES_CONNECTIONS: u32 = 16;
-/// How long the wait for a connection may take, that for the server included.
+/// Maximum wait for a connection, including that for the server.
 const CONNECTION: Duration = Duration::from_secs(6);
-/// How long a connection that has rested may take to say that it is there.
+/// Maximum wait for the answer of a connection that was idle.
 const ANSWER: Duration = Duration::from_secs(1);
 
 /// Opens the database at `url` and brings its schema up to date.
@@ -34,14 +34,15 @@ pub(crate) async fn connect(url: &str) -> Result<Database> {
     }
 }
 
-/// The file of an SQLite database; none of another one.
+/// Returns the file of an SQLite database; none for other databases.
 pub(crate) fn sqlite_file(url: &str) -> Option<PathBuf> {
     let is_file = url.starts_with("sqlite:") && !url.contains(":memory:");
     let options = is_file.then(|| SqliteConnectOptions::from_str(url).ok()).flatten()?;
     Some(options.get_filename().to_path_buf())
 }
 
-/// One connection that lasts as long as the store: with it the data would go.
+/// Opens a database in memory, with one connection that lasts as long as the store: the data would
+/// be lost with it.
 async fn memory(url: &str) -> Result<Database> {
     let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true);
     let pool = SqlitePoolOptions::new()
@@ -61,10 +62,12 @@ async fn memory(url: &str) -> Result<Database> {
 async fn file(url: &str) -> Result<Database> {
     let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true).busy_timeout(BUSY);
     options.get_filename().parent().map_or(Ok(()), folders::make).map_err(sqlx::Error::Io)?;
+    // Write-ahead log with full sync: an acknowledged commit survives a power failure, and readers
+    // do not wait for the writer.
     let write = options.clone().create_if_missing(true).synchronous(SqliteSynchronous::Full);
     let write = writer(write.journal_mode(SqliteJournalMode::Wal)).await?;
     migrate::sqlite(&write).await?;
-    // A file's connection does not go stale.
+    // A connection to a file does not go stale.
     let readers =
         SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
     let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
@@ -75,8 +78,9 @@ async fn file(url: &str) -> Result<Database> {
     })
 }
 
-/// The one connection that writes. Turning on the write-ahead log needs the file for itself and
-/// does not wait for it, so that two processes which open a new file at once have to try again.
+/// Opens the one connection that writes. Switching to the write-ahead log needs the file
+/// exclusively and ignores the busy timeout, so that two processes which open a new file at once
+/// have to retry.
 async fn writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
     let mut tries = 100;
     loop {
@@ -111,7 +115,7 @@ fn postgres_options() -> PgPoolOptions {
         .max_connections(POSTGRES_CONNECTIONS)
         .acquire_timeout(CONNECTION)
         .test_before_acquire(false);
-    // A connection that was used a moment ago is there; asking each time would cost as much as the
+    // A connection that was used a moment ago is valid; a ping each time would cost as much as the
     // query. One that does not answer is replaced.
     pool.before_acquire(|connection, about| {
         Box::pin(async move {

@@ -13,17 +13,17 @@ use crate::postgres_pool::{Lease, PostgresPool};
 use crate::record::Record;
 use crate::statements::Statement;
 
-/// After this long without use, a connection is asked whether it is still there.
+/// Idle time after which a connection is pinged before use.
 pub(crate) const RESTED: Duration = Duration::from_secs(5);
 
-/// Who writes.
+/// The connections that write.
 #[derive(Debug, Clone)]
 pub(crate) enum Writer {
     Sqlite(WriterGroup),
     Postgres(PostgresPool),
 }
 
-/// A pool of connections.
+/// A pool of connections that read.
 #[derive(Debug, Clone)]
 pub(crate) enum Pool {
     Sqlite(SqlitePool),
@@ -36,13 +36,15 @@ pub(crate) enum DatabaseTransaction {
     Postgres(sqlx::Transaction<'static, Postgres>, Lease),
 }
 
-/// A connection that one reader keeps while there is more to ask: giving it back costs a round
+/// A connection for several reads in a row: returning it to the pool after each would cost a round
 /// trip.
 pub(crate) enum Reader {
     Sqlite(PoolConnection<Sqlite>),
     Postgres(PoolConnection<Postgres>, Lease),
 }
 
+// The statement is awaited inside of the macro, as the two connections have different types; on
+// PostgreSQL within the deadline of the lease.
 /// Expands one body, a future, for both databases, with the connection that a transaction has and
 /// the statement's text for it.
 macro_rules! within {
@@ -61,7 +63,7 @@ macro_rules! within {
 }
 
 impl Pool {
-    /// The row that a reading statement finds, if any.
+    /// Returns the row that a reading statement finds, if there is one.
     pub(crate) async fn optional<T: Record>(
         &self,
         statement: Statement,
@@ -78,7 +80,7 @@ impl Pool {
         }
     }
 
-    /// The rows that a reading statement finds.
+    /// Returns the rows that a reading statement finds.
     pub(crate) async fn all<T: Record>(
         &self,
         statement: Statement,
@@ -95,7 +97,7 @@ impl Pool {
         }
     }
 
-    /// A connection for several reading statements in a row.
+    /// Acquires a connection for several reading statements in a row.
     pub(crate) async fn reader(&self) -> Result<Reader> {
         Ok(match self {
             Self::Sqlite(pool) => Reader::Sqlite(pool.acquire().await?),
@@ -107,7 +109,7 @@ impl Pool {
         })
     }
 
-    /// Ends all connections.
+    /// Closes all connections of the pool.
     pub(crate) async fn close(&self) {
         match self {
             Self::Sqlite(pool) => pool.close().await,
@@ -117,8 +119,8 @@ impl Pool {
 }
 
 impl Writer {
-    /// Begins to write. On SQLite the lock is taken at once, so that what is read stays true until
-    /// the commit.
+    /// Begins a transaction. On SQLite the write lock is taken at once, so that what is read stays
+    /// true until the commit.
     pub(crate) async fn begin(&self) -> Result<DatabaseTransaction> {
         Ok(match self {
             Self::Sqlite(group) => DatabaseTransaction::Sqlite(group.begin().await?),
@@ -130,7 +132,7 @@ impl Writer {
         })
     }
 
-    /// Ends all connections.
+    /// Closes all connections that write.
     pub(crate) async fn close(&self) {
         match self {
             Self::Sqlite(group) => group.pool().close().await,
@@ -140,12 +142,13 @@ impl Writer {
 }
 
 impl Reader {
-    /// The rows that a reading statement finds.
+    /// Returns the rows that a reading statement finds.
     pub(crate) async fn all<T: Record>(
         &mut self,
         statement: Statement,
         args: Args<'_>,
     ) -> Result<Vec<T>> {
+        // A reader is used without `Database`, which checks the arguments of all other reads.
         check(args)?;
         match self {
             Self::Sqlite(one) => {
@@ -158,7 +161,7 @@ impl Reader {
         }
     }
 
-    /// The same for a statement that may read a whole table, however long that takes.
+    /// Returns the rows of a statement that may read a whole table; there is no deadline.
     pub(crate) async fn all_of_table<T: Record>(
         &mut self,
         statement: Statement,
@@ -176,14 +179,14 @@ impl Reader {
 }
 
 impl DatabaseTransaction {
-    /// The number of rows that a writing statement changed.
+    /// Executes a writing statement and returns the number of rows that it changed.
     pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
         Ok(within!(self, statement, |to, sql| async move {
             bind!(sqlx::query(sql), args).execute(to).await.map(|done| done.rows_affected())
         }))
     }
 
-    /// The row that a statement is sure to return.
+    /// Returns the row of a statement that always returns one.
     pub(crate) async fn one<T: Record>(
         &mut self,
         statement: Statement,
@@ -192,7 +195,7 @@ impl DatabaseTransaction {
         Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_one(to)))
     }
 
-    /// The row that a statement finds or returns, if any.
+    /// Returns the row that a statement finds or returns, if there is one.
     pub(crate) async fn optional<T: Record>(
         &mut self,
         statement: Statement,
@@ -201,7 +204,7 @@ impl DatabaseTransaction {
         Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_optional(to)))
     }
 
-    /// The rows that a statement finds or returns.
+    /// Returns the rows that a statement finds or returns.
     pub(crate) async fn all<T: Record>(
         &mut self,
         statement: Statement,
@@ -210,7 +213,7 @@ impl DatabaseTransaction {
         Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_all(to)))
     }
 
-    /// Says something about the transaction itself.
+    /// Executes a statement about the transaction itself, such as a savepoint.
     pub(crate) async fn run(&mut self, sql: &'static str) -> Result<()> {
         match self {
             Self::Sqlite(part) => sqlx::raw_sql(sql).execute(part.connection()?).await.map(drop)?,
@@ -221,7 +224,7 @@ impl DatabaseTransaction {
         Ok(())
     }
 
-    /// Makes it last.
+    /// Commits the transaction.
     pub(crate) async fn commit(self) -> Result<()> {
         match self {
             Self::Sqlite(tx) => Ok(tx.commit().await?),

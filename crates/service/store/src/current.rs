@@ -1,8 +1,8 @@
-//! What aliases stand for, asked by many at once: those who come while others are being answered
-//! share the next statement.
+//! Lookups of the versions that aliases point to, batched: requests that arrive while a statement
+//! is under way share the next one.
 //!
-//! Nobody gets an answer that is older than the question: a statement begins after all have come
-//! who share it. Alone, one is asked for at once.
+//! No answer is older than its request: a statement begins after all requests that share it have
+//! arrived. A single request is looked up at once.
 
 use tokio::sync::oneshot;
 
@@ -30,18 +30,22 @@ macro_rules! current {
 
 statements! {
     CURRENT = current!("= $2");
+    // Sixteen placeholders, the size of a batch; those that are not used are NULL and match
+    // nothing.
     CURRENT_OF = current!("IN ($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, \
         $17)");
 }
 
-/// Somebody who asks as long as questions wait.
+/// A task that looks up requests as long as some wait.
 struct QuestionRound(Store);
 
 impl Store {
-    /// The version that an alias of a ship stands for; none where ship or alias are not there.
+    /// Returns the version that an alias of a ship points to; none if the ship or the alias does
+    /// not exist.
     pub(crate) async fn current(&self, ship: &str, alias: &str) -> Result<Option<CurrentVersion>> {
         checks::text("ship", ship)?;
         checks::text("alias", alias)?;
+        // Within a unit of work the lookup must see what the unit has written.
         if self.database().unit.is_some() {
             return self.database().optional(CURRENT, args![alias: alias, ship: ship]).await;
         }
@@ -55,8 +59,8 @@ impl Store {
         }
         match answered.await {
             Ok(found) => Ok(found),
-            // Those who shared a statement that failed ask for themselves: each has a reason of
-            // their own to tell.
+            // The shared statement failed: each of its requests is repeated alone and gets its own
+            // error.
             Err(_) => self.database().optional(CURRENT, args![alias: alias, ship: ship]).await,
         }
     }
@@ -70,7 +74,8 @@ impl QuestionRound {
             let Some(first) = questions.first() else { return self.0.questions().keep(reader) };
             match self.ask(&mut reader, &first.alias, &questions).await {
                 Ok(found) => tell(questions, &found),
-                // With another connection next time.
+                // The next round uses another connection; dropping the requests makes each repeat
+                // alone.
                 Err(_) => reader = None,
             }
         }
@@ -82,6 +87,7 @@ impl QuestionRound {
         alias: &str,
         questions: &[Question],
     ) -> Result<Vec<CurrentVersion>> {
+        // Unused places stay NULL.
         let mut values = [("ship", Arg::Text(None)); AT_ONCE + 1];
         values[0] = ("alias", Arg::from(alias));
         for (place, question) in values[1..].iter_mut().zip(questions) {
@@ -99,7 +105,7 @@ impl QuestionRound {
 }
 
 impl Drop for QuestionRound {
-    /// However it ends, nobody waits for a round that is no more.
+    /// Ends the round, also after a panic, so that no request waits for it.
     fn drop(&mut self) {
         self.0.questions().ended();
     }
@@ -107,7 +113,7 @@ impl Drop for QuestionRound {
 
 fn tell(questions: Vec<Question>, found: &[CurrentVersion]) {
     for Question { ship, answer, .. } in questions {
-        // Who does not wait any more needs no answer.
+        // An error means that the request was dropped and needs no answer.
         let _ = answer.send(found.iter().find(|current| current.model == ship).cloned());
     }
 }

@@ -1,5 +1,5 @@
-//! A database as repositories see it: read, or begin to write, alone or as a step of a unit of
-//! work.
+//! A database as the repositories see it: reads, and transactions that are separate or steps of a
+//! unit of work.
 
 use serde_json::Value;
 
@@ -12,8 +12,7 @@ use crate::record::Record;
 use crate::statements::Statement;
 use crate::unit::{Unit, UnitStep};
 
-/// The connections of one database, to read and to write; the same ones but for SQLite, where one
-/// connection writes.
+/// Connections of one database, for reading and for writing; on SQLite a single connection writes.
 #[derive(Debug, Clone)]
 pub(crate) struct Database {
     pub(crate) read: Pool,
@@ -25,19 +24,19 @@ pub(crate) struct Database {
 /// A transaction that may write; it is undone unless [committed](Self::commit).
 pub(crate) struct Transaction {
     part: Part,
-    /// What goes into the audit with it.
+    /// Audit entries, appended at the commit.
     entries: Vec<Entry>,
 }
 
 enum Part {
-    /// One of its own.
+    /// A separate transaction.
     Alone(DatabaseTransaction),
-    /// A part of a unit of work, which is kept with the whole of it.
+    /// A step of a unit of work, committed together with the unit.
     Step(UnitStep),
 }
 
 impl Database {
-    /// Begins to write.
+    /// Begins a transaction, or a step of the unit of work of this handle.
     pub(crate) async fn begin(&self) -> Result<Transaction> {
         let part = match &self.unit {
             Some(unit) => Part::Step(unit.step(&self.write).await?),
@@ -46,13 +45,15 @@ impl Database {
         Ok(Transaction { part, entries: Vec::new() })
     }
 
-    /// The row that a reading statement finds, if any; a unit of work sees what it has written.
+    /// Returns the row that a reading statement finds, if there is one; within a unit of work it
+    /// sees the unit's own writes.
     pub(crate) async fn optional<T: Record>(
         &self,
         statement: Statement,
         args: Args<'_>,
     ) -> Result<Option<T>> {
         check(args)?;
+        // A unit that has not written yet reads from the pool, and begins no transaction.
         if let Some(unit) = &self.unit
             && let Some(mut open) = unit.open().await?
         {
@@ -61,7 +62,8 @@ impl Database {
         self.read.optional(statement, args).await
     }
 
-    /// The rows that a reading statement finds; a unit of work sees what it has written.
+    /// Returns the rows that a reading statement finds; within a unit of work it sees the unit's
+    /// own writes.
     pub(crate) async fn all<T: Record>(
         &self,
         statement: Statement,
@@ -76,12 +78,12 @@ impl Database {
         self.read.all(statement, args).await
     }
 
-    /// A connection for several reading statements in a row.
+    /// Acquires a connection for several reading statements in a row.
     pub(crate) async fn reader(&self) -> Result<Reader> {
         self.read.reader().await
     }
 
-    /// Ends all connections.
+    /// Closes all connections.
     pub(crate) async fn close(&self) {
         self.read.close().await;
         self.write.close().await;
@@ -96,13 +98,13 @@ impl Transaction {
         }
     }
 
-    /// The number of rows that a writing statement changed.
+    /// Executes a writing statement and returns the number of rows that it changed.
     pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
         check(args)?;
         self.transaction()?.execute(statement, args).await
     }
 
-    /// The row that a statement finds or returns, if any.
+    /// Returns the row that a statement finds or returns, if there is one.
     pub(crate) async fn optional<T: Record>(
         &mut self,
         statement: Statement,
@@ -112,7 +114,7 @@ impl Transaction {
         self.transaction()?.optional(statement, args).await
     }
 
-    /// The row that a statement is sure to return.
+    /// Returns the row of a statement that always returns one.
     pub(crate) async fn one<T: Record>(
         &mut self,
         statement: Statement,
@@ -122,7 +124,7 @@ impl Transaction {
         self.transaction()?.one(statement, args).await
     }
 
-    /// The rows that a statement finds or returns.
+    /// Returns the rows that a statement finds or returns.
     pub(crate) async fn all<T: Record>(
         &mut self,
         statement: Statement,
@@ -132,8 +134,8 @@ impl Transaction {
         self.transaction()?.all(statement, args).await
     }
 
-    /// Enters into the audit, as the transaction is kept, that the present actor does this to
-    /// `subject`: what was true of it before, and what is since.
+    /// Records in the audit, at the commit, that the present author does `action` to `subject`,
+    /// with the state `before` and `after`.
     pub(crate) fn note(
         &mut self,
         at_us: i64,
@@ -145,10 +147,11 @@ impl Transaction {
         self.entries.push(Entry::new(at_us, action, subject, before, after));
     }
 
-    /// Makes it last; as a step of a unit of work, together with the whole of it.
+    /// Commits the transaction; a step of a unit of work is committed with the unit.
     pub(crate) async fn commit(self) -> Result<()> {
         match self.part {
             Part::Alone(mut transaction) => {
+                // The audit comes last: its row of the last entry stays locked until the commit.
                 chain::enter(&mut transaction, self.entries).await?;
                 transaction.commit().await
             }

@@ -1,4 +1,4 @@
-//! Diagnoses of versions: what was found, and where it is reported. They are made by
+//! Diagnoses of versions: findings, and the reports on them. They are created by
 //! [`Store::commit_diagnosis`] only.
 
 use crate::arguments::args;
@@ -18,6 +18,7 @@ statements! {
         created_us");
     ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, unexplained, \
         drift, created_us FROM diagnoses WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
+    // '~' sorts after every id: without a cursor the list starts at the latest one.
     BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
         unexplained, drift, created_us FROM diagnoses WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, \
         '~') ORDER BY id DESC LIMIT $3");
@@ -30,7 +31,7 @@ record! {
         pub id: String,
         /// The id of the version that was diagnosed.
         pub version_id: String,
-        /// The id of the version that came of it, if one did.
+        /// Id of the resulting version, if there is one.
         pub made_id: Option<String>,
         /// The id of its report.
         pub report_id: String,
@@ -38,19 +39,20 @@ record! {
         pub verdict: String,
         /// Names of the effects found, a JSON list.
         pub effects: String,
-        /// Ids of the trials it was made on, a JSON list.
+        /// Ids of the diagnosed trials, a JSON list.
         pub trials: String,
-        /// Ids of those of which it leaves something that no effect explains, a JSON list.
+        /// Ids of the trials with a residual that no effect explains, a JSON list.
         pub unexplained: String,
-        /// How much more the champion left of new trials then than of those it was fitted on, JSON;
-        /// none where that could not be told, or another version was diagnosed.
+        /// Ratio of the residual of the champion on new trials to that on the trials of its fit,
+        /// JSON; none if it could not be determined or another version was diagnosed.
         pub drift: Option<String>,
         /// When it was made.
         pub created_us: i64,
     }
 }
 
-/// What a diagnosis is made of; its report and what came of it are known when it is committed.
+/// Findings of a diagnosis, to be stored; its report and the resulting version are known at the
+/// commit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewDiagnosed {
     /// The id of the version that was diagnosed.
@@ -59,35 +61,35 @@ pub struct NewDiagnosed {
     pub verdict: String,
     /// Names of the effects found, a JSON list.
     pub effects: String,
-    /// Ids of the trials it was made on, a JSON list.
+    /// Ids of the diagnosed trials, a JSON list.
     pub trials: String,
-    /// Ids of those of which it leaves something that no effect explains, a JSON list.
+    /// Ids of the trials with a residual that no effect explains, a JSON list.
     pub unexplained: String,
-    /// How much more the champion leaves of new trials than of those it was fitted on, JSON.
+    /// Ratio of the residual of the champion on new trials to that on the trials of its fit, JSON.
     pub drift: Option<String>,
 }
 
-/// The diagnoses of a store.
+/// Repository of diagnoses.
 #[derive(Debug, Clone, Copy)]
 pub struct Diagnoses<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Diagnoses of versions.
+    /// Returns the repository of diagnoses.
     pub fn diagnoses(&self) -> Diagnoses<'_> {
         Diagnoses(self)
     }
 }
 
 impl Diagnoses<'_> {
-    /// Every diagnosis, in the order in which they were made.
+    /// Lists all diagnoses in the order of their creation.
     pub async fn all(&self, page: &Page) -> Result<List<Diagnosed>> {
         let diagnoses =
             self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(diagnoses, |diagnosis: &Diagnosed| diagnosis.id.clone()))
     }
 
-    /// The diagnoses that say something of a version, the latest first: those of it, and the one
-    /// that it came of.
+    /// Lists the diagnoses that concern a version, the latest first: those of the version, and the
+    /// one from which it resulted.
     pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<Diagnosed>> {
         let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];
         let diagnoses = self.0.database().all(BY_VERSION, values).await?;
@@ -95,7 +97,7 @@ impl Diagnoses<'_> {
     }
 }
 
-/// Puts a diagnosis in within a transaction.
+/// Inserts a diagnosis within a transaction.
 pub(crate) async fn insert(
     store: &Store,
     tx: &mut Transaction,

@@ -1,4 +1,4 @@
-//! Libraries of effects: documents under their hashes, nothing that ever changes.
+//! Libraries of effects: immutable documents, named by their hashes.
 
 use crate::arguments::args;
 use crate::error::{Result, StoreError};
@@ -17,35 +17,36 @@ statements! {
 }
 
 record! {
-    /// A library of effects as it was put in.
+    /// A library of effects.
     pub struct EffectLibrary {
         /// The SHA-256 of the document.
         pub sha256: String,
-        /// The files of its effects one after another, byte for byte.
+        /// Concatenated files of its effects, byte for byte.
         pub document: String,
         /// When it was put in.
         pub created_us: i64,
     }
 }
 
-/// The libraries of effects of a store.
+/// Repository of libraries of effects.
 #[derive(Debug, Clone, Copy)]
 pub struct EffectLibraries<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Libraries of effects, insert-only.
+    /// Returns the repository of libraries of effects (insert-only).
     pub fn effects(&self) -> EffectLibraries<'_> {
         EffectLibraries(self)
     }
 }
 
 impl EffectLibraries<'_> {
-    /// Puts a library in, beside those that are there, and answers its hash. One that is there is
-    /// not written again, so that this costs a look where nothing is new.
+    /// Inserts a library unless it exists, and returns its hash. The existing one is found by a
+    /// read, so that repeated calls write nothing.
     pub async fn keep(&self, document: &str) -> Result<String> {
         let sha256 = sha256_hex(document.as_bytes());
         if self.find(&sha256).await?.is_none() {
             let mut tx = self.0.begin().await?;
+            // Another process may have inserted it since the read; the conflict is ignored.
             tx.execute(
                 INSERT,
                 args![sha256: &sha256, document: document, created_us: self.0.now_us()],

@@ -1,4 +1,4 @@
-//! Entries of the audit, and the hash by which each holds the one before it.
+//! Audit entries, and the hash by which each refers to the one before it.
 
 use serde_json::Value;
 
@@ -6,7 +6,7 @@ use crate::actor::Actor;
 use crate::objects::sha256_hex;
 use crate::record::record;
 
-/// What is to be entered when the transaction is kept.
+/// An audit entry that is appended when its transaction commits.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
     pub(crate) at_us: i64,
@@ -20,31 +20,31 @@ pub(crate) struct Entry {
 record! {
     /// An entry of the audit.
     pub struct AuditEntry {
-        /// 1, 2, 3, ...
+        /// Number of the entry: 1, 2, 3, ...
         pub number: i64,
-        /// When.
+        /// Time, microseconds since 1970.
         pub at_us: i64,
-        /// Who.
+        /// Author.
         pub actor: String,
-        /// From where.
+        /// Origin of the request.
         pub origin: String,
-        /// What: `ship.create`, `alias.move`, ...
+        /// Action: `ship.create`, `alias.move`, ...
         pub action: String,
-        /// To what: `ship:NAME`, `version:SHIP/NUMBER`, `user:NAME`, ...
+        /// Subject: `ship:NAME`, `version:SHIP/NUMBER`, `user:NAME`, ...
         pub subject: String,
-        /// What was true of it before, JSON; none where it was not there.
+        /// State of the subject before, JSON; none if it did not exist.
         pub state_before: Option<String>,
-        /// What is true of it since, JSON; none where it is gone.
+        /// State of the subject after, JSON; none if it no longer exists.
         pub state_after: Option<String>,
         /// The hash of the entry before; empty for the first.
         pub previous_sha256: String,
-        /// The hash of all of the above.
+        /// The hash of the fields above.
         pub sha256: String,
     }
 }
 
 impl Entry {
-    /// Something that the present actor does.
+    /// Creates an entry for an action of the present author.
     pub(crate) fn new(
         at_us: i64,
         action: &'static str,
@@ -57,7 +57,7 @@ impl Entry {
         Self { at_us, actor: Actor::current(), action, subject, before, after }
     }
 
-    /// The entry in its place, with its hash.
+    /// Returns the entry with its number, the hash of its predecessor, and its own hash.
     pub(crate) fn numbered(self, number: i64, previous_sha256: String) -> AuditEntry {
         let mut entry = AuditEntry {
             number,
@@ -71,14 +71,15 @@ impl Entry {
             previous_sha256,
             sha256: String::new(),
         };
+        // The hash covers all other fields, so that it is computed last.
         entry.sha256 = entry.hash();
         entry
     }
 }
 
 impl AuditEntry {
-    /// The SHA-256 of everything in the entry but this hash: of a JSON list of its fields, in their
-    /// order, so that none can be taken for a part of another.
+    /// Returns the SHA-256 of all other fields, as a JSON list in their order: the list is
+    /// unambiguous, a mere concatenation would not be.
     pub fn hash(&self) -> String {
         let fields = serde_json::json!([
             self.number,

@@ -1,21 +1,20 @@
-//! One error for everything the store refuses or cannot do; each variant maps to one kind of HTTP
-//! problem.
+//! The error of the store; each variant maps to one kind of HTTP problem.
 
 use std::error::Error;
 use std::io::{self, ErrorKind};
 
 use crate::objects_error::ObjectsError;
 
-/// What an operation of the store returns.
+/// Result of an operation of the store.
 pub type Result<T, E = StoreError> = std::result::Result<T, E>;
 
-/// Why the store did not do it.
+/// Error of the store.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// There is no such thing, or it was deleted (404).
     #[error("there is no {kind} `{id}`")]
     NotFound {
-        /// What was looked for: `ship`, `version`, ...
+        /// Kind of the missing item: `ship`, `version`, ...
         kind: &'static str,
         /// The name or id that was asked for.
         id: String,
@@ -23,35 +22,35 @@ pub enum StoreError {
     /// The request contradicts what is already there (409).
     #[error("{kind} `{id}`: {message}")]
     Conflict {
-        /// What it concerns.
+        /// Kind of the item.
         kind: &'static str,
         /// Its name or id.
         id: String,
-        /// What stands in the way.
+        /// Reason of the conflict.
         message: String,
     },
     /// The present actor may not do this (403).
     #[error("{message}")]
     Forbidden {
-        /// Why not, and who may.
+        /// Reason of the refusal, and the role that is allowed to do it.
         message: String,
     },
     /// The caller has seen an older state than the present one (412).
     #[error("{kind} `{id}` is at {}, not where the request expects it", at(*current))]
     PreconditionFailed {
-        /// What it concerns.
+        /// Kind of the item.
         kind: &'static str,
         /// Its name or id.
         id: String,
-        /// The revision it is at now; none when it does not exist.
+        /// Present revision; none if it does not exist.
         current: Option<i64>,
     },
-    /// A value that no database of ours may hold (422).
+    /// A value that cannot be stored (422).
     #[error("{field}: {message}")]
     Invalid {
         /// The field at fault.
         field: &'static str,
-        /// What is wrong with it.
+        /// Reason, and what would be right.
         message: String,
     },
     /// The database failed (500 or 503).
@@ -62,7 +61,7 @@ pub enum StoreError {
     File {
         /// The file or folder.
         path: std::path::PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         error: std::io::Error,
     },
     /// The object store failed (503), or an object is not what was put there (500).
@@ -78,8 +77,8 @@ fn at(current: Option<i64>) -> String {
 }
 
 impl StoreError {
-    /// Whether it failed for want of space where database or objects are kept: reading goes on, and
-    /// so does writing once there is room.
+    /// Returns true if there was no space left for the database or the objects: reads continue, and
+    /// writes do so once there is space.
     pub fn is_out_of_space(&self) -> bool {
         match self {
             Self::Database(error) => is_full(error),
@@ -89,12 +88,12 @@ impl StoreError {
         }
     }
 
-    /// Whether the object store does not do now what it may do later.
+    /// Returns true if the object store failed in a way that may pass, so that a retry is useful.
     pub fn is_passing(&self) -> bool {
         matches!(self, Self::Objects(error) if error.is_passing())
     }
 
-    /// The error of something that could not be kept for want of space.
+    /// Returns the error of data that could not be stored for lack of space.
     pub fn no_room() -> Self {
         Self::Objects(ObjectsError::Folder(ErrorKind::StorageFull.into()))
     }
@@ -120,22 +119,25 @@ impl StoreError {
     }
 }
 
-/// SQLite's codes for a disk that takes no more: `SQLITE_FULL`, and writes, flushes and memory maps
-/// that fail, which is how it tells of a quota or of the largest file that there may be.
+/// Codes of SQLite for lack of space: `SQLITE_FULL`, and failed writes, syncs and memory maps,
+/// which is how SQLite reports a quota or the maximum size of a file.
 const SQLITE_FULL: [&str; 6] = ["13", "778", "1034", "1546", "4874", "8458"];
-/// PostgreSQL's code for the same, `disk_full`.
+/// Code of PostgreSQL for lack of space, `disk_full`.
 const POSTGRES_FULL: &str = "53100";
 
-/// Whether a database failed for want of space.
+/// Returns true if a database failed for lack of space.
 pub(crate) fn is_full(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::Database(error) => {
             let sqlite = error.try_downcast_ref::<sqlx::sqlite::SqliteError>().is_some();
+            // The databases have different sets of codes; the type of the error decides which one
+            // applies.
             let code = error.code();
             code.is_some_and(|code| {
                 if sqlite { SQLITE_FULL.contains(&&*code) } else { code == POSTGRES_FULL }
             })
         }
+        // A failed migration wraps the error of the database or of the system that caused it.
         sqlx::Error::Migrate(error) => {
             io_errors(&**error).any(is_out_of_space)
                 || sources(&**error)
@@ -145,8 +147,8 @@ pub(crate) fn is_full(error: &sqlx::Error) -> bool {
     }
 }
 
-/// Whether the system has no room for what was to be written: the disk, the owner's share of it, or
-/// the longest file.
+/// Returns true if the system has no space for what was to be written: the disk is full, the quota
+/// is used up, or the file has its maximum size.
 pub fn is_out_of_space(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -154,7 +156,7 @@ pub fn is_out_of_space(error: &io::Error) -> bool {
     )
 }
 
-/// An error and those behind it.
+/// Iterates over an error and its sources.
 fn sources<'a>(
     error: &'a (dyn Error + 'static),
 ) -> impl Iterator<Item = &'a (dyn Error + 'static)> {

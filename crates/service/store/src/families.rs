@@ -1,4 +1,4 @@
-//! Families of ships whose models share a foundation, and what each has taught.
+//! Families of ships whose models share a foundation, and the priors learned from them.
 
 use serde_json::json;
 
@@ -15,6 +15,7 @@ use crate::store::Store;
 use crate::version;
 
 statements! {
+    // A conflict on the name returns no row.
     INSERT = same("INSERT INTO families (name, title, foundation, created_us) VALUES ($1, $2, $3, \
         $4) ON CONFLICT (name) DO NOTHING RETURNING name, title, foundation, created_us");
     GET = same("SELECT name, title, foundation, created_us FROM families WHERE name = $1");
@@ -25,23 +26,28 @@ statements! {
     OF_SHIP = same("SELECT f.name, f.title, f.foundation, f.created_us FROM family_members m JOIN \
         families f ON f.name = m.family WHERE m.ship = $1 AND m.family > COALESCE($2, '') ORDER BY \
         m.family LIMIT $3");
+    // An existing member is no error and counts as no change.
     ADD = same("INSERT INTO family_members (family, ship, added_us) VALUES ($1, $2, $3) ON \
         CONFLICT (family, ship) DO NOTHING");
     REMOVE = same("DELETE FROM family_members WHERE family = $1 AND ship = $2");
     SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1 AND deleted_us IS NULL");
     COUNT = same("SELECT COUNT(*) AS rows FROM family_members m JOIN ships s ON s.name = m.ship \
         WHERE m.family = $1 AND s.deleted_us IS NULL");
+    // Outer joins: members without a champion are listed too; deleted ships are not.
     MEMBERS = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members \
         m JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
         LEFT JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
         LEFT JOIN versions v ON v.model = a.model AND v.number = a.version_number \
         WHERE m.family = $1 AND m.ship > COALESCE($2, '') ORDER BY m.ship LIMIT $3");
+    // Inner joins: a member without a champion or without the fact is no result.
     WITHIN = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members \
         m JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
         JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
         JOIN versions v ON v.model = a.model AND v.number = a.version_number \
         JOIN ship_facts f ON f.ship = m.ship AND f.fact = $2 AND f.value >= $3 AND f.value <= $4 \
         WHERE m.family = $1 ORDER BY m.ship LIMIT $5");
+    // The next revision is computed by the insertion itself; two at the same time conflict on the
+    // primary key.
     TEACH = same("INSERT INTO family_priors (family, revision, document, sha256, created_us) \
         SELECT $1, COALESCE(MAX(revision), 0) + 1, $2, $3, $4 FROM family_priors WHERE family = $1 \
         RETURNING family, revision, document, sha256, created_us");
@@ -56,9 +62,9 @@ record! {
     pub struct Family {
         /// Its name, for ever.
         pub name: String,
-        /// What people call it.
+        /// Display title.
         pub title: String,
-        /// The id of the version that its members' models start from.
+        /// Id of the version from which the models of its members start.
         pub foundation: String,
         /// When it was made.
         pub created_us: i64,
@@ -70,44 +76,44 @@ record! {
     pub struct FamilyMember {
         /// The ship.
         pub ship: String,
-        /// Since when it is a member.
+        /// Start of the membership, microseconds since 1970.
         pub added_us: i64,
         /// The number of its champion, if it has one.
         pub champion: Option<i64>,
-        /// How that was made.
+        /// Method by which the champion was made.
         pub method: Option<String>,
     }
 }
 
 record! {
-    /// What a family has taught.
+    /// A prior learned from the members of a family.
     pub struct FamilyPrior {
         /// The family.
         pub family: String,
-        /// 1, 2, 3, ...
+        /// Revision of the prior: 1, 2, 3, ...
         pub revision: i64,
         /// Means and covariances, JSON.
         pub document: String,
         /// The hash of the document.
         pub sha256: String,
-        /// When it was learned.
+        /// Time of learning, microseconds since 1970.
         pub created_us: i64,
     }
 }
 
-/// The families of a store.
+/// Repository of families.
 #[derive(Debug, Clone, Copy)]
 pub struct Families<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Families of ships.
+    /// Returns the repository of families.
     pub fn families(&self) -> Families<'_> {
         Families(self)
     }
 }
 
 impl Families<'_> {
-    /// Makes a family on a version, `foundation`.
+    /// Creates a family on the version `foundation`.
     pub async fn create(&self, name: &str, title: &str, foundation: &str) -> Result<Family> {
         checks::name("name", name)?;
         let mut tx = self.0.begin().await?;
@@ -137,7 +143,7 @@ impl Families<'_> {
         Ok(page.of(families, |family: &Family| family.name.clone()))
     }
 
-    /// Puts a family on another foundation.
+    /// Sets another foundation of a family.
     pub async fn found(&self, name: &str, foundation: &str) -> Result<Family> {
         let mut tx = self.0.begin().await?;
         version::check_id(&mut tx, "foundation", foundation).await?;
@@ -151,12 +157,13 @@ impl Families<'_> {
         Ok(family)
     }
 
-    /// Adds ships, all or none; those that are members already stay so. Returns how many are new.
+    /// Adds ships, all or none; existing members are skipped. Returns the number of new members.
     pub async fn add(&self, family: &str, ships: &[String]) -> Result<u64> {
         let mut tx = self.0.begin().await?;
         exists(&mut tx, family).await?;
         let mut added = 0;
         for ship in ships {
+            // Checked here and not by the foreign key: a deleted ship still has a row.
             let Counted { rows } = tx.one(SHIP, args![name: ship]).await?;
             if rows == 0 {
                 return Err(StoreError::invalid("ships", format!("there is no ship `{ship}`")));
@@ -173,7 +180,7 @@ impl Families<'_> {
         Ok(added)
     }
 
-    /// Takes a ship out of a family; returns whether it was in it.
+    /// Removes a ship from a family; returns true if it was a member.
     pub async fn remove(&self, family: &str, ship: &str) -> Result<bool> {
         let mut tx = self.0.begin().await?;
         let removed = tx.execute(REMOVE, args![family: family, ship: ship]).await?;
@@ -185,7 +192,7 @@ impl Families<'_> {
         Ok(removed > 0)
     }
 
-    /// How many members a family has.
+    /// Counts the members of a family.
     pub async fn count(&self, family: &str) -> Result<i64> {
         let counted: Option<Counted> =
             self.0.database().optional(COUNT, args![family: family]).await?;
@@ -218,7 +225,7 @@ impl Families<'_> {
         self.0.database().all(WITHIN, values).await
     }
 
-    /// Keeps what a family has taught now, as its next revision.
+    /// Stores a prior as the next revision of the family.
     pub async fn teach(&self, family: &str, document: &str) -> Result<FamilyPrior> {
         let mut tx = self.0.begin().await?;
         let prior = teach(self.0, &mut tx, family, document).await?;
@@ -226,7 +233,7 @@ impl Families<'_> {
         Ok(prior)
     }
 
-    /// What a family has taught: at a revision, or last.
+    /// Returns a prior of a family: of a revision, or the latest one.
     pub async fn prior(&self, family: &str, revision: Option<i64>) -> Result<FamilyPrior> {
         let prior = match revision {
             Some(revision) => {
@@ -238,7 +245,7 @@ impl Families<'_> {
     }
 }
 
-/// Keeps what a family has taught within a transaction.
+/// Stores a prior within a transaction.
 pub(crate) async fn teach(
     store: &Store,
     tx: &mut Transaction,
@@ -256,7 +263,7 @@ pub(crate) async fn teach(
     Ok(prior)
 }
 
-/// What stands for a family in the audit.
+/// Returns the subject of audit entries about a family.
 fn subject(name: &str) -> String {
     format!("family:{name}")
 }
@@ -267,8 +274,8 @@ async fn exists(tx: &mut Transaction, family: &str) -> Result<()> {
 }
 
 impl Families<'_> {
-    /// Keeps what a family has taught and ends the job that learned it, all or nothing. `result`
-    /// writes the job's result, JSON.
+    /// Stores a prior and completes the job that learned it, all or nothing. `result` writes the
+    /// job's result, JSON.
     pub async fn commit(
         &self,
         family: &str,

@@ -1,5 +1,5 @@
-//! Objects that no row refers to: what is left of uploads that were refused or broke off between
-//! object and row.
+//! Objects that no row refers to: leftovers of uploads that were refused, or that failed between
+//! the object and the row.
 
 use futures::stream::{self, StreamExt as _, TryStreamExt as _};
 
@@ -13,24 +13,24 @@ use crate::statements::{pair, same, statements};
 use crate::store::Store;
 
 statements! {
-    // Keeps new trials and versions out until the end of the transaction; on SQLite its begin has
-    // done so.
+    // Blocks the insertion of trials and versions until the end of the transaction; on SQLite the
+    // write lock of the transaction does so.
     LOCK = pair("SELECT 1 WHERE FALSE", "LOCK TABLE trials, versions IN SHARE ROW EXCLUSIVE MODE");
     REFERRED = same("SELECT (SELECT COUNT(*) FROM trials WHERE object_key = $1) \
         + (SELECT COUNT(*) FROM versions WHERE weights_key = $1) AS rows");
 }
 
 impl Store {
-    /// Those of the keys that no trial, deleted or not, and no version refers to.
+    /// Returns the keys that no trial, deleted or not, and no version refers to.
     pub async fn unreferred(&self, keys: &[String]) -> Result<Vec<String>> {
         let mut tx = self.begin().await?;
         unreferred(&mut tx, keys).await
     }
 
-    /// Removes the objects of those keys that no trial and no version refers to, and returns these
-    /// keys. None is put in meanwhile, and [`crate::Trials::insert_all_and_enqueue`] and
-    /// [`Store::commit_refinement`] look for their objects after they have waited for this:
-    /// neither order leaves a trial without samples, or a branch without weights.
+    /// Removes the objects that no trial and no version refers to, and returns their keys. No row
+    /// is inserted meanwhile, and [`crate::Trials::insert_all_and_enqueue`] and
+    /// [`Store::commit_refinement`] check for their objects after they have waited for this: in
+    /// either order no trial loses its samples, and no learned correction its weights.
     pub async fn remove_unreferred(
         &self,
         objects: &Objects,
@@ -40,6 +40,7 @@ impl Store {
         tx.execute(LOCK, &[]).await?;
         let removed = unreferred(&mut tx, keys).await?;
         let removal = |key: &String| objects.remove(key.clone());
+        // Removed before the commit, while the lock still excludes new references.
         stream::iter(removed.iter().map(removal).collect::<Vec<_>>())
             .buffer_unordered(AT_ONCE)
             .try_collect::<()>()
@@ -52,6 +53,7 @@ impl Store {
 async fn unreferred(tx: &mut Transaction, keys: &[String]) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for key in keys {
+        // One statement for each key: both columns have an index.
         let referred: Counted = tx.one(REFERRED, args![object_key: key]).await?;
         if referred.rows == 0 {
             found.push(key.clone());

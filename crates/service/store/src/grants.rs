@@ -18,6 +18,7 @@ statements! {
         $4) ON CONFLICT (principal, scope_kind, scope_name) DO UPDATE SET role = excluded.role");
     SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1");
     FAMILY = same("SELECT COUNT(*) AS rows FROM families WHERE name = $1");
+    // The principal is `user:NAME` or `key:PREFIX`: the prefix decides, the rest is the name.
     HOLDERS = same("SELECT (SELECT COUNT(*) FROM users WHERE name = SUBSTR(CAST($1 AS TEXT), 6) \
         AND SUBSTR(CAST($1 AS TEXT), 1, 5) = 'user:' AND disabled_us IS NULL) \
         + (SELECT COUNT(*) FROM service_keys WHERE prefix = SUBSTR(CAST($1 AS TEXT), 5) \
@@ -36,12 +37,12 @@ record! {
     }
 }
 
-/// The roles of a store.
+/// Repository of granted roles.
 #[derive(Debug, Clone, Copy)]
 pub struct Grants<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Who has which role.
+    /// Returns the repository of granted roles.
     pub fn grants(&self) -> Grants<'_> {
         Grants(self)
     }
@@ -53,7 +54,7 @@ impl Grants<'_> {
         self.0.database().all(OF, args![principal: principal]).await
     }
 
-    /// Gives somebody these roles instead of all others.
+    /// Replaces all roles of a user or service key.
     pub async fn replace(&self, principal: &str, roles: &[GrantRow]) -> Result<()> {
         let mut tx = self.0.begin().await?;
         let holders: Counted = tx.one(HOLDERS, args![principal: principal]).await?;
@@ -61,6 +62,7 @@ impl Grants<'_> {
             return Err(StoreError::missing("user or key", principal));
         }
         let before: Vec<GrantRow> = tx.all(OF, args![principal: principal]).await?;
+        // Replaced as a whole, in one transaction: no request sees a part of the roles.
         tx.execute(CLEAR, args![principal: principal]).await?;
         put(&mut tx, principal, roles).await?;
         let (before, after) =
@@ -70,7 +72,7 @@ impl Grants<'_> {
     }
 }
 
-/// Gives roles within a transaction; the ships and families must be there.
+/// Grants roles within a transaction; the ships and families must exist.
 pub(crate) async fn put(tx: &mut Transaction, principal: &str, roles: &[GrantRow]) -> Result<()> {
     for GrantRow { scope_kind, scope_name, role } in roles {
         exists(tx, scope_kind, scope_name).await?;
@@ -85,6 +87,7 @@ async fn exists(tx: &mut Transaction, kind: &str, name: &str) -> Result<()> {
     let statement = match kind {
         "ship" => SHIP,
         "family" => FAMILY,
+        // The scope of the whole server has no name.
         _ => return Ok(()),
     };
     checks::name("roles", name)?;
@@ -95,7 +98,7 @@ async fn exists(tx: &mut Transaction, kind: &str, name: &str) -> Result<()> {
     }
 }
 
-/// Roles as the audit has them.
+/// Returns roles in the form of the audit: `role` or `role@ship:NAME`.
 pub(crate) fn words(roles: &[GrantRow]) -> Value {
     let word = |row: &GrantRow| match row.scope_kind.as_str() {
         "server" => row.role.clone(),

@@ -1,10 +1,10 @@
-//! Group commit: SQLite has one writer, and what makes its commits durable is the disk's word, for
-//! which each would wait alone. Here those who write in turn, each within a savepoint of its own,
-//! share one transaction, and all of them wait for its one commit. Nobody is told that something is
-//! kept before that commit has returned.
+//! Group commit: SQLite has one writer, and each durable commit waits for the disk. Here writers
+//! take turns within one transaction, each with a savepoint, and all of them wait for its single
+//! commit. No writer gets an acknowledgement before that commit has returned.
 //!
-//! The turns are those of a fair lock. Who has written queues for it once more behind those who
-//! wait to write; whose turn comes first after that commits for all. Alone, one commits at once.
+//! The turns are those of a fair lock. After its write, a writer queues for the lock once more,
+//! behind those who wait to write; the first of these second turns commits for all. A single writer
+//! commits at once.
 
 use std::io;
 use std::sync::{Arc, OnceLock};
@@ -16,14 +16,14 @@ use tokio::sync::{Mutex, OwnedMutexGuard};
 
 use crate::error::is_full;
 
-/// What became of a transaction that several shared: the reason where it failed.
+/// Outcome of a shared transaction, set once; the reason if it failed.
 type CommitOutcome = Arc<OnceLock<Result<(), CommitFailure>>>;
 
-/// Why a transaction failed.
+/// Reason for the failure of a transaction, cloned for each of its writers.
 #[derive(Debug, Clone)]
 struct CommitFailure {
     text: String,
-    /// Whether there was no room for it.
+    /// True if there was no space for it.
     full: bool,
 }
 
@@ -34,17 +34,17 @@ pub(crate) struct WriterGroup {
     shared: Arc<Mutex<Option<SharedTransaction>>>,
 }
 
-/// The transaction under way.
+/// The transaction in progress.
 #[derive(Debug)]
 struct SharedTransaction {
     connection: PoolConnection<Sqlite>,
     outcome: CommitOutcome,
-    /// Whether somebody has written and waits for the commit.
+    /// True if at least one writer waits for the commit.
     awaited: bool,
 }
 
-/// One writer's part of the transaction, in its turn; undone unless [committed](Self::commit). The
-/// turn leaves it as it ends.
+/// One writer's part of the transaction, during its turn; rolled back unless
+/// [committed](Self::commit).
 pub(crate) struct TransactionPart(Option<WriterTurn>);
 
 struct WriterTurn {
@@ -53,21 +53,23 @@ struct WriterTurn {
 }
 
 impl WriterGroup {
-    /// The writers on a pool of one connection.
+    /// Creates the group on a pool of one connection.
     pub(crate) fn new(pool: SqlitePool) -> Self {
         Self { pool, shared: Arc::default() }
     }
 
-    /// The pool of that connection.
+    /// Returns the pool of that connection.
     pub(crate) fn pool(&self) -> &SqlitePool {
         &self.pool
     }
 
-    /// Waits for the turn to write. Nobody else writes until the part ends, in this process and in
-    /// others.
+    /// Waits for the turn to write. No other writer is active until the part ends, in this process
+    /// and in others.
     pub(crate) async fn begin(&self) -> sqlx::Result<TransactionPart> {
         let Self { pool, shared } = self.clone();
         uninterrupted(async move {
+            // The guard is owned and moves with the turn; the transaction is out of its slot while
+            // the turn lasts.
             let mut lock = shared.lock_owned().await;
             let mut shared = match lock.take() {
                 Some(shared) => shared,
@@ -83,13 +85,13 @@ impl WriterGroup {
 }
 
 impl TransactionPart {
-    /// The connection to write by.
+    /// Returns the connection of the transaction.
     pub(crate) fn connection(&mut self) -> sqlx::Result<&mut SqliteConnection> {
         let turn = self.0.as_mut().ok_or_else(|| not_kept("it has ended"))?;
         Ok(&mut turn.shared.connection)
     }
 
-    /// Makes it last, together with the parts of others.
+    /// Commits the part, together with the parts of other writers.
     pub(crate) async fn commit(mut self) -> sqlx::Result<()> {
         let turn = self.0.take().ok_or_else(|| not_kept("it has ended"))?;
         uninterrupted(turn.commit()).await
@@ -111,9 +113,12 @@ impl WriterTurn {
         }
         self.shared.awaited = true;
         let outcome = Arc::clone(&self.shared.outcome);
+        // From here on others may write in the same transaction; the second turn comes after all
+        // who queued before it.
         let queue = self.hand_over();
         let mut lock = queue.lock_owned().await;
-        // Without an outcome the transaction under way is still the one that this part belongs to.
+        // Without an outcome, the transaction in the slot is still the one that this part belongs
+        // to.
         if outcome.get().is_none()
             && let Some(shared) = lock.take()
         {
@@ -127,9 +132,10 @@ impl WriterTurn {
         }
     }
 
-    /// Takes this part back; those of others stay, and they commit them in their next turns.
+    /// Rolls back this part; the parts of others stay, and they commit them in their second turns.
     async fn undo(mut self) {
         let undone = match self.shared.run("ROLLBACK TO part").await {
+            // Others wait for the commit of this transaction; only the own savepoint is undone.
             Ok(()) if self.shared.awaited => self.shared.run("RELEASE part").await,
             Ok(()) => self.shared.run("ROLLBACK").await,
             Err(error) => Err(error),
@@ -141,7 +147,7 @@ impl WriterTurn {
         }
     }
 
-    /// Leaves the transaction to whoever comes next.
+    /// Leaves the transaction to the next in the queue.
     fn hand_over(self) -> Arc<Mutex<Option<SharedTransaction>>> {
         let Self { mut lock, shared } = self;
         *lock = Some(shared);
@@ -173,11 +179,12 @@ impl SharedTransaction {
         }
     }
 
-    /// Ends the transaction for all of its parts, together with a connection whose state is not
+    /// Fails the transaction for all of its parts, and closes the connection, as its state is not
     /// known.
     fn give_up(self, error: sqlx::Error) -> sqlx::Error {
         let text = error.to_string();
-        // Where the disk is full, the database takes the whole transaction back by itself.
+        // With a full disk, SQLite rolls back the whole transaction by itself, and the savepoint is
+        // gone.
         let full = is_full(&error) || text.contains("no such savepoint");
         let _ = self.outcome.set(Err(CommitFailure { text, full }));
         drop(self.connection.detach());
@@ -199,8 +206,8 @@ fn not_kept(reason: &str) -> sqlx::Error {
     sqlx::Error::Protocol(format!("the transaction was not kept: {reason}"))
 }
 
-/// Does work to its end even if nobody waits for it any more: half a transaction must not be left
-/// behind.
+/// Runs work to its end even if the caller is cancelled: a future that is dropped between two
+/// statements would leave half a transaction.
 async fn uninterrupted<T: Send + 'static>(
     work: impl Future<Output = sqlx::Result<T>> + Send + 'static,
 ) -> sqlx::Result<T> {
@@ -271,7 +278,7 @@ mod tests {
         let waiting = tokio::time::timeout(Duration::from_millis(20), group.begin()).await;
         assert!(waiting.is_err());
         put(&mut part, 2).await.unwrap();
-        // Whoever does not wait for the answer has written all the same.
+        // A writer that does not wait for the answer has written all the same.
         drop(tokio::time::timeout(Duration::ZERO, part.commit()).await);
         let mut part = group.begin().await.unwrap();
         put(&mut part, 3).await.unwrap();

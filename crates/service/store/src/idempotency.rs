@@ -1,4 +1,4 @@
-//! Requests that must not be carried out twice, by the key that the caller gave them.
+//! Idempotency keys: requests that must not be executed twice, identified by a key of the caller.
 
 use std::time::Duration;
 
@@ -11,11 +11,11 @@ use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
 
-/// After this long without an answer, whoever carried a request out is taken for dead.
+/// Time without a sign of life after which the executor of a request counts as dead.
 pub const TAKE_OVER_AFTER: Duration = Duration::from_secs(60);
-/// How often who carries a request out tells that it still does.
+/// Interval at which the executor of a request reports that it is alive.
 pub const PROLONG_EVERY: Duration = Duration::from_secs(15);
-/// How long an answer is kept for replay.
+/// Time for which an answer is kept for replay.
 pub const KEEP_KEYS: Duration = Duration::from_secs(7 * 24 * 3600);
 
 statements! {
@@ -35,20 +35,20 @@ statements! {
 }
 
 record! {
-    /// A key as it is kept.
+    /// A stored key.
     pub struct KeyEntry {
-        /// What was asked.
+        /// Hash of the request.
         pub request_sha256: String,
-        /// The status that was answered.
+        /// HTTP status of the answer; none while the request is executed.
         pub status: Option<i64>,
-        /// The body that was answered.
+        /// Body of the answer.
         pub response: Option<String>,
-        /// When it began.
+        /// Start of the execution, microseconds since 1970.
         pub created_us: i64,
     }
 }
 
-/// The right to carry a request out, until somebody takes it over.
+/// The right to execute a request, until another process takes it over.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ticket {
     scope: String,
@@ -56,15 +56,15 @@ pub struct Ticket {
     began_us: i64,
 }
 
-/// What to do with a request that carries a key.
+/// Decision on a request that carries a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Begun {
-    /// Carry it out in a [unit of work](crate::UnitOfWork::keep) that keeps the answer, or
+    /// Execute it in a [unit of work](crate::UnitOfWork::keep) that stores the answer, or
     /// [abandon](Idempotency::abandon) it.
     New(Ticket),
-    /// Another is carrying it out right now.
+    /// Another process executes it at present.
     InProgress,
-    /// It was carried out; give this answer again.
+    /// It was executed; return the stored answer.
     Replay {
         /// The HTTP status.
         status: i64,
@@ -75,19 +75,19 @@ pub enum Begun {
     Mismatch,
 }
 
-/// The idempotency keys of a store.
+/// Repository of idempotency keys.
 #[derive(Debug, Clone, Copy)]
 pub struct Idempotency<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Requests that must not be carried out twice.
+    /// Returns the repository of idempotency keys.
     pub fn idempotency(&self) -> Idempotency<'_> {
         Idempotency(self)
     }
 }
 
 impl Idempotency<'_> {
-    /// Begins a request. `scope` is its method and path.
+    /// Begins a request. `scope` is its HTTP method and path.
     pub async fn begin(&self, scope: &str, key: &str, request_sha256: &str) -> Result<Begun> {
         checks::sha256("request_sha256", request_sha256)?;
         checks::name("key", key)?;
@@ -102,8 +102,11 @@ impl Idempotency<'_> {
         Ok(begun)
     }
 
-    /// Tells that a request is still being carried out, so that nobody takes it over for
-    /// [`TAKE_OVER_AFTER`] from now. A conflict when somebody has.
+    /// Reports that a request is still executed, so that no other process takes it over for
+    /// [`TAKE_OVER_AFTER`] from now.
+    ///
+    /// # Errors
+    /// Returns a conflict if another process has taken it over.
     pub async fn prolong(&self, ticket: &Ticket) -> Result<()> {
         let Ticket { scope, key, began_us } = ticket;
         let values =
@@ -114,7 +117,7 @@ impl Idempotency<'_> {
         if prolonged == 0 { Err(taken_over(key)) } else { Ok(()) }
     }
 
-    /// Forgets a request that came to nothing, so that it can be tried again.
+    /// Removes the key of a request that failed, so that it can be tried again.
     pub async fn abandon(&self, ticket: &Ticket) -> Result<()> {
         let Ticket { scope, key, began_us } = ticket;
         let mut tx = self.0.begin().await?;
@@ -122,7 +125,7 @@ impl Idempotency<'_> {
         tx.commit().await
     }
 
-    /// Forgets the keys that are older than [`KEEP_KEYS`] and returns their number.
+    /// Removes the keys that are older than [`KEEP_KEYS`] and returns their number.
     pub async fn purge(&self) -> Result<u64> {
         let mut tx = self.0.begin().await?;
         let purged =
@@ -132,7 +135,7 @@ impl Idempotency<'_> {
     }
 }
 
-/// Keeps the answer to a request for replay, within the transaction of its work.
+/// Stores the answer to a request for replay, within the transaction of its work.
 pub(crate) async fn answered(
     tx: &mut Transaction,
     ticket: &Ticket,
@@ -141,6 +144,8 @@ pub(crate) async fn answered(
 ) -> Result<()> {
     let Ticket { scope, key, began_us } = ticket;
     let values =
+        // The start identifies the execution: after a takeover no row matches, and the work is
+        // undone.
         args![scope: scope, key: key, created_us: *began_us, status: status, response: body];
     match tx.execute(FINISH, values).await? {
         0 => Err(taken_over(key)),
@@ -156,7 +161,7 @@ fn taken_over(key: &str) -> StoreError {
     )
 }
 
-/// What to do with a key that is there already.
+/// Returns the decision for a key that exists already.
 async fn again(
     tx: &mut Transaction,
     scope: &str,
@@ -166,8 +171,9 @@ async fn again(
 ) -> Result<Begun> {
     let entry: Option<KeyEntry> = tx.optional(GET, args![scope: scope, key: key]).await?;
     Ok(match entry {
-        // It was abandoned between two statements; the caller comes again.
+        // It was abandoned between the two statements; the caller tries again.
         None => Begun::InProgress,
+        // The same key for another request is an error of the caller, not a retry.
         Some(entry) if entry.request_sha256 != request_sha256 => Begun::Mismatch,
         Some(KeyEntry { status: Some(status), response, .. }) => {
             Begun::Replay { status, body: response.unwrap_or_default() }

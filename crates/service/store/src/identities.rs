@@ -1,5 +1,5 @@
-//! Whom an OpenID provider knows, as which user. A sign-in at a provider ends once: what is known
-//! of it is written with the session, or with the identity, that comes of it.
+//! Identities at OpenID providers and the users that they belong to. A sign-in at a provider can be
+//! used once: its use is recorded with the session, or with the identity, that results from it.
 
 use serde_json::{Value, json};
 
@@ -19,76 +19,79 @@ statements! {
         AND subject = $2");
     OF = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE user_name = $1 \
         ORDER BY issuer, subject");
+    // An identity belongs to one user: a conflict returns no row.
     PUT = same("INSERT INTO identities (issuer, subject, user_name, created_us) VALUES ($1, $2, \
         $3, $4) ON CONFLICT (issuer, subject) DO NOTHING RETURNING issuer, subject, user_name, \
         created_us");
     CLEAR = same("DELETE FROM identities WHERE user_name = $1");
+    // The second insertion of the same hash changes no row.
     SPEND = same("INSERT INTO spent_sign_ins (sha256, expires_us) VALUES ($1, $2) ON CONFLICT \
         (sha256) DO NOTHING");
     PURGE = same("DELETE FROM spent_sign_ins WHERE expires_us < $1");
 }
 
 record! {
-    /// Whom a provider knows, as which user.
+    /// An identity at a provider, and the user that it belongs to.
     pub struct Identity {
-        /// The provider.
+        /// Issuer URL of the provider.
         pub issuer: String,
-        /// Whom it knows.
+        /// Subject, unique within the issuer.
         pub subject: String,
-        /// As which user.
+        /// Name of the user.
         pub user_name: String,
-        /// Since when.
+        /// Time of linking, microseconds since 1970.
         pub created_us: i64,
     }
 }
 
-/// A sign-in at a provider that has ended well.
+/// A completed sign-in at a provider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SignIn<'a> {
-    /// The provider.
+    /// Issuer URL of the provider.
     pub issuer: &'a str,
-    /// Whom it knows.
+    /// Subject, unique within the issuer.
     pub subject: &'a str,
-    /// By what the sign-in is known again.
+    /// Hash that identifies the sign-in, so that a second use is recognised.
     pub sha256: &'a str,
-    /// When it would have expired.
+    /// Time of expiry, microseconds since 1970.
     pub expires_us: i64,
 }
 
-/// The identities of a store.
+/// Repository of identities.
 #[derive(Debug, Clone, Copy)]
 pub struct Identities<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Whom OpenID providers know.
+    /// Returns the repository of identities at OpenID providers.
     pub fn identities(&self) -> Identities<'_> {
         Identities(self)
     }
 }
 
 impl SignIn<'_> {
-    /// As the audit has it.
+    /// Returns the sign-in in the form of the audit.
     fn told(&self) -> Value {
         json!({ "issuer": self.issuer, "subject": self.subject })
     }
 }
 
 impl Identities<'_> {
-    /// Somebody whom a provider knows, if they are a user here.
+    /// Finds an identity, if it belongs to a user here.
     pub async fn find(&self, issuer: &str, subject: &str) -> Result<Option<Identity>> {
         self.0.database().optional(GET, args![issuer: issuer, subject: subject]).await
     }
 
-    /// As whom providers know a user.
+    /// Returns the identities of a user.
     pub async fn of(&self, user: &str) -> Result<Vec<Identity>> {
         self.0.database().all(OF, args![user_name: user]).await
     }
 
-    /// Makes a user known as these, issuer and subject, and as no others; signed out where one of
-    /// them goes.
+    /// Replaces the identities of a user, pairs of issuer and subject; ends the user's sessions if
+    /// one is removed.
     pub async fn replace(&self, user: &str, those: &[(String, String)]) -> Result<()> {
         let mut tx = self.0.begin().await?;
         users::there(&mut tx, user).await?;
+        // Read within the transaction, for the audit and for the comparison below.
         let before: Vec<Identity> = tx.all(OF, args![user_name: user]).await?;
         tx.execute(CLEAR, args![user_name: user]).await?;
         for (issuer, subject) in those {
@@ -96,6 +99,7 @@ impl Identities<'_> {
         }
         let pair = |one: &Identity| (one.issuer.clone(), one.subject.clone());
         let before: Vec<(String, String)> = before.iter().map(pair).collect();
+        // A session may have begun by the identity that goes.
         if before.iter().any(|one| !those.contains(one)) {
             users::sign_out(&mut tx, user).await?;
         }
@@ -105,7 +109,7 @@ impl Identities<'_> {
         tx.commit().await
     }
 
-    /// Makes a user known as whoever has signed in at a provider, beside others.
+    /// Links the identity of a sign-in to a user, in addition to existing ones.
     pub async fn add(&self, user: &str, sign_in: SignIn<'_>) -> Result<()> {
         let mut tx = self.0.begin().await?;
         self.spend(&mut tx, sign_in).await?;
@@ -116,7 +120,7 @@ impl Identities<'_> {
         tx.commit().await
     }
 
-    /// Creates a user who is known by a provider, and signs in there only.
+    /// Creates a user with the identity of a sign-in and without a password.
     pub async fn create(
         &self,
         name: &str,
@@ -128,6 +132,7 @@ impl Identities<'_> {
         users::insert(&mut tx, name, title, None, self.0.now_us()).await?;
         let principal = User::principal(name);
         grants::put(&mut tx, &principal, roles).await?;
+        // User, roles and identity in one transaction: no user without a way to sign in remains.
         self.put(&mut tx, name, sign_in.issuer, sign_in.subject).await?;
         let identity = sign_in.told();
         let after = json!({ "title": title, "roles": grants::words(roles), "identity": identity });
@@ -151,7 +156,7 @@ impl Identities<'_> {
         tx.commit().await
     }
 
-    /// Enters that somebody whom a provider knows was not let in, and why.
+    /// Records in the audit that a sign-in was refused, and why.
     pub async fn refuse(&self, sign_in: SignIn<'_>, why: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         self.spend(&mut tx, sign_in).await?;
@@ -179,9 +184,10 @@ impl Identities<'_> {
         }
     }
 
-    /// Notes that a sign-in has ended; one that has ended before is refused.
+    /// Marks a sign-in as used; a second use is refused.
     async fn spend(&self, tx: &mut Transaction, sign_in: SignIn<'_>) -> Result<()> {
         checks::sha256("sha256", sign_in.sha256)?;
+        // Expired sign-ins are refused by their age; their marks are no longer needed.
         tx.execute(PURGE, args![expires_us: self.0.now_us()]).await?;
         let values = args![sha256: sign_in.sha256, expires_us: sign_in.expires_us];
         match tx.execute(SPEND, values).await? {

@@ -1,5 +1,5 @@
-//! What must be true of the rows of every store, asked of the database itself. Each question is one
-//! statement, so that its answer holds at one moment, also while others write.
+//! Integrity checks of the rows of a store, run by the database. Each check is one statement, so
+//! that its result refers to one moment, also while others write.
 
 use serde::Serialize;
 
@@ -9,8 +9,8 @@ use crate::statements::{Statement, pair, same, statements};
 use crate::store::Store;
 
 statements! {
-    // PostgreSQL checks its pages itself where the cluster has checksums; it has no statement for
-    // it.
+    // PostgreSQL verifies its pages by itself where the cluster has checksums; it has no statement
+    // for it.
     DATABASE = pair(
         "SELECT 'database' AS place, integrity_check AS message FROM pragma_integrity_check WHERE \
          integrity_check <> 'ok'",
@@ -23,6 +23,7 @@ statements! {
         revision ' || s.revision AS message FROM ships s WHERE NOT EXISTS (SELECT 1 FROM \
         ship_revisions r WHERE r.ship = s.name AND r.revision = s.revision AND r.title = s.title \
         AND r.category = s.category AND r.document = s.document) ORDER BY s.name");
+    // Numbers that start at 1 have no gap if and only if the count equals the maximum.
     REVISION_GAP = same("SELECT 'ship ' || ship AS place, \
         'has ' || COUNT(*) || ' revisions up to number ' || MAX(revision) AS message \
         FROM ship_revisions GROUP BY ship HAVING COUNT(*) <> MAX(revision) ORDER BY ship");
@@ -55,6 +56,7 @@ statements! {
         m.revision AS place, 'there is no version ' || m.to_number AS message FROM alias_moves m \
         WHERE NOT EXISTS (SELECT 1 FROM versions v WHERE v.model = m.model AND v.number = \
         m.to_number) ORDER BY m.model, m.alias, m.revision");
+    // LAG gives the target of the previous move: each move must start where the one before ended.
     MOVE_CHAIN = same("SELECT 'alias ' || model || '/' || alias || ' revision ' || revision AS \
         place, 'its history does not join on to the move before it' AS message FROM (SELECT model, \
         alias, revision, from_number, LAG(to_number) OVER (PARTITION BY model, alias ORDER BY \
@@ -90,6 +92,7 @@ statements! {
     CHUNK_JOB = same("SELECT 'bulk refinement ' || bulk AS place, 'the job of its chunk ' || \
         number || ' is missing' AS message FROM bulk_chunks WHERE job NOT IN (SELECT id FROM jobs) \
         ORDER BY bulk, number");
+    // A version exists for the outcomes `champion` and `candidate`, and for no other.
     OUTCOME_VERSION = same("SELECT 'bulk refinement ' || bulk AS place, \
         'its outcome of ' || ship || ', ' || outcome || ', has not the version that it should \
         have' AS message FROM bulk_outcomes WHERE (outcome IN ('champion', 'candidate')) <> \
@@ -103,6 +106,7 @@ statements! {
         ORDER BY b.id");
     TAG_SHIP = same("SELECT 'tag ' || ship || '/' || tag AS place, 'there is no such ship' AS \
         message FROM ship_tags WHERE ship NOT IN (SELECT name FROM ships) ORDER BY ship, tag");
+    // A ship is in the index, or in the queue of ships to be indexed.
     SEARCH_SHIP = same("SELECT 'ship ' || name AS place, 'is neither found by a search nor waits \
         to be' AS message FROM ships WHERE name NOT IN (SELECT ship FROM ship_vectors) AND name \
         NOT IN (SELECT ship FROM search_queue) ORDER BY name");
@@ -132,6 +136,7 @@ statements! {
         AS message FROM deliveries WHERE webhook NOT IN (SELECT id FROM webhooks) ORDER BY id");
     JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM \
         jobs WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
+    // The columns that each state requires or excludes.
     JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, \
         error or end contradicts' AS message FROM jobs WHERE (state = 'running') <> \
         (lease_until_us IS NOT NULL) OR (state = 'succeeded') <> (result IS NOT NULL) OR (state = \
@@ -139,7 +144,7 @@ statements! {
         ORDER BY id");
 }
 
-/// Each question, by the name that a fault found by it bears.
+/// All checks, by the name that their faults bear.
 const CHECKS: &[(&str, Statement)] = &[
     ("database", DATABASE),
     ("revision-ship", REVISION_SHIP),
@@ -182,35 +187,35 @@ const CHECKS: &[(&str, Statement)] = &[
 ];
 
 record! {
-    /// A fault as a statement finds it.
+    /// A fault as a check returns it.
     pub struct Found {
-        /// The row.
+        /// Kind and name of the row.
         pub place: String,
-        /// What is wrong with it.
+        /// Description of the fault.
         pub message: String,
     }
 }
 
-/// Something in a store that is not as it must be.
+/// A violation of the integrity of a store.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Fault {
-    /// The check that found it.
+    /// Name of the check that found it.
     pub check: &'static str,
-    /// Where: the kind of thing and its name or id.
+    /// Place of the fault: the kind of row and its name or id.
     pub place: String,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
 }
 
 impl Fault {
-    /// A fault that `check` has found at `place`.
+    /// Creates a fault that `check` has found at `place`.
     pub fn new(check: &'static str, place: impl Into<String>, message: impl Into<String>) -> Self {
         Self { check, place: place.into(), message: message.into() }
     }
 }
 
 impl Store {
-    /// Checks the database, every reference between its rows.
+    /// Checks the database and every reference between its rows; returns all faults.
     pub async fn row_faults(&self) -> Result<Vec<Fault>> {
         let (mut faults, mut reader) = (Vec::new(), self.database().reader().await?);
         for (check, statement) in CHECKS {

@@ -1,4 +1,4 @@
-//! A job as it is kept, and what it is made of.
+//! Jobs as rows, and the input from which they are created.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 use crate::error::{Result, StoreError};
 use crate::record::{StoredColumn, record};
 
-/// The columns of a job, for every text that reads one.
+/// Columns of a job, for every statement that returns one.
 macro_rules! job {
     ($before:literal, $after:literal) => {
         concat!(
@@ -20,16 +20,16 @@ macro_rules! job {
 }
 pub(crate) use job;
 
-/// Where a job stands.
+/// State of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JobState {
     /// Waiting for a worker.
     Queued,
-    /// A worker holds it.
+    /// Held by a worker.
     Running,
-    /// Done.
+    /// Completed with a result.
     Succeeded,
-    /// Given up.
+    /// Ended with an error.
     Failed,
     /// Stopped on request.
     Cancelled,
@@ -50,7 +50,7 @@ impl JobState {
         }
     }
 
-    /// Whether nothing more will happen to the job by itself.
+    /// Returns true if the job has ended: its state changes no more by itself.
     pub fn is_final(self) -> bool {
         !matches!(self, Self::Queued | Self::Running)
     }
@@ -80,80 +80,80 @@ impl StoredColumn for JobState {
 }
 
 record! {
-    /// A piece of long work.
+    /// A job: work that takes longer than a request.
     pub struct Job {
         /// Its id.
         pub id: String,
-        /// What is to be done: `refinement`, `diagnosis`, ...
+        /// Kind of work: `refinement`, `diagnosis`, ...
         pub kind: String,
         /// The ship it concerns, if it concerns one.
         pub ship: Option<String>,
-        /// What was asked, JSON.
+        /// Request, JSON.
         pub request: String,
-        /// Where it stands.
+        /// State.
         pub state: JobState,
-        /// How much is done, from 0 to 1.
+        /// Completed share, from 0 to 1.
         pub progress: f64,
-        /// What is being done.
+        /// Present step, in words.
         pub message: String,
-        /// What came of it, JSON.
+        /// Result, JSON; none before it has succeeded.
         pub result: Option<String>,
-        /// Why it failed.
+        /// Reason of the failure.
         pub error: Option<String>,
-        /// How often it has been begun.
+        /// Number of attempts.
         pub attempt: i64,
-        /// Raised by each claim.
+        /// Fencing number, raised by each claim.
         pub fence: i64,
-        /// Until when its worker holds it.
+        /// End of the lease of its worker, microseconds since 1970.
         pub lease_until_us: Option<i64>,
         /// The worker that holds or held it.
         pub worker: Option<String>,
-        /// When it was asked for.
+        /// Time of the request, microseconds since 1970.
         pub created_us: i64,
-        /// When it was first begun.
+        /// Start of the first attempt, microseconds since 1970.
         pub started_us: Option<i64>,
-        /// When it came to an end.
+        /// End, microseconds since 1970.
         pub finished_us: Option<i64>,
-        /// Whether its worker is asked to stop.
+        /// True if its worker is asked to stop.
         pub cancel_requested: bool,
-        /// How many of its workers have let their lease run out without a word, as a process does
-        /// that has ended.
+        /// Number of its workers whose lease ran out without a heartbeat, as happens when a process
+        /// dies.
         pub lost_workers: i64,
-        /// Who asked for it; none where it was asked for before that was kept.
+        /// Author of the request; none for jobs from before authors were recorded.
         pub author: Option<String>,
     }
 }
 
 record! {
-    /// Jobs of one kind in one state.
+    /// Number of jobs of one kind in one state.
     pub struct JobCount {
         /// The kind.
         pub kind: String,
         /// The state.
         pub state: JobState,
-        /// How many there are.
+        /// Number of jobs.
         pub jobs: i64,
-        /// When the oldest of them was asked for.
+        /// Time of the oldest request among them, microseconds since 1970.
         pub oldest_us: i64,
     }
 }
 
-/// What a job is made of.
+/// A job to be queued.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewJob {
-    /// What is to be done.
+    /// Kind of work.
     pub kind: String,
     /// The ship it concerns, if it concerns one.
     pub ship: Option<String>,
-    /// What is asked, JSON.
+    /// Request, JSON.
     pub request: String,
 }
 
-/// Which jobs to list.
+/// Selection of jobs.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct JobFilter {
-    /// Of this ship only.
+    /// Jobs of this ship only.
     pub ship: Option<String>,
-    /// In this state only.
+    /// Jobs in this state only.
     pub state: Option<JobState>,
 }

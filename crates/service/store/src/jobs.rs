@@ -1,4 +1,4 @@
-//! Long work, as rows: what those who ask for it do. What workers do is in `work.rs`.
+//! Jobs from the side of the requester; `work.rs` has the side of the workers.
 
 use serde_json::json;
 
@@ -18,34 +18,38 @@ statements! {
         '', 0, 0, $5, 0, $6) RETURNING", ""));
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
     LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
+    // The cast gives PostgreSQL the type of a parameter that is only compared with NULL.
     LIST_SHIP = same(job!("SELECT", "FROM jobs WHERE ship = $3 AND id < COALESCE($1, '~') \
         AND (CAST($4 AS TEXT) IS NULL OR state = $4) ORDER BY id DESC LIMIT $2"));
     LIST_STATE = same(job!("SELECT", "FROM jobs WHERE state = $3 AND id < COALESCE($1, '~') ORDER \
         BY id DESC LIMIT $2"));
     COUNTS = same("SELECT kind, state, COUNT(*) AS jobs, MIN(created_us) AS oldest_us FROM jobs \
         GROUP BY kind, state ORDER BY kind, state");
+    // A queued job is cancelled at once; a running one is only marked, and its worker stops it.
     CANCEL = same(job!("UPDATE jobs SET cancel_requested = 1, \
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
         WHERE id = $1 AND state IN ('queued', 'running') RETURNING", ""));
+    // Attempts and lost workers are reset, as for a new job; the fence stays and keeps old workers
+    // out.
     RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = \
         0, message = '', error = NULL, worker = NULL, finished_us = NULL, cancel_requested = 0 \
         WHERE id = $1 AND state IN ('failed', 'cancelled') RETURNING", ""));
 }
 
-/// The jobs of a store.
+/// Repository of jobs.
 #[derive(Debug, Clone, Copy)]
 pub struct Jobs<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Long work.
+    /// Returns the repository of jobs.
     pub fn jobs(&self) -> Jobs<'_> {
         Jobs(self)
     }
 }
 
 impl Jobs<'_> {
-    /// Puts a job in the queue.
+    /// Queues a job.
     pub async fn enqueue(&self, new: &NewJob) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         let job = insert(self.0, &mut tx, new).await?;
@@ -53,16 +57,17 @@ impl Jobs<'_> {
         Ok(job)
     }
 
-    /// The job of this id.
+    /// Returns the job of an id.
     pub async fn get(&self, id: &str) -> Result<Job> {
         let job = self.0.database().optional(GET, args![id: id]).await?;
         job.ok_or_else(|| StoreError::missing("job", id))
     }
 
-    /// Jobs, the latest first.
+    /// Lists jobs, the latest first.
     pub async fn list(&self, filter: &JobFilter, page: &Page) -> Result<List<Job>> {
         let state = filter.state.map(JobState::as_str);
         let (database, limit) = (self.0.database(), page.fetch()?);
+        // Separate statements, so that each has an index of its own order.
         let jobs = match (&filter.ship, state) {
             (None, None) => database.all(LIST, args![after: &page.after, limit: limit]).await?,
             (None, Some(state)) => {
@@ -82,7 +87,7 @@ impl Jobs<'_> {
         Ok(page.of(jobs, |job: &Job| job.id.clone()))
     }
 
-    /// How many jobs there are of each kind in each state.
+    /// Counts the jobs by kind and state.
     pub async fn counts(&self) -> Result<Vec<JobCount>> {
         self.0.database().all(COUNTS, &[]).await
     }
@@ -109,7 +114,8 @@ impl Jobs<'_> {
         .await
     }
 
-    /// A change that the job's state may rule out.
+    /// Applies a change that is allowed in some states only; `rule` says which ones in the
+    /// conflict.
     async fn unless(
         &self,
         (statement, action): (Statement, &'static str),
@@ -119,6 +125,7 @@ impl Jobs<'_> {
     ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         let Some(job) = tx.optional::<Job>(statement, values).await? else {
+            // No row matched: the job does not exist, or its state forbids the change.
             let state = find(&mut tx, id).await?.state;
             return Err(StoreError::conflict("job", id, format!("is {state}; {rule}")));
         };
@@ -130,12 +137,12 @@ impl Jobs<'_> {
     }
 }
 
-/// What stands for a job in the audit.
+/// Returns the subject of audit entries about a job.
 fn subject(id: &str) -> String {
     format!("job:{id}")
 }
 
-/// Puts a job in the queue within a transaction.
+/// Queues a job within a transaction.
 pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) -> Result<Job> {
     checks::name("kind", &new.kind)?;
     checks::json("request", &new.request)?;
@@ -148,7 +155,7 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) ->
     Ok(job)
 }
 
-/// The job, as the transaction sees it.
+/// Returns a job as the transaction sees it.
 pub(crate) async fn find(tx: &mut Transaction, id: &str) -> Result<Job> {
     let job = tx.optional(GET, args![id: id]).await?;
     job.ok_or_else(|| StoreError::missing("job", id))

@@ -1,4 +1,4 @@
-//! Service keys: what programs present. Only the prefix and the hash are kept.
+//! Service keys, the credentials of programs. Only the prefix and the hash are stored.
 
 use serde_json::json;
 
@@ -30,6 +30,7 @@ statements! {
         $2");
     REVOKE = key!("UPDATE service_keys SET revoked_us = $2 WHERE prefix = $1 AND revoked_us IS \
         NULL RETURNING", "");
+    // Concurrent uses may arrive out of order; the time never moves back.
     USED = same("UPDATE service_keys SET last_used_us = $2 WHERE prefix = $1 AND \
         COALESCE(last_used_us, 0) < $2");
     USER = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name \
@@ -39,70 +40,71 @@ statements! {
 record! {
     /// A service key.
     pub struct KeyRow {
-        /// What finds it, and what is shown of it.
+        /// Public first part, by which the key is found and shown.
         pub prefix: String,
-        /// What it is for.
+        /// Purpose, in words.
         pub title: String,
-        /// The user in whose name it acts, if it does.
+        /// User in whose name it acts; none if it acts in its own.
         pub user_name: Option<String>,
-        /// The SHA-256 of the whole, in hexadecimal.
+        /// SHA-256 of the whole key, hexadecimal.
         pub sha256: String,
         /// When it was made.
         pub created_us: i64,
-        /// When it ends by itself, if it does.
+        /// Time of expiry, microseconds since 1970; none if it does not expire.
         pub expires_us: Option<i64>,
-        /// When it was revoked, if it was.
+        /// Time of revocation, microseconds since 1970; none if it was not revoked.
         pub revoked_us: Option<i64>,
-        /// When it was last used, to a minute.
+        /// Time of the last use, to a minute, microseconds since 1970.
         pub last_used_us: Option<i64>,
     }
 }
 
-/// A key that is to be kept.
+/// A service key to be stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewKey {
-    /// What finds it.
+    /// Public first part, by which the key is found.
     pub prefix: String,
-    /// What it is for.
+    /// Purpose, in words.
     pub title: String,
-    /// The user in whose name it acts.
+    /// User in whose name it acts.
     pub user: Option<String>,
-    /// The SHA-256 of the whole, in hexadecimal.
+    /// SHA-256 of the whole key, hexadecimal.
     pub sha256: String,
-    /// When it ends by itself.
+    /// Time of expiry, microseconds since 1970.
     pub expires_us: Option<i64>,
 }
 
-/// The service keys of a store.
+/// Repository of service keys.
 #[derive(Debug, Clone, Copy)]
 pub struct ServiceKeys<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// What programs present.
+    /// Returns the repository of service keys.
     pub fn service_keys(&self) -> ServiceKeys<'_> {
         ServiceKeys(self)
     }
 }
 
 impl KeyRow {
-    /// What stands for it in [`crate::Grants`] and in the audit.
+    /// Returns the principal of a key in [`crate::Grants`] and in the audit.
     pub fn principal(prefix: &str) -> String {
         format!("key:{prefix}")
     }
 
-    /// Whether it opens anything at a moment.
+    /// Returns true if the key is neither revoked nor expired at `now_us`.
     pub fn is_valid(&self, now_us: i64) -> bool {
         self.revoked_us.is_none() && self.expires_us.is_none_or(|end| now_us < end)
     }
 }
 
 impl ServiceKeys<'_> {
-    /// Keeps a key with its roles.
+    /// Stores a key with its roles.
     pub async fn create(&self, new: &NewKey, roles: &[GrantRow]) -> Result<KeyRow> {
         checks::sha256("sha256", &new.sha256)?;
         let NewKey { prefix, title, user, sha256, expires_us } = new;
         let mut tx = self.0.begin().await?;
         if let Some(name) = user {
+            // A disabled user counts as absent here.
             let found: Option<crate::users::User> = tx.optional(USER, args![name: name]).await?;
             found
                 .ok_or_else(|| StoreError::invalid("user", format!("there is no user `{name}`")))?;
@@ -119,29 +121,30 @@ impl ServiceKeys<'_> {
         Ok(key)
     }
 
-    /// A key.
+    /// Returns a key.
     pub async fn get(&self, prefix: &str) -> Result<KeyRow> {
         self.find(prefix).await?.ok_or_else(|| StoreError::missing("key", prefix))
     }
 
-    /// A key, if there is one with this prefix.
+    /// Finds a key by its prefix.
     pub async fn find(&self, prefix: &str) -> Result<Option<KeyRow>> {
         self.0.database().optional(GET, args![prefix: prefix]).await
     }
 
-    /// The keys by prefix, those that have ended too.
+    /// Lists the keys by prefix, including revoked and expired ones.
     pub async fn list(&self, page: &Page) -> Result<List<KeyRow>> {
         let values = args![after: &page.after, limit: page.fetch()?];
         let keys = self.0.database().all(LIST, values).await?;
         Ok(page.of(keys, |key: &KeyRow| key.prefix.clone()))
     }
 
-    /// Ends a key, for ever.
+    /// Revokes a key permanently.
     pub async fn revoke(&self, prefix: &str) -> Result<KeyRow> {
         let mut tx = self.0.begin().await?;
         let values = args![prefix: prefix, revoked_us: self.0.now_us()];
         let Some(key) = tx.optional(REVOKE, values).await? else {
             return Err(match tx.optional::<KeyRow>(GET, args![prefix: prefix]).await? {
+                // The update matches active keys only; the read shows why it matched none.
                 Some(_) => StoreError::conflict("key", prefix, "is revoked already"),
                 None => StoreError::missing("key", prefix),
             });
@@ -152,7 +155,7 @@ impl ServiceKeys<'_> {
         Ok(key)
     }
 
-    /// Notes that a key is being used.
+    /// Records that a key is being used.
     pub async fn used(&self, prefix: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(USED, args![prefix: prefix, last_used_us: self.0.now_us()]).await?;

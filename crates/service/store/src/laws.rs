@@ -1,4 +1,4 @@
-//! Laws of motion: a name, its document, nothing that ever changes.
+//! Laws of motion: immutable documents by name.
 
 use serde_json::json;
 
@@ -20,33 +20,33 @@ statements! {
 }
 
 record! {
-    /// A law of motion as it was put in.
+    /// A law of motion.
     pub struct Law {
         /// Its name.
         pub name: String,
-        /// Its text, byte for byte.
+        /// Document, byte for byte.
         pub document: String,
-        /// The SHA-256 of the text.
+        /// SHA-256 of the document, hexadecimal.
         pub sha256: String,
         /// When it was put in.
         pub created_us: i64,
     }
 }
 
-/// The laws of a store.
+/// Repository of laws.
 #[derive(Debug, Clone, Copy)]
 pub struct Laws<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Laws of motion, insert-only.
+    /// Returns the repository of laws of motion (insert-only).
     pub fn laws(&self) -> Laws<'_> {
         Laws(self)
     }
 }
 
 impl Laws<'_> {
-    /// Puts a law in. The same text again changes nothing; another text under the same name is a
-    /// conflict.
+    /// Inserts a law. The same document again changes nothing; another document under the same name
+    /// is a conflict.
     pub async fn insert(&self, name: &str, document: &str) -> Result<Law> {
         checks::name("name", name)?;
         let sha256 = sha256_hex(document.as_bytes());
@@ -57,6 +57,7 @@ impl Laws<'_> {
             let after = json!({ "sha256": sha256 });
             tx.note(self.0.now_us(), "law.create", format!("law:{name}"), None, Some(after));
         }
+        // Reads the stored document, which may be an older one of this name.
         let law: Law = tx.one(GET, args![name: name]).await?;
         tx.commit().await?;
         match law.sha256 == sha256 {
@@ -69,13 +70,13 @@ impl Laws<'_> {
         }
     }
 
-    /// The law of this name.
+    /// Returns the law of a name.
     pub async fn get(&self, name: &str) -> Result<Law> {
         let law = self.0.database().optional(GET, args![name: name]).await?;
         law.ok_or_else(|| StoreError::missing("law", name))
     }
 
-    /// All laws by name.
+    /// Lists all laws by name.
     pub async fn list(&self, page: &Page) -> Result<List<Law>> {
         let laws =
             self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;

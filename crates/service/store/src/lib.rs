@@ -1,11 +1,11 @@
-//! What Sistership keeps: ships, trials, laws, model versions with their aliases, jobs and reports,
-//! in SQLite or PostgreSQL, and the samples of trials in a content-addressed object store.
+//! Database and object store of Sistership: ships, trials, laws, model versions with their aliases,
+//! jobs and reports, in SQLite or PostgreSQL, and the samples of trials in a content-addressed
+//! object store.
 //!
 //! Each table has one repository, reached from [`Store`]; time and ids are parameters ([`Clock`],
-//! [`Ids`]), so that a test holds both in its hand. Nothing is overwritten: versions and laws are
-//! insert-only, aliases and ships keep their history, a deletion is a tombstone. What must happen
-//! together happens in one transaction, see [`Store::commit_refinement`] and
-//! [`Store::commit_diagnosis`].
+//! [`Ids`]), so that tests can fix both. Nothing is overwritten: versions and laws are insert-only,
+//! aliases and ships keep their history, a deletion is a tombstone. Changes that belong together
+//! are one transaction, see [`Store::commit_refinement`] and [`Store::commit_diagnosis`].
 
 mod actor;
 mod aliases;

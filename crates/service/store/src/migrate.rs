@@ -1,5 +1,5 @@
-//! The schema, embedded in the binary, brought up to date when a store is opened, by one process at
-//! a time.
+//! Migrations of the schema, embedded in the binary and applied when a store is opened, by one
+//! process at a time.
 
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 use sqlx::{PgConnection, PgPool, SqlSafeStr as _, SqlitePool};
@@ -44,25 +44,26 @@ const POSTGRES: &[MigrationSource] = &[
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {
     let migration = |&(version, name, sql): &MigrationSource| {
+        // The last argument: each migration runs within a transaction.
         Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
     };
     Migrator::with_migrations(sources.iter().map(migration).collect())
 }
 
-/// All of it in one immediate transaction: the database's write lock keeps other processes out, and
-/// sqlx has no other lock.
+/// Migrates an SQLite database in one immediate transaction: its write lock keeps other processes
+/// out, as sqlx has no other lock for SQLite.
 pub(crate) async fn sqlite(pool: &SqlitePool) -> Result<()> {
     let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
     migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(sqlx::Error::from)?;
     Ok(tx.commit().await?)
 }
 
-/// Under the advisory lock that sqlx takes.
+/// Migrates a PostgreSQL database under the advisory lock of sqlx.
 pub(crate) async fn postgres(pool: &PgPool) -> Result<()> {
     Ok(migrator(POSTGRES).run(pool).await.map_err(sqlx::Error::from)?)
 }
 
-/// The schema as it was after a migration, within a transaction of the caller's.
+/// Creates the schema of an earlier migration, within a transaction of the caller.
 pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) -> Result<()> {
     Ok(migrator(POSTGRES)
         .run_direct(Some(version), connection, false)
@@ -70,7 +71,7 @@ pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) 
         .map_err(sqlx::Error::from)?)
 }
 
-/// The same on SQLite, for tests of upgrades.
+/// Creates the schema of an earlier migration on SQLite, for tests of upgrades.
 #[cfg(all(unix, feature = "testing"))]
 pub(crate) async fn sqlite_up_to(
     version: i64,
@@ -82,7 +83,7 @@ pub(crate) async fn sqlite_up_to(
         .map_err(sqlx::Error::from)?)
 }
 
-/// The number of the newest migration.
+/// Returns the number of the newest migration.
 pub(crate) fn newest() -> i64 {
     SQLITE.iter().map(|(version, ..)| *version).max().unwrap_or(0)
 }

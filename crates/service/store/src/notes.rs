@@ -1,5 +1,5 @@
-//! Notes: what people say of a ship. They are entries of the audit, so that each has its author and
-//! its time, and none is changed afterwards.
+//! Notes about ships. They are audit entries, so that each has an author and a time, and none can
+//! be changed afterwards.
 
 use serde_json::json;
 
@@ -12,7 +12,7 @@ use crate::page::{List, Page};
 use crate::ships::{self, Ships, subject};
 use crate::statements::{same, statements};
 
-/// The longest note, characters.
+/// Maximum length of a note, characters.
 pub const MAX_NOTE_CHARS: usize = 1000;
 
 statements! {
@@ -25,11 +25,11 @@ statements! {
 pub struct Note {
     /// The number of its entry in the audit.
     pub number: i64,
-    /// When it was made.
+    /// Time of creation, microseconds since 1970.
     pub at_us: i64,
-    /// Who made it.
+    /// Author.
     pub actor: String,
-    /// What it says.
+    /// Text of the note.
     pub text: String,
 }
 
@@ -44,7 +44,7 @@ impl Note {
 }
 
 impl Ships<'_> {
-    /// Notes about a ship, the latest first, by number.
+    /// Lists the notes about a ship, the latest first; the cursor is the number of the entry.
     pub async fn notes(&self, name: &str, page: &Page<i64>) -> Result<List<Note, i64>> {
         let (subject, limit) = (subject(name), page.fetch()?);
         let values = args![subject: &subject, after: page.after, limit: limit];
@@ -53,7 +53,7 @@ impl Ships<'_> {
         Ok(page.of(notes, |note: &Note| note.number))
     }
 
-    /// Notes something about a ship, at most [`MAX_NOTE_CHARS`].
+    /// Adds a note to a ship, of at most [`MAX_NOTE_CHARS`] characters.
     pub async fn note(&self, name: &str, text: &str) -> Result<()> {
         checks::text("text", text)?;
         if text.trim().is_empty() || text.chars().count() > MAX_NOTE_CHARS {

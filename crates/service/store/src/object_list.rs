@@ -1,4 +1,4 @@
-//! What there is in the object store.
+//! Listing of the object store.
 
 use futures::stream::{self, BoxStream};
 use futures::{StreamExt as _, TryStreamExt as _};
@@ -10,40 +10,40 @@ use crate::error::{Result, StoreError};
 use crate::objects::{FOLDER, Objects};
 use crate::objects_error::ObjectsError;
 
-/// How many objects are asked after at a time.
+/// Number of concurrent requests to the object store.
 pub(crate) const AT_ONCE: usize = 32;
 
-/// What an object is called.
+/// Name of an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ObjectName {
-    /// By the hash of its bytes, as every object must be.
+    /// The hash of its bytes, as all objects of the store are named.
     Key(String),
-    /// Something else; the store has not put it there.
+    /// Any other name: the object was not written by the store.
     Stranger(String),
 }
 
-/// An object, but for its bytes.
+/// An object without its bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ObjectHead {
-    /// What it is called.
+    /// Name.
     pub name: ObjectName,
-    /// Its size.
+    /// Size, bytes.
     pub bytes: u64,
-    /// When it was last put, microseconds since 1970 by the clock of the object store.
+    /// Time of the last write by the clock of the object store, microseconds since 1970.
     pub modified_us: i64,
 }
 
 impl Objects {
-    /// Every object, in no order.
+    /// Streams all objects, in no order.
     pub fn list(&self) -> BoxStream<'_, Result<ObjectHead>> {
         let all = self.store.list(Some(&ObjectPath::from(FOLDER)));
         all.map(|meta| Ok(head(&meta.map_err(ObjectsError::from)?))).boxed()
     }
 
-    /// Checks that all of the keys are there.
+    /// Checks that objects of all the keys exist.
     ///
     /// # Errors
-    /// Names the first one that is not.
+    /// Returns an error that names a missing one.
     pub(crate) async fn must_have(&self, keys: impl Iterator<Item = String> + Send) -> Result<()> {
         let there = |key: String| async move {
             if self.exists(&key).await? { Ok(()) } else { Err(StoreError::missing("object", key)) }
@@ -71,6 +71,8 @@ fn name(path: &str) -> ObjectName {
         .and_then(|rest| rest.strip_prefix('/'))
         .map(|rest| rest.replacen('/', "", 1));
     match key.filter(|key| {
+        // The slash must come after the first two digits, otherwise two paths could mean the same
+        // key.
         checks::sha256("key", key).is_ok() && path.as_bytes().get(FOLDER.len() + 3) == Some(&b'/')
     }) {
         Some(key) => ObjectName::Key(key),

@@ -1,8 +1,8 @@
 //! Objects: bytes named by their SHA-256, in a local folder or in a bucket of an S3-compatible
 //! store, see [`crate::ObjectsPlace`].
 //!
-//! What [`Objects::put`] has acknowledged is durable, so that a row may refer to it: on the disk,
-//! folder entries included, or by the word of the bucket's server.
+//! An object that [`Objects::put`] has acknowledged is durable, so that a row may refer to it: on
+//! the disk, including the entries of its folders, or as the server of the bucket confirms.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,34 +22,34 @@ use crate::error::{Result, StoreError};
 use crate::folders;
 use crate::objects_error::ObjectsError;
 
-/// A content-addressed store. A clone is another handle on the same one.
+/// A content-addressed object store. A clone is another handle on the same store.
 #[derive(Debug, Clone)]
 pub struct Objects {
     pub(crate) store: Arc<dyn ObjectStore>,
-    /// The folder, where it is one.
+    /// Root folder of a local store; none for a bucket.
     pub(crate) folder: Option<PathBuf>,
 }
 
 impl Objects {
-    /// Objects below the folder `root`, which is made if it is not there.
+    /// Opens a store below the folder `root`, which is created if absent.
     pub fn local(root: &Path) -> Result<Self> {
         folders::make(root).map_err(ObjectsError::from)?;
         let store = LocalFileSystem::new_with_prefix(root).map_err(ObjectsError::from)?;
         Ok(Self { store: Arc::new(store.with_fsync(true)), folder: Some(root.to_path_buf()) })
     }
 
-    /// Objects that go with the process.
+    /// Creates a store in memory.
     pub fn memory() -> Self {
         Self::over(Arc::new(InMemory::new()))
     }
 
-    /// Objects in any store.
+    /// Wraps any store.
     pub fn over(store: Arc<dyn ObjectStore>) -> Self {
         Self { store, folder: None }
     }
 
-    /// Leaves the mark that [`health`](Self::health) looks for, where it is not there yet: a folder
-    /// that is no longer mounted does not have it.
+    /// Writes the marker that [`health`](Self::health) looks for, unless it exists: a folder that
+    /// is no longer mounted does not have it.
     pub async fn mark(&self) -> Result<()> {
         if self.store.head(&ObjectPath::from(MARK)).await.is_ok() {
             return Ok(());
@@ -61,18 +61,18 @@ impl Objects {
         Ok(())
     }
 
-    /// Whether the store answers in time and is the one that was [marked](Self::mark).
+    /// Checks that the store answers in time and is the one that was [marked](Self::mark).
     pub async fn health(&self) -> Result<()> {
         let mark = ObjectPath::from(MARK);
         let looked = tokio::time::timeout(PATIENCE, self.store.head(&mark)).await;
         looked.map_err(ObjectsError::from)?.map(drop).map_err(|error| failure(MARK, error))
     }
 
-    /// Keeps the bytes and returns their key, once they are durable. They are written even when the
-    /// key is there: another writer may not have made them durable yet, and a damaged object is
-    /// healed.
+    /// Stores bytes and returns their key once they are durable. They are written even if the key
+    /// exists: another writer may not have made them durable yet, and a damaged object is replaced.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
         let key = hash(bytes.clone()).await?;
+        // Held until the write ends, so that no process takes its partial file for a leftover.
         let _held = self.putting().await?;
         let (at, size) = (path(&key)?, bytes.len());
         let put = self.store.put(&at, PutPayload::from(bytes));
@@ -83,9 +83,10 @@ impl Objects {
         Ok(key)
     }
 
-    /// The bytes of this key, verified.
+    /// Returns the bytes of a key, verified by their hash.
     pub async fn get(&self, key: &str) -> Result<Bytes> {
         let at = path(key)?;
+        // Two deadlines: for the head of the answer, then for the bytes by their number.
         let found = tokio::time::timeout(ANSWER, self.store.get(&at)).await;
         let found = found.map_err(ObjectsError::from)?.map_err(|error| failure(key, error))?;
         let size = usize::try_from(found.meta.size).unwrap_or(usize::MAX);
@@ -98,32 +99,33 @@ impl Objects {
         }
     }
 
-    /// The bytes of this key as they come, not yet verified: whoever reads them to the end compares
-    /// their hash.
+    /// Returns the size and a stream of the bytes of a key, not yet verified: a caller that reads
+    /// them to the end compares their hash.
     ///
     /// # Errors
-    /// There is no such object, or the store fails.
+    /// Returns an error if there is no such object, or the store fails.
     pub async fn stream(&self, key: &str) -> Result<(u64, BoxStream<'static, Result<Bytes>>)> {
         let found = self.store.get(&path(key)?).await.map_err(|error| failure(key, error))?;
         let (size, key) = (found.meta.size, key.to_owned());
         Ok((size, found.into_stream().map_err(move |error| failure(&key, error)).boxed()))
     }
 
-    /// Removes the object of this key, if it is there. Only who knows that no row refers to it may
-    /// do so, see [`crate::Store::remove_unreferred`].
+    /// Removes the object of a key, if it exists. The caller must be sure that no row refers to it,
+    /// see [`crate::Store::remove_unreferred`].
     pub(crate) async fn remove(&self, key: String) -> Result<()> {
         match self.store.delete(&path(&key)?).await {
+            // Idempotent: another process may have removed it.
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(ObjectsError::from(error).into()),
         }
     }
 
-    /// Size of the object of this key, bytes.
+    /// Returns the size of the object of a key, bytes.
     pub async fn size(&self, key: &str) -> Result<u64> {
         Ok(self.store.head(&path(key)?).await.map_err(|error| failure(key, error))?.size)
     }
 
-    /// Whether there is an object of this key.
+    /// Returns true if there is an object of this key.
     pub async fn exists(&self, key: &str) -> Result<bool> {
         match self.store.head(&path(key)?).await {
             Ok(_) => Ok(true),
@@ -133,29 +135,29 @@ impl Objects {
     }
 }
 
-/// The SHA-256 of bytes in lower-case hexadecimal.
+/// Returns the SHA-256 of bytes in lower-case hexadecimal.
 pub fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The hash, computed where it holds nobody up.
+/// Returns the hash, computed on a thread for blocking work.
 async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
-/// How long a look at the mark may take: whoever asks whether the server is ready waits for it.
+/// Maximum time for the check of the marker: a readiness probe waits for it.
 const PATIENCE: Duration = Duration::from_millis(800);
-/// How long the store may take to answer, what it repeats included.
+/// Maximum time for the answer of the store, including retries.
 const ANSWER: Duration = Duration::from_secs(20);
-/// Bytes a second that it must take or give then, the least of any link in use.
+/// Minimum rate of transfer of an object, bytes per second, below any link in use.
 const LEAST_RATE: f64 = 128e3;
 
-/// How long an object of so many bytes may take.
+/// Returns the maximum time for an object of a size.
 fn patience(size: usize) -> Duration {
     ANSWER + Duration::from_secs_f64(size as f64 / LEAST_RATE)
 }
 
-/// What every store of ours has beside its objects.
+/// Name of the marker of a store, next to its objects.
 const MARK: &str = "about.txt";
 /// The folder of all objects.
 pub(crate) const FOLDER: &str = "objects";
@@ -163,6 +165,7 @@ pub(crate) const FOLDER: &str = "objects";
 /// `objects/ab/cdef...`
 fn path(key: &str) -> Result<ObjectPath> {
     checks::sha256("key", key)?;
+    // 256 folders by the first byte keep each of them small.
     let (folder, file) = key.split_at(2);
     Ok(ObjectPath::from_iter([FOLDER, folder, file]))
 }

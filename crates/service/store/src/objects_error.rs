@@ -1,14 +1,14 @@
-//! Why the object store did not do it.
+//! Error of the object store.
 
-/// Why the object store did not do it.
+/// Error of the object store.
 #[derive(Debug, thiserror::Error)]
 pub enum ObjectsError {
     /// The bytes that were read are not those that were put.
     #[error("the object `{key}` is damaged: its content has the hash {actual}")]
     Damaged {
-        /// The hash that was asked for.
+        /// The requested hash.
         key: String,
-        /// The hash of what is there.
+        /// The hash of the stored bytes.
         actual: String,
     },
     /// The store behind it failed.
@@ -26,8 +26,7 @@ pub enum ObjectsError {
 }
 
 impl ObjectsError {
-    /// Whether the store behind it does not do now what it may do later: it fails, refuses, or does
-    /// not answer.
+    /// Returns true for a failure that may pass: the store fails, refuses, or does not answer.
     pub fn is_passing(&self) -> bool {
         use object_store::Error::{Generic, PermissionDenied, Unauthenticated};
         match self {

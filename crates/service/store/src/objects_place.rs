@@ -1,4 +1,4 @@
-//! Where objects are kept.
+//! Location of the object store.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -13,16 +13,16 @@ use crate::error::{Result, StoreError};
 use crate::objects::Objects;
 use crate::objects_error::ObjectsError;
 
-/// The region where nobody says: servers of one's own have none.
+/// Default region: private servers have none.
 const REGION: &str = "us-east-1";
-/// Until a connection stands.
+/// Maximum time to establish a connection.
 const CONNECT: Duration = Duration::from_secs(5);
-/// Until a request has been answered; an upload may be large.
+/// Maximum time of a request; an upload may be large.
 const REQUEST: Duration = Duration::from_secs(120);
-/// How long a request is repeated that a server could not answer at the moment.
+/// Time for which a request is retried that the server could not answer.
 const RETRY: Duration = Duration::from_secs(20);
 
-/// Where objects are kept.
+/// Location of the object store.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ObjectsPlace {
     /// Below a folder.
@@ -38,19 +38,19 @@ pub enum ObjectsPlace {
 pub struct S3Place {
     /// The bucket.
     pub bucket: String,
-    /// What stands before the name of every object; empty for nothing.
+    /// Prefix of the name of every object; empty for none.
     pub prefix: String,
-    /// The server's URL; that of Amazon where absent.
+    /// URL of the server; default: that of Amazon.
     pub endpoint: Option<String>,
     /// The region.
     pub region: Option<String>,
 }
 
 impl ObjectsPlace {
-    /// Reads `s3://bucket/prefix`.
+    /// Parses `s3://bucket/prefix`, with the endpoint and the region.
     ///
     /// # Errors
-    /// Says what would be right.
+    /// Returns an error that states the expected form.
     pub fn s3(url: &str, endpoint: Option<String>, region: Option<String>) -> Result<Self> {
         let wrong =
             || StoreError::invalid("objects_url", "write s3://BUCKET or s3://BUCKET/PREFIX");
@@ -59,6 +59,7 @@ impl ObjectsPlace {
         let prefix = prefix.trim_matches('/');
         if bucket.is_empty()
             || bucket.contains(|c: char| !c.is_ascii_alphanumeric() && !"-._".contains(c))
+            // An empty segment would be lost in the names of objects.
             || prefix.contains("//")
         {
             return Err(wrong());
@@ -80,7 +81,7 @@ impl ObjectsPlace {
         }))
     }
 
-    /// The folder, where it is one.
+    /// Returns the folder of a local store; none for a bucket.
     pub fn folder(&self) -> Option<&Path> {
         match self {
             Self::Folder(folder) => Some(folder),
@@ -99,10 +100,11 @@ impl fmt::Display for ObjectsPlace {
 }
 
 impl Objects {
-    /// The objects that are kept there.
+    /// Opens the object store at a location.
     ///
     /// # Errors
-    /// The folder cannot be made, or the settings of the bucket cannot be.
+    /// Returns an error if the folder cannot be created, or the settings of the bucket are not
+    /// valid.
     pub fn at(place: &ObjectsPlace) -> Result<Self> {
         match place {
             ObjectsPlace::Folder(folder) => Self::local(folder),
@@ -113,7 +115,7 @@ impl Objects {
     }
 }
 
-/// The client of a bucket, with what the environment says.
+/// Returns the client of a bucket; credentials come from the environment.
 pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
     let plain = place.endpoint.as_ref().is_some_and(|url| url.starts_with("http://"));
     let client = ClientOptions::new()
@@ -130,6 +132,7 @@ pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
         Some(endpoint) => builder.with_endpoint(endpoint),
         None => builder,
     };
+    // The builder reads the credentials from the environment; the region has two common variables.
     let environment = || {
         ["AWS_REGION", "AWS_DEFAULT_REGION"].into_iter().find_map(|name| std::env::var(name).ok())
     };
@@ -137,14 +140,14 @@ pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
         .with_region(place.region.clone().or_else(environment).unwrap_or_else(|| REGION.to_owned()))
 }
 
-/// Gives the process the cryptography of TLS, once: no HTTP client can be made without it, not even
-/// for plain HTTP.
+/// Installs the cryptography of TLS in the process, once: no HTTP client can be created without it,
+/// not even for plain HTTP.
 pub fn provide_cryptography() {
-    // Whoever comes second finds it installed.
+    // An error means that it is installed already.
     let _ = rustls::crypto::ring::default_provider().install_default();
 }
 
-/// The bucket, below its prefix.
+/// Returns the store of a bucket, below its prefix.
 pub(crate) fn bucket(
     builder: AmazonS3Builder,
     place: &S3Place,

@@ -1,40 +1,41 @@
-//! Lists, a page at a time: each page starts after the last key of the one before, so that it costs
-//! the same however far in, and neither repeats nor skips a row when others are added.
+//! Pages of lists by key: each page starts after the last key of the one before, so that its cost
+//! does not depend on its position, and rows added meanwhile are neither repeated nor skipped.
 
 use crate::error::{Result, StoreError};
 
-/// The most items that one page may have.
+/// Maximum number of items of a page.
 pub const MAX_LIMIT: i64 = 1000;
 
-/// Which page of a list.
+/// Request for one page of a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Page<K = String> {
-    /// The last key of the page before; none for the first page.
+    /// Last key of the previous page; none for the first page.
     pub after: Option<K>,
-    /// The most items to return, at least 1 and at most [`MAX_LIMIT`].
+    /// Maximum number of items to return, from 1 to [`MAX_LIMIT`].
     pub limit: i64,
 }
 
 impl<K> Page<K> {
-    /// The first page.
+    /// Requests the first page.
     pub fn first(limit: i64) -> Self {
         Self { after: None, limit }
     }
 
-    /// The page after `key`.
+    /// Requests the page after `key`.
     pub fn after(key: impl Into<K>, limit: i64) -> Self {
         Self { after: Some(key.into()), limit }
     }
 
-    /// Refuses a page that is too large or has no items.
+    /// Checks that the limit is from 1 to [`MAX_LIMIT`].
     ///
     /// # Errors
-    /// Names the limit.
+    /// Returns an error that names the limit.
     pub fn check(&self) -> Result<()> {
         self.fetch().map(drop)
     }
 
-    /// How many rows to ask for: one more than wanted, which tells whether there is a next page.
+    /// Returns the number of rows to read: one more than requested, which shows if there is a next
+    /// page.
     pub(crate) fn fetch(&self) -> Result<i64> {
         match (1..=MAX_LIMIT).contains(&self.limit) {
             true => Ok(self.limit + 1),
@@ -45,8 +46,8 @@ impl<K> Page<K> {
         }
     }
 
-    /// The page made of items that come after [`Page::after`], of which there may be more than one
-    /// page.
+    /// Returns the page made of the rows after [`Page::after`]; a row beyond the limit is cut off
+    /// and shows that there is a next page.
     pub fn of<T>(&self, mut items: Vec<T>, key: impl Fn(&T) -> K) -> List<T, K> {
         let limit = usize::try_from(self.limit).unwrap_or(0);
         let more = items.len() > limit;
@@ -61,6 +62,6 @@ impl<K> Page<K> {
 pub struct List<T, K = String> {
     /// The rows, in the list's order.
     pub items: Vec<T>,
-    /// What to pass as [`Page::after`] for the next page; none on the last one.
+    /// Value of [`Page::after`] for the next page; none on the last one.
     pub next: Option<K>,
 }

@@ -1,6 +1,6 @@
-//! The connections to PostgreSQL. Where one does not answer in time, all of them are given up and
-//! further ones are new: after a fail-over, or behind a firewall that has forgotten them, none of
-//! them ever answers again, and nothing tells of it.
+//! Pool of connections to PostgreSQL. When one of them does not answer in time, the whole pool is
+//! replaced: after a fail-over, or behind a firewall that has dropped them, none of the old
+//! connections ever answers again, and no error is reported.
 
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
@@ -11,11 +11,11 @@ use sqlx::PgPool;
 
 use crate::error::Result;
 
-/// How long a statement may take, or the wait for a connection: the longest of ours takes a second
-/// on a hundred thousand ships.
+/// Maximum time of a statement, or of the wait for a connection; the slowest statement takes a
+/// second with a hundred thousand ships.
 const DEADLINE: Duration = Duration::from_secs(8);
 
-/// The connections to PostgreSQL.
+/// Replaceable pool of connections to PostgreSQL.
 #[derive(Clone)]
 pub(crate) struct PostgresPool(Arc<Shared>);
 
@@ -30,12 +30,12 @@ struct Current {
     pool: PgPool,
 }
 
-/// The connections as they are now, for one piece of work.
+/// The present pool, for one piece of work.
 #[derive(Clone)]
 pub(crate) struct Lease {
     shared: PostgresPool,
     generation: u64,
-    /// The connections.
+    /// The pool of this generation.
     pub(crate) pool: PgPool,
 }
 
@@ -46,33 +46,34 @@ impl std::fmt::Debug for PostgresPool {
 }
 
 impl PostgresPool {
-    /// Connections as `fresh` makes them, the first of which are `pool`.
+    /// Creates the pool; `pool` is the first one, and `fresh` makes each replacement.
     pub(crate) fn new(pool: PgPool, fresh: impl Fn() -> PgPool + Send + Sync + 'static) -> Self {
         let current = RwLock::new(Current { generation: 0, pool });
         Self(Arc::new(Shared { fresh: Box::new(fresh), current }))
     }
 
-    /// The connections as they are now.
+    /// Returns the present pool.
     pub(crate) fn lease(&self) -> Lease {
         let current = self.0.current.read().unwrap_or_else(PoisonError::into_inner).clone();
         Lease { shared: self.clone(), generation: current.generation, pool: current.pool }
     }
 
-    /// Ends all connections.
+    /// Closes all connections of the present pool.
     pub(crate) async fn close(&self) {
         self.lease().pool.close().await;
     }
 }
 
 impl Lease {
-    /// Does something within the deadline, after which these connections are given up. The work is
-    /// boxed: as a part of each caller's own future it would need much of a thread's stack.
+    /// Runs work within the deadline, after which this pool is replaced. The work is boxed: inline
+    /// in the future of each caller it would need much of a thread's stack.
     pub(crate) fn within<'a, T: Send + 'a>(
         &'a self,
         work: impl Future<Output = Result<T, sqlx::Error>> + Send + 'a,
     ) -> BoxFuture<'a, Result<T>> {
         let work = work.boxed();
         let done = async move {
+            // The deadline drops the work, and with it a connection in an unknown state.
             match tokio::time::timeout(DEADLINE, work).await {
                 Ok(done) => Ok(done?),
                 Err(_) => {
@@ -87,16 +88,18 @@ impl Lease {
         done.boxed()
     }
 
-    /// Replaces these connections, unless somebody has done so.
+    /// Replaces this pool, unless another caller has done so.
     fn give_up(&self) {
         let shared = &self.shared.0;
         let mut current = shared.current.write().unwrap_or_else(PoisonError::into_inner);
+        // Many statements may time out at once; only the first of them replaces the pool.
         if current.generation != self.generation {
             return;
         }
         let old = current.pool.clone();
         *current = Current { generation: self.generation + 1, pool: (shared.fresh)() };
-        // Whoever waits for one of them is told at once; those that are silent end when they may.
+        // Closing ends the waits for a connection at once; silent connections end when they time
+        // out.
         tokio::spawn(async move { old.close().await });
     }
 }

@@ -1,4 +1,4 @@
-//! Questions for what aliases stand for, waiting for the statement that answers them.
+//! Queue of lookups of aliases that wait for the statement that answers them.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -8,18 +8,18 @@ use tokio::sync::oneshot;
 use crate::connections::{RESTED, Reader};
 use crate::record::record;
 
-/// The most ships that one statement asks for: as many as it has places.
+/// Maximum number of ships of one statement: the number of its placeholders.
 pub(crate) const AT_ONCE: usize = 16;
-/// Statements under way at a time. With more of them each would have fewer to answer.
+/// Maximum number of concurrent statements; with more of them, each would answer fewer lookups.
 const ROUNDS: usize = 2;
 
 record! {
-    /// The version that an alias of a ship stands for; [`crate::Versions::by_id`] has the rest of
-    /// it, which never changes.
+    /// The version that an alias of a ship points to; [`crate::Versions::by_id`] has its other
+    /// fields, which never change.
     pub struct CurrentVersion {
         /// The model (the ship's name).
         pub model: String,
-        /// 1, 2, 3, ... within the model.
+        /// Number of the version: 1, 2, 3, ... within the model.
         pub number: i64,
         /// Its id.
         pub id: String,
@@ -28,7 +28,7 @@ record! {
     }
 }
 
-/// The questions of one process.
+/// The lookups of one process.
 #[derive(Default)]
 pub(crate) struct Questions(Mutex<OpenQuestions>);
 
@@ -36,14 +36,14 @@ pub(crate) struct Questions(Mutex<OpenQuestions>);
 struct OpenQuestions {
     waiting: Vec<Question>,
     rounds: usize,
-    /// Connections of rounds that have ended, and when: the next goes on with one, which a pool
-    /// would have asked twice whether it is still there.
+    /// Connections of rounds that have ended, with the time: the next round reuses one, as a pool
+    /// would ping it first.
     kept: Vec<(Reader, Instant)>,
-    /// Nothing is kept any more.
+    /// True once the store closes: no connection is kept any more.
     closed: bool,
 }
 
-/// Who asks for what.
+/// A lookup that waits, and the channel of its answer.
 pub(crate) struct Question {
     pub(crate) ship: String,
     pub(crate) alias: String,
@@ -55,49 +55,52 @@ impl Questions {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether a further round is to begin.
+    /// Adds a lookup; returns true if the caller must start a further round.
     pub(crate) fn enter(&self, question: Question) -> bool {
         let mut open = self.open();
         open.waiting.push(question);
+        // A round in progress takes the lookup with its next statement.
         let begins = open.rounds < ROUNDS;
         open.rounds += usize::from(begins);
         begins
     }
 
-    /// A connection that was used a moment ago, if there is one; what has rested longer goes back
-    /// to its pool.
+    /// Takes a recently used connection, if there is one; connections idle for longer return to
+    /// their pool.
     pub(crate) fn kept(&self) -> Option<Reader> {
         let kept = &mut self.open().kept;
         kept.retain(|(_, since)| since.elapsed() < RESTED);
         kept.pop().map(|(reader, _)| reader)
     }
 
-    /// SQLite's goes back at once: it is given out again without a question, and may be the only
-    /// one.
+    /// Keeps a connection for the next round. One of SQLite returns to its pool at once: the pool
+    /// does not ping it, and it may be the only one.
     pub(crate) fn keep(&self, reader: Option<Reader>) {
         let mut open = self.open();
         let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(..)) && !open.closed);
         open.kept.extend(reader.map(|reader| (reader, Instant::now())));
     }
 
-    /// Gives connections back to their pool, which ends only then, also those of rounds that still
-    /// end.
+    /// Returns all connections to their pool, which closes only after that; rounds in progress keep
+    /// none afterwards.
     pub(crate) fn close(&self) {
         let mut open = self.open();
         open.closed = true;
         open.kept.clear();
     }
 
-    /// The questions of one alias that wait the longest.
+    /// Takes the lookups of one alias that have waited longest.
     pub(crate) fn take(&self) -> Vec<Question> {
         let waiting = &mut self.open().waiting;
         let Some(alias) = waiting.first().map(|first| first.alias.clone()) else {
             return Vec::new();
         };
+        // One statement has one alias; lookups of others keep their place.
         waiting.extract_if(.., |question| question.alias == alias).take(AT_ONCE).collect()
     }
 
-    /// Tells that a round has ended: nobody waits for a round that is no more.
+    /// Ends a round. After the last round the waiting lookups are dropped, so that none waits for a
+    /// round that does not exist.
     pub(crate) fn ended(&self) {
         let mut open = self.open();
         open.rounds -= 1;

@@ -1,4 +1,4 @@
-//! Rows as structs, read the same way from both databases.
+//! Structs that are read from rows in the same way on both databases.
 
 use sqlx::FromRow;
 use sqlx::postgres::PgRow;
@@ -15,12 +15,12 @@ impl<T> Record for T where
 {
 }
 
-/// How a field's type is stored.
+/// Conversion of a field from its stored type.
 pub(crate) trait StoredColumn: Sized {
-    /// The type that both databases know.
+    /// Type of the column, known to both databases.
     type Stored;
 
-    /// From what is stored.
+    /// Converts a stored value.
     fn load(stored: Self::Stored) -> sqlx::Result<Self>;
 }
 
@@ -79,7 +79,7 @@ pub(crate) use record;
 record! {
     /// A number of rows.
     pub struct Counted {
-        /// The number.
+        /// Number of rows.
         pub rows: i64,
     }
 }

@@ -1,4 +1,4 @@
-//! Reports on versions and ships, as data and as a page.
+//! Reports on versions and ships, as data and as HTML pages.
 
 use crate::arguments::args;
 use crate::checks;
@@ -15,20 +15,21 @@ statements! {
         VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING id, version_id, ship, kind, created_us");
     GET = same("SELECT id, version_id, ship, kind, document, html, created_us FROM reports WHERE \
         id = $1");
+    // '~' sorts after every id: without a cursor the list starts at the latest one.
     BY_VERSION = same("SELECT id, version_id, ship, kind, created_us FROM reports \
         WHERE version_id = $1 AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
 }
 
 record! {
-    /// A report, but for its texts.
+    /// A report without its texts.
     pub struct ReportHead {
         /// Its id.
         pub id: String,
-        /// The version it is about, if it is about one.
+        /// Id of the version that it is about, if there is one.
         pub version_id: Option<String>,
         /// The ship it is about.
         pub ship: String,
-        /// What it reports: `refinement`, `diagnosis`, ...
+        /// Kind of report: `refinement`, `diagnosis`, ...
         pub kind: String,
         /// When it was made.
         pub created_us: i64,
@@ -41,39 +42,39 @@ record! {
         flatten head: ReportHead,
         /// Its data, JSON.
         pub document: String,
-        /// Its page.
+        /// HTML page.
         pub html: String,
     }
 }
 
-/// What a report is made of.
+/// A report to be stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewReport {
-    /// The version it is about, if it is about one.
+    /// Id of the version that it is about, if there is one.
     pub version_id: Option<String>,
     /// The ship it is about.
     pub ship: String,
-    /// What it reports.
+    /// Kind of report.
     pub kind: String,
     /// Its data, JSON.
     pub document: String,
-    /// Its page.
+    /// HTML page.
     pub html: String,
 }
 
-/// The reports of a store.
+/// Repository of reports.
 #[derive(Debug, Clone, Copy)]
 pub struct Reports<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Reports on versions and ships.
+    /// Returns the repository of reports.
     pub fn reports(&self) -> Reports<'_> {
         Reports(self)
     }
 }
 
 impl Reports<'_> {
-    /// Puts a report in.
+    /// Inserts a report.
     pub async fn insert(&self, new: &NewReport) -> Result<ReportHead> {
         let mut tx = self.0.begin().await?;
         let report = insert(self.0, &mut tx, new).await?;
@@ -81,13 +82,13 @@ impl Reports<'_> {
         Ok(report)
     }
 
-    /// The report of this id.
+    /// Returns the report of an id.
     pub async fn get(&self, id: &str) -> Result<Report> {
         let report = self.0.database().optional(GET, args![id: id]).await?;
         report.ok_or_else(|| StoreError::missing("report", id))
     }
 
-    /// The reports on a version, the latest first.
+    /// Lists the reports on a version, the latest first.
     pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<ReportHead>> {
         let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];
         let reports = self.0.database().all(BY_VERSION, values).await?;
@@ -95,7 +96,7 @@ impl Reports<'_> {
     }
 }
 
-/// Puts a report in within a transaction.
+/// Inserts a report within a transaction.
 pub(crate) async fn insert(
     store: &Store,
     tx: &mut Transaction,

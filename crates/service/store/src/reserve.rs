@@ -1,6 +1,6 @@
-//! Room for the start of a process on a full disk: SQLite cannot even read without a few pages for
-//! the index of its log. A file beside the database keeps them, goes where the database could not
-//! be opened without, and is made again once there is room.
+//! Reserved disk space for the start of a process on a full disk: SQLite needs a few pages for the
+//! index of its log even to read. A file next to the database occupies them; it is removed if the
+//! database cannot be opened otherwise, and created again once there is space.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -10,7 +10,7 @@ use crate::connect;
 
 const BYTES: usize = 1 << 20;
 
-/// The reserve of the database at a URL; none where it is no file.
+/// Returns the path of the reserve of a database; none if the database is not a file.
 pub(crate) fn of(url: &str) -> Option<PathBuf> {
     let file = connect::sqlite_file(url)?;
     let mut name = file.file_name()?.to_owned();
@@ -18,12 +18,12 @@ pub(crate) fn of(url: &str) -> Option<PathBuf> {
     Some(file.with_file_name(name))
 }
 
-/// Gives the room free; returns whether there was any.
+/// Removes the reserve; returns true if there was one.
 pub(crate) fn release(url: &str) -> bool {
     of(url).is_some_and(|reserve| fs::remove_file(reserve).is_ok())
 }
 
-/// Makes it, unless it is there as it should be.
+/// Creates the reserve, unless it exists with its full size.
 pub(crate) fn keep(reserve: &Path) -> io::Result<()> {
     if fs::metadata(reserve).is_ok_and(|about| about.len() == BYTES as u64) {
         return Ok(());
@@ -33,6 +33,7 @@ pub(crate) fn keep(reserve: &Path) -> io::Result<()> {
 
 fn write(reserve: &Path) -> io::Result<()> {
     let mut file = File::create(reserve)?;
+    // Written, not only extended: a sparse file would occupy no space.
     file.write_all(&vec![0; BYTES])?;
     file.sync_all()
 }

@@ -1,4 +1,4 @@
-//! Whether there is room to write, and the room kept for the next start.
+//! Test for free space, and the space reserved for the next start.
 
 use crate::error::Result;
 use crate::objects_error::ObjectsError;
@@ -13,16 +13,16 @@ statements! {
 }
 
 impl Store {
-    /// Keeps room for the next start on a full disk, if there is none kept yet.
+    /// Creates the reserve for the next start on a full disk, unless it exists.
     ///
     /// # Errors
-    /// There is no room, or the folder cannot be written.
+    /// Returns an error if there is no space, or the folder cannot be written.
     pub fn reserve(&self) -> Result<()> {
         let Some(reserve) = self.reserve_file() else { return Ok(()) };
         Ok(reserve::keep(reserve).map_err(ObjectsError::from)?)
     }
 
-    /// Writes something that nobody needs, to find out whether there is room.
+    /// Writes and removes a row that has no other use, to test for free space.
     pub async fn try_write(&self) -> Result<()> {
         for statement in [TRY, FORGET] {
             let mut tx = self.begin().await?;

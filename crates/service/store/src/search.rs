@@ -1,9 +1,9 @@
-//! Which ships there are: by category, tag and ranges of what is known of them.
+//! Search of ships by category, tag and ranges of facts.
 //!
-//! Each way of asking starts at the index that its order follows, and tests the other conditions
-//! row by row: a page costs the same however many ships there are, as long as most of what it
-//! passes is what is wanted. Where only few ships meet one of the other conditions, those are taken
-//! and put in order instead.
+//! Each statement starts at the index of its order, and tests the other conditions row by row: the
+//! cost of a page does not depend on the number of ships, as long as most rows that it passes
+//! fulfil the conditions. If only few ships meet one of the other conditions, those are selected
+//! first and sorted.
 
 use crate::arguments::{Arg, Args, args, names_list};
 use crate::checks;
@@ -13,13 +13,14 @@ use crate::record::{Counted, record};
 use crate::ships::Ships;
 use crate::statements::{Statement, pair, same, statements};
 
-/// The most ranges that one search may have.
+/// Maximum number of ranges of one search.
 pub const MAX_RANGES: usize = 4;
-/// So many ships are few: looking at all of them costs no more than what a page may pass over.
+/// Number of ships up to which a condition counts as selective: reading all of them costs no more
+/// than the rows that a page may pass over.
 const FEW: i64 = 2000;
 
-/// One text: what is found, and the conditions `$1` (category), `$2` (tag), `$3` to `$14` (four
-/// times fact, least, most), each of which may be absent.
+/// One search statement with the conditions `$1` (category), `$2` (tag), `$3` to `$14` (four times
+/// fact, minimum, maximum), each of which is skipped if NULL.
 macro_rules! search {
     ($columns:literal, $from:literal, $order:literal) => {
         search!("", $columns, $from, $order)
@@ -46,8 +47,8 @@ macro_rules! search {
     };
 }
 
-/// Ships of a list of few, by the value of the first range. It is read first, whatever a planner
-/// thinks of it.
+/// Search among few preselected ships, ordered by the value of the first range. The preselection is
+/// materialised, so that no planner starts elsewhere.
 macro_rules! of_few {
     ($few:literal) => {
         search!(
@@ -61,6 +62,8 @@ macro_rules! of_few {
 }
 
 statements! {
+    // The first four statements differ in the index that gives their order: of names, of names in a
+    // category, of names with a tag, of values of the first range.
     BY_NAME = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.name > $15", "ORDER BY s.name LIMIT $16");
     BY_CATEGORY = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.category = \
         $1 AND s.name > $15",
@@ -69,24 +72,27 @@ statements! {
         "ship_tags t JOIN ships s ON s.name = t.ship WHERE t.tag = $2 AND t.ship > $15", "ORDER BY t.ship LIMIT $16");
     BY_VALUE = search!("f.value AS value", "ship_facts f JOIN ships s ON s.name = f.ship WHERE \
         f.fact = $3 AND f.value <= $5 AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)", "ORDER BY f.value, f.ship LIMIT $16");
+    // The next three start with the ships that meet a selective condition, and sort them.
     OF_TAG = of_few!("SELECT t.ship FROM ship_tags t WHERE t.tag = $2");
     OF_CATEGORY = of_few!("SELECT c.name AS ship FROM ships c WHERE c.category = $1");
     OF_RANGE = of_few!("SELECT r.ship FROM ship_facts r WHERE r.fact = $18 AND r.value BETWEEN $19 \
         AND $20");
-    // Whether there are more than some.
+    // A row exists at this offset if more than so many ships meet the condition.
     MORE_OF_TAG = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_tags WHERE tag = $1 LIMIT 1 \
         OFFSET $2");
     MORE_OF_CATEGORY = same("SELECT CAST(1 AS BIGINT) AS rows FROM ships WHERE category = $1 LIMIT \
         1 OFFSET $2");
     MORE_OF_RANGE = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_facts WHERE fact = $1 AND \
         value BETWEEN $2 AND $3 LIMIT 1 OFFSET $4");
+    // All vectors of a category, in no order, for a comparison in memory.
     VECTORS = search!("CAST(NULL AS DOUBLE PRECISION) AS value, v.vectors",
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
     STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS \
         BIGINT) AS stamps FROM ship_vectors WHERE category = $1");
+    // The next distinct category after `$1`, by one step in the index.
     NEXT_CATEGORY = same("SELECT category FROM ship_vectors WHERE category > $1 ORDER BY category \
         LIMIT 1");
-    // A limit keeps PostgreSQL from joining all ships.
+    // The limit keeps PostgreSQL from joining all ships.
     NAMED = pair(
         "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, \
         CAST(NULL AS DOUBLE PRECISION) AS value FROM json_each($1) n CROSS JOIN ships s \
@@ -99,11 +105,11 @@ statements! {
 }
 
 record! {
-    /// A ship that was found.
+    /// A ship as a search result.
     pub struct FoundShip {
         /// Its name.
         pub name: String,
-        /// What people call it.
+        /// Display title.
         pub title: String,
         /// Its kind.
         pub category: String,
@@ -113,26 +119,26 @@ record! {
         pub created_us: i64,
         /// When the present revision was made.
         pub updated_us: i64,
-        /// The value of the first range's fact, where there is a range.
+        /// Value of the fact of the first range, if there is a range.
         pub value: Option<f64>,
     }
 }
 
 record! {
-    /// A ship with what tells how similar it is to others.
+    /// A ship with the vectors of its similarity.
     pub struct ShipVectors {
         flatten head: FoundShip,
-        /// What [`crate::SearchIndex`] was told of it, JSON.
+        /// Vectors as [`crate::SearchIndex`] has stored them, JSON.
         pub vectors: String,
     }
 }
 
 record! {
-    /// What of the vectors of a category changes when one of them does.
+    /// Fingerprint of the vectors of a category; changes when one of them does.
     pub struct VectorsState {
-        /// How many ships there are.
+        /// Number of ships.
         pub ships: i64,
-        /// The sum of what tells their vectors apart.
+        /// Sum of the stamps of their vectors.
         pub stamps: i64,
     }
 }
@@ -145,33 +151,33 @@ record! {
     }
 }
 
-/// What is asked of a ship; everything must hold.
+/// Conditions of a search, all of which must hold.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ShipSearch {
     /// Its category.
     pub category: Option<String>,
     /// A tag that it has.
     pub tag: Option<String>,
-    /// Where its facts must lie, at most [`MAX_RANGES`]. The first one orders what is found.
+    /// Ranges of facts, at most [`MAX_RANGES`]. The first one orders the results.
     pub ranges: Vec<FactRange>,
 }
 
-/// Where a fact must lie.
+/// Range of a fact, limits included.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactRange {
     /// The fact's name.
     pub fact: String,
-    /// The least that it may be.
+    /// Lower limit.
     pub min: f64,
-    /// The most that it may be.
+    /// Upper limit.
     pub max: f64,
 }
 
-/// Where a page of ships ends: the value of the first range's fact where there is one, and the
+/// Cursor of a list of ships: the value of the fact of the first range, if there is one, and the
 /// name.
 pub type ShipKey = (Option<f64>, String);
 
-/// A condition beside the range that orders.
+/// A condition in addition to the range that orders.
 #[derive(Clone, Copy)]
 enum FurtherCondition<'a> {
     Tag(&'a str),
@@ -180,7 +186,7 @@ enum FurtherCondition<'a> {
 }
 
 impl FurtherCondition<'_> {
-    /// The text that begins with the ships that meet it.
+    /// Returns the statement that starts with the ships that meet the condition.
     fn statement(self) -> Statement {
         match self {
             Self::Tag(_) => OF_TAG,
@@ -201,8 +207,8 @@ impl ShipSearch {
             .chain(ranges)
     }
 
-    /// The text whose index has the order: of the first range where there is one, else of the
-    /// names.
+    /// Returns the statement whose index has the order of the results: of the first range, if there
+    /// is one, else of the names.
     fn statement(&self) -> Statement {
         match self {
             Self { ranges, .. } if !ranges.is_empty() => BY_VALUE,
@@ -226,10 +232,11 @@ impl ShipSearch {
         Ok(())
     }
 
-    /// The conditions, then what a statement has beside them.
+    /// Returns the arguments of the conditions, followed by `others`.
     fn values<'a>(&'a self, others: Args<'a>) -> Vec<(&'static str, Arg<'a>)> {
         let mut values: Vec<(&'static str, Arg<'a>)> =
             args![category: &self.category, tag: &self.tag].to_vec();
+        // Absent ranges: the fact is NULL, and the limits are not used.
         for index in 0..MAX_RANGES {
             let range = self.ranges.get(index);
             let (min, max) = range.map_or((0.0, 0.0), |range| (range.min, range.max));
@@ -243,18 +250,20 @@ impl ShipSearch {
 }
 
 impl Ships<'_> {
-    /// Ships that a search finds, by the value of its first range's fact where it has one, else by
-    /// name.
+    /// Returns the ships that meet the conditions, ordered by the fact of the first range, if there
+    /// is one, else by name.
     pub async fn search(
         &self,
         search: &ShipSearch,
         page: &Page<ShipKey>,
     ) -> Result<List<FoundShip, ShipKey>> {
         search.check()?;
+        // The default cursor, an empty name, sorts before every ship.
         let (value, name) = page.after.clone().unwrap_or_default();
         let (limit, database) = (page.fetch()?, self.0.database());
         let found = match search.ranges.first() {
             Some(first) => {
+                // The pair (value, name) of the last row continues the order within equal values.
                 let from = value.unwrap_or(first.min);
                 let few = self.few(search).await?;
                 let others = args![after: &name, limit: limit, from: from];
@@ -275,7 +284,7 @@ impl Ships<'_> {
         Ok(page.of(found, |ship: &FoundShip| (ship.value, ship.name.clone())))
     }
 
-    /// A condition that few ships meet, if there is one.
+    /// Returns the first condition that few ships meet, if there is one.
     async fn few<'a>(&self, search: &'a ShipSearch) -> Result<Option<FurtherCondition<'a>>> {
         for condition in search.beside() {
             if self.more(condition).await?.is_none() {
@@ -285,7 +294,7 @@ impl Ships<'_> {
         Ok(None)
     }
 
-    /// Something if more than few ships meet a condition.
+    /// Returns a row if the condition is not selective: more than a fixed number of ships meet it.
     async fn more(&self, condition: FurtherCondition<'_>) -> Result<Option<Counted>> {
         let database = self.0.database();
         match condition {
@@ -303,19 +312,19 @@ impl Ships<'_> {
         }
     }
 
-    /// The ships of these names, in no order; those that there are not are left out.
+    /// Returns the ships of these names, in no order; names without a ship are skipped.
     pub async fn named(&self, names: &[String]) -> Result<Vec<FoundShip>> {
         self.0.database().all(NAMED, args![names: &names_list(names)]).await
     }
 
-    /// How the vectors of a category stand, without reading them.
+    /// Returns the fingerprint of the vectors of a category, without reading them.
     pub async fn vectors_state(&self, category: &str) -> Result<VectorsState> {
         let state = self.0.database().optional(STATE, args![category: category]).await?;
         Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
     }
 
-    /// The categories that have ships with vectors, by name. Each is looked up after the one
-    /// before: the index holds every ship, and its categories are few.
+    /// Returns the categories that have ships with vectors, by name. One statement for each skips
+    /// along the index, which holds every ship, while categories are few.
     pub async fn vector_categories(&self) -> Result<Vec<String>> {
         let mut all: Vec<String> = Vec::new();
         loop {
@@ -326,7 +335,7 @@ impl Ships<'_> {
         }
     }
 
-    /// The vectors of every ship of a category that a search finds, in no order.
+    /// Returns the vectors of all ships of a category that meet the conditions, in no order.
     pub async fn vectors(&self, search: &ShipSearch) -> Result<Vec<ShipVectors>> {
         search.check()?;
         if search.category.is_none() {

@@ -1,7 +1,7 @@
-//! What ships are found by, kept up with them.
+//! Search index of ships.
 //!
-//! Whatever changes what is known of a ship puts it in a queue, in the same transaction. Somebody
-//! who can read documents takes it out again and writes down its facts.
+//! A change of a ship puts it in a queue, in the same transaction. A process that can read the
+//! documents takes it out again and writes its facts.
 
 use sha2::{Digest as _, Sha256};
 
@@ -13,14 +13,16 @@ use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
 
-/// The alias whose version tells facts of a ship.
+/// The alias whose version determines facts of a ship.
 const ALIAS: &str = "champion";
 
 statements! {
+    // A later change replaces the mark; selecting from `ships` skips names without a ship.
     MARK = same("INSERT INTO search_queue (ship, mark) SELECT name, CAST($2 AS TEXT) FROM ships \
         WHERE name = $1 ON CONFLICT (ship) DO UPDATE SET mark = excluded.mark");
     WAITING = same("SELECT ship, mark FROM search_queue WHERE ship > $1 ORDER BY ship LIMIT $2");
     FACTS = same("SELECT fact, value FROM ship_facts WHERE ship = $1 ORDER BY fact");
+    // Only with the mark that was read: a ship that changed again stays in the queue.
     TAKE = same("DELETE FROM search_queue WHERE ship = $1 AND mark = $2");
     FORGET = same("DELETE FROM ship_facts WHERE ship = $1");
     FACT = same("INSERT INTO ship_facts (ship, fact, value) VALUES ($1, $2, $3)");
@@ -34,7 +36,7 @@ record! {
     pub struct Waiting {
         /// The ship.
         pub ship: String,
-        /// Tells this change from later ones.
+        /// Mark of the change, different for each change.
         pub mark: String,
     }
 }
@@ -42,63 +44,64 @@ record! {
 record! {
     /// One fact of a ship.
     pub struct ShipFact {
-        /// What it is.
+        /// Name of the fact.
         pub fact: String,
         /// Its value.
         pub value: f64,
     }
 }
 
-/// What is known of a ship.
+/// Facts of a ship, to be written to the index.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShipFacts {
-    /// The change that it follows.
+    /// The queued change that they answer.
     pub waiting: Waiting,
     /// Its category.
     pub category: String,
     /// Facts by name, each name once.
     pub facts: Vec<(String, f64)>,
-    /// What tells how similar it is to others, JSON.
+    /// Vectors of the similarity to other ships, JSON.
     pub vectors: String,
 }
 
 impl ShipFacts {
-    /// Of a ship of which nothing is known, or which is deleted.
+    /// Creates the entry of a ship without facts, or of a deleted one.
     pub fn none(waiting: Waiting) -> Self {
         Self { waiting, category: String::new(), facts: Vec::new(), vectors: "{}".to_owned() }
     }
 }
 
-/// What the ships of a store are found by.
+/// Repository of the search index.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchIndex<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// What ships are found by.
+    /// Returns the search index.
     pub fn search_index(&self) -> SearchIndex<'_> {
         SearchIndex(self)
     }
 }
 
 impl SearchIndex<'_> {
-    /// Ships that have changed since their facts were written, by name, at most `limit` of those
-    /// after `after`.
+    /// Returns up to `limit` ships that have changed since their facts were written, by name, after
+    /// the name `after`.
     pub async fn waiting(&self, after: &str, limit: i64) -> Result<Vec<Waiting>> {
         self.0.database().all(WAITING, args![after: after, limit: limit]).await
     }
 
-    /// The facts of a ship as they were last written, by name.
+    /// Returns the facts of a ship as they were last written, by name.
     pub async fn facts(&self, ship: &str) -> Result<Vec<ShipFact>> {
         self.0.database().all(FACTS, args![ship: ship]).await
     }
 
-    /// Writes the facts of ships, all at once, and returns of how many. Of one that has changed
-    /// again in the meantime nothing is written: it waits on.
+    /// Writes the facts of ships in one transaction, and returns the number of ships. A ship that
+    /// has changed again meanwhile is skipped and stays in the queue.
     pub async fn write(&self, all: &[ShipFacts]) -> Result<usize> {
         let mut tx = self.0.begin().await?;
         let mut written = 0;
         for ship in all {
             checks::json("vectors", &ship.vectors)?;
+            // No row: the ship has changed again, or was indexed by another process.
             let taken =
                 tx.execute(TAKE, args![ship: &ship.waiting.ship, mark: &ship.waiting.mark]).await?;
             if taken > 0 {
@@ -113,6 +116,7 @@ impl SearchIndex<'_> {
 
 async fn write(tx: &mut Transaction, facts: &ShipFacts) -> Result<()> {
     let ship = &facts.waiting.ship;
+    // All facts are replaced: those that no longer apply must not be found.
     tx.execute(FORGET, args![ship: ship]).await?;
     for (fact, value) in &facts.facts {
         tx.execute(FACT, args![ship: ship, fact: fact, value: *value]).await?;
@@ -126,19 +130,20 @@ async fn write(tx: &mut Transaction, facts: &ShipFacts) -> Result<()> {
     .map(drop)
 }
 
-/// Tells these vectors from others: 32 bits, so that those of 2^31 ships can be added.
+/// Returns a hash of the vectors, of 32 bits, so that the stamps of 2^31 ships can be summed in 64
+/// bits.
 fn stamp(ship: &str, vectors: &str) -> i64 {
     let hash = Sha256::digest(format!("{ship}\n{vectors}"));
     i64::from(u32::from_be_bytes([hash[0], hash[1], hash[2], hash[3]]))
 }
 
-/// Puts a ship in the queue within a transaction, if there is one of this name.
+/// Queues a ship within a transaction, if it exists.
 pub(crate) async fn mark(store: &Store, tx: &mut Transaction, ship: &str) -> Result<()> {
     let mark = store.new_id();
     tx.execute(MARK, args![ship: ship, mark: &mark]).await.map(drop)
 }
 
-/// Puts a ship in the queue where the alias that has moved tells facts of it.
+/// Queues a ship if the moved alias determines facts of it.
 pub(crate) async fn mark_moved(
     store: &Store,
     tx: &mut Transaction,

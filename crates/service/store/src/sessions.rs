@@ -1,4 +1,4 @@
-//! Sessions of browsers. What a browser has is a secret of its own; only its hash is kept.
+//! Sessions of browsers. A browser holds a secret; only its hash is stored.
 
 use crate::arguments::args;
 use crate::checks;
@@ -19,32 +19,32 @@ statements! {
 }
 
 record! {
-    /// A browser that is signed in.
+    /// A session of a signed-in browser.
     pub struct Session {
-        /// The hash of what it has.
+        /// Hash of the secret of the session.
         pub sha256: String,
-        /// As whom.
+        /// Name of the user.
         pub user_name: String,
-        /// Since when.
+        /// Start, microseconds since 1970.
         pub created_us: i64,
-        /// Until when.
+        /// Expiry, microseconds since 1970.
         pub expires_us: i64,
     }
 }
 
-/// The sessions of a store.
+/// Repository of sessions.
 #[derive(Debug, Clone, Copy)]
 pub struct Sessions<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Browsers that are signed in.
+    /// Returns the repository of sessions.
     pub fn sessions(&self) -> Sessions<'_> {
         Sessions(self)
     }
 }
 
 impl Sessions<'_> {
-    /// Begins a session of a user, and forgets those that have ended.
+    /// Begins a session of a user, and removes expired ones.
     pub async fn begin(&self, sha256: &str, user: &str, expires_us: i64) -> Result<Session> {
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
@@ -54,13 +54,14 @@ impl Sessions<'_> {
         Ok(session)
     }
 
-    /// The session with this hash, if it has not ended.
+    /// Finds a session that has not expired, by the hash of its secret.
     pub async fn find(&self, sha256: &str) -> Result<Option<Session>> {
         let found: Option<Session> = self.0.database().optional(GET, args![sha256: sha256]).await?;
+        // Expired sessions stay until the next one begins; they must not be found.
         Ok(found.filter(|session| self.0.now_us() < session.expires_us))
     }
 
-    /// Ends a session, if it has not ended.
+    /// Ends a session; does nothing if it has ended.
     pub async fn end(&self, sha256: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         let ended: Option<Session> = tx.optional(END, args![sha256: sha256]).await?;
@@ -77,7 +78,7 @@ impl Sessions<'_> {
     }
 }
 
-/// Begins a session within a transaction, and forgets those that have ended.
+/// Begins a session within a transaction, and removes expired ones.
 pub(crate) async fn insert(
     tx: &mut Transaction,
     sha256: &str,

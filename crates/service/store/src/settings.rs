@@ -1,4 +1,4 @@
-//! Settings that hold for every process on a store.
+//! Settings that apply to all processes of a store.
 
 use serde_json::json;
 
@@ -10,47 +10,48 @@ use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
 
-/// The alias that a second person may be asked for.
+/// The alias that may need the approval of a second person.
 const CHAMPION: &str = "champion";
-/// The setting of that.
+/// Name of the setting that requires it.
 const SECOND_PERSON: &str = "second-person";
 
 statements! {
     GET = same("SELECT value FROM settings WHERE name = $1");
     PUT = same("INSERT INTO settings (name, value, changed_us) VALUES ($1, $2, $3) \
         ON CONFLICT (name) DO UPDATE SET value = excluded.value, changed_us = excluded.changed_us");
+    // Versions without an author are from before authors were recorded; anyone may promote them.
     AUTHOR = same("SELECT author AS value FROM versions WHERE model = $1 AND number = $2 AND \
         author IS NOT NULL");
 }
 
 record! {
-    /// A text.
+    /// The value of a setting.
     pub struct SettingValue {
-        /// The text.
+        /// The value.
         pub value: String,
     }
 }
 
-/// The settings of a store.
+/// Repository of settings.
 #[derive(Debug, Clone, Copy)]
 pub struct StoreSettings<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Settings that hold for every process on the store.
+    /// Returns the settings that apply to all processes of the store.
     pub fn settings(&self) -> StoreSettings<'_> {
         StoreSettings(self)
     }
 }
 
 impl StoreSettings<'_> {
-    /// Whether a version becomes champion only by the word of somebody else than who made it.
+    /// Returns true if only another person than its author may promote a version to champion.
     pub async fn second_person(&self) -> Result<bool> {
         let found: Option<SettingValue> =
             self.0.database().optional(GET, args![name: SECOND_PERSON]).await?;
         Ok(is_on(found))
     }
 
-    /// Asks for a second person, or no longer.
+    /// Switches the approval by a second person on or off.
     pub async fn set_second_person(&self, on: bool) -> Result<()> {
         let mut tx = self.0.begin().await?;
         let before = is_on(tx.optional(GET, args![name: SECOND_PERSON]).await?);
@@ -67,8 +68,8 @@ fn is_on(found: Option<SettingValue>) -> bool {
     found.is_some_and(|found| found.value == "on")
 }
 
-/// Refuses that the present actor makes champion what it has made itself, where a second person is
-/// asked for.
+/// Checks a promotion: where a second person is required, authors cannot promote their own versions
+/// to champion.
 pub(crate) async fn check_promotion(
     tx: &mut Transaction,
     model: &str,
@@ -76,6 +77,7 @@ pub(crate) async fn check_promotion(
     number: i64,
 ) -> Result<()> {
     let actor = Actor::current();
+    // The program promotes by its own rules, and a command on the archive's files has every right.
     if alias != CHAMPION || actor.is_program() {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! Ships: the present document under a revision, and every document before it.
+//! Ships: the present document with its revision, and all documents before it.
 
 use serde_json::{Value, json};
 
@@ -14,9 +14,11 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
+    // A conflict on the name returns no row, also if the ship of that name is deleted.
     INSERT = same("INSERT INTO ships (name, title, category, document, revision, created_us, \
         updated_us) VALUES ($1, $2, $3, $4, 1, $5, $5) ON CONFLICT (name) DO NOTHING \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
+    // Compare-and-swap: the condition on the revision makes a lost update impossible.
     UPDATE = same("UPDATE ships SET title = $3, category = $4, document = $5, revision = revision \
         + 1, updated_us = $6 WHERE name = $1 AND revision = $2 AND deleted_us IS NULL \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
@@ -25,6 +27,7 @@ statements! {
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
     UNDELETE = same("UPDATE ships SET deleted_us = NULL WHERE name = $1 \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
+    // Copies the present row, after the update, into the history.
     REMEMBER = same("INSERT INTO ship_revisions (ship, revision, title, category, document, \
         created_us) SELECT name, revision, title, category, document, updated_us FROM ships WHERE \
         name = $1");
@@ -36,6 +39,7 @@ statements! {
     LIST_CATEGORY = same("SELECT name, title, category, document, revision, created_us, \
         updated_us, deleted_us FROM ships WHERE name > COALESCE($1, '') AND category = $3 AND \
         deleted_us IS NULL ORDER BY name LIMIT $2");
+    // Descending list: without a cursor it starts below i64::MAX.
     REVISIONS = same("SELECT ship, revision, title, category, document, created_us FROM \
         ship_revisions WHERE ship = $1 AND revision < COALESCE($2, 9223372036854775807) ORDER BY \
         revision DESC LIMIT $3");
@@ -44,15 +48,15 @@ statements! {
 record! {
     /// A ship.
     pub struct Ship {
-        /// Its name, for ever.
+        /// Name, which never changes.
         pub name: String,
-        /// What people call it.
+        /// Display title.
         pub title: String,
-        /// Its kind: container ship, tanker, ...
+        /// Category: container ship, tanker, ...
         pub category: String,
         /// The vessel as canonical JSON.
         pub document: String,
-        /// 1 when created, one more with each update.
+        /// Revision: 1 at creation, increased by one with each update.
         pub revision: i64,
         /// When it was created.
         pub created_us: i64,
@@ -64,31 +68,31 @@ record! {
 }
 
 record! {
-    /// A ship as it was at one revision.
+    /// A ship at one revision.
     pub struct ShipRevision {
         /// The ship.
         pub ship: String,
         /// The revision.
         pub revision: i64,
-        /// What people called it.
+        /// Display title.
         pub title: String,
-        /// Its kind.
+        /// Category.
         pub category: String,
         /// The vessel as canonical JSON.
         pub document: String,
-        /// When this revision was made.
+        /// Time of this revision, microseconds since 1970.
         pub created_us: i64,
     }
 }
 
-/// What a ship is made of.
+/// Content of a ship to be created or updated.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewShip {
     /// Its name.
     pub name: String,
-    /// What people call it.
+    /// Display title.
     pub title: String,
-    /// Its kind.
+    /// Category.
     pub category: String,
     /// The vessel as canonical JSON.
     pub document: String,
@@ -102,19 +106,19 @@ impl NewShip {
     }
 }
 
-/// The ships of a store.
+/// Repository of ships.
 #[derive(Debug, Clone, Copy)]
 pub struct Ships<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Ships and their history.
+    /// Returns the repository of ships and their history.
     pub fn ships(&self) -> Ships<'_> {
         Ships(self)
     }
 }
 
 impl Ships<'_> {
-    /// Creates a ship at revision 1; a name that was ever taken is a conflict.
+    /// Creates a ship at revision 1; a name that was ever used is a conflict.
     pub async fn create(&self, new: &NewShip) -> Result<Ship> {
         new.check()?;
         let NewShip { name, title, category, document } = new;
@@ -122,6 +126,7 @@ impl Ships<'_> {
             created_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
         let Some(ship) = tx.optional(INSERT, values).await? else {
+            // The name exists; the read shows if the ship was deleted.
             return Err(taken(name, find(&mut tx, name).await));
         };
         tx.execute(REMEMBER, args![name: name]).await?;
@@ -131,13 +136,13 @@ impl Ships<'_> {
         Ok(ship)
     }
 
-    /// The ship of this name.
+    /// Returns the ship of a name.
     pub async fn get(&self, name: &str) -> Result<Ship> {
         let ship: Option<Ship> = self.0.database().optional(GET, args![name: name]).await?;
         present(name, ship)
     }
 
-    /// Replaces what the ship is made of, if it is still at `revision`.
+    /// Replaces the content of a ship, if it is still at `revision`.
     pub async fn update(&self, new: &NewShip, revision: i64) -> Result<Ship> {
         new.check()?;
         let NewShip { name, title, category, document } = new;
@@ -157,8 +162,8 @@ impl Ships<'_> {
         Ok(ship)
     }
 
-    /// Deletes the ship, if it is still at `revision` (any when none is given);
-    /// [`undelete`](Self::undelete) undoes it.
+    /// Deletes a ship, if it is still at `revision` (at any, if none is given);
+    /// [`undelete`](Self::undelete) reverts it.
     pub async fn delete(&self, name: &str, revision: Option<i64>) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
         let values = args![name: name, revision: revision, deleted_us: self.0.now_us()];
@@ -171,7 +176,7 @@ impl Ships<'_> {
         Ok(ship)
     }
 
-    /// Brings a deleted ship back as it was.
+    /// Restores a deleted ship unchanged.
     pub async fn undelete(&self, name: &str) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
         let ship: Option<Ship> = tx.optional(UNDELETE, args![name: name]).await?;
@@ -183,7 +188,7 @@ impl Ships<'_> {
         ship.ok_or_else(|| StoreError::missing("ship", name))
     }
 
-    /// All ships by name, or those of one category.
+    /// Lists all ships by name, or those of one category.
     pub async fn list(&self, category: Option<&str>, page: &Page) -> Result<List<Ship>> {
         let (database, limit) = (self.0.database(), page.fetch()?);
         let ships = match category {
@@ -197,7 +202,7 @@ impl Ships<'_> {
         Ok(page.of(ships, |ship: &Ship| ship.name.clone()))
     }
 
-    /// Every revision of a ship, the latest first.
+    /// Lists the revisions of a ship, the latest first.
     pub async fn revisions(&self, name: &str, page: &Page<i64>) -> Result<List<ShipRevision, i64>> {
         let values = args![name: name, after: page.after, limit: page.fetch()?];
         let revisions = self.0.database().all(REVISIONS, values).await?;
@@ -205,17 +210,17 @@ impl Ships<'_> {
     }
 }
 
-/// What stands for a ship in the audit.
+/// Returns the subject of audit entries about a ship.
 pub(crate) fn subject(name: &str) -> String {
     format!("ship:{name}")
 }
 
-/// A ship as the audit has it; its history has the document.
+/// Returns the state of a ship for the audit; the document is in the history of the ship.
 fn state(ship: &Ship) -> Value {
     json!({ "revision": ship.revision, "sha256": sha256_hex(ship.document.as_bytes()) })
 }
 
-/// The ship, if it is there and not deleted, as the transaction sees it.
+/// Returns a ship that is not deleted, as the transaction sees it.
 pub(crate) async fn find(tx: &mut Transaction, name: &str) -> Result<Ship> {
     present(name, tx.optional(GET, args![name: name]).await?)
 }
@@ -224,7 +229,7 @@ fn present(name: &str, ship: Option<Ship>) -> Result<Ship> {
     ship.filter(|ship| ship.deleted_us.is_none()).ok_or_else(|| StoreError::missing("ship", name))
 }
 
-/// Why a name cannot be given again.
+/// Returns the reason why a name cannot be used again.
 fn taken(name: &str, holder: Result<Ship>) -> StoreError {
     match holder {
         Ok(_) => StoreError::conflict("ship", name, "exists already"),
@@ -235,7 +240,7 @@ fn taken(name: &str, holder: Result<Ship>) -> StoreError {
     }
 }
 
-/// Why a compare-and-swap found nothing to swap.
+/// Returns the reason why a compare-and-swap changed no row.
 async fn stale(tx: &mut Transaction, name: &str) -> StoreError {
     match find(tx, name).await {
         Ok(ship) => StoreError::stale("ship", name, Some(ship.revision)),

@@ -1,6 +1,6 @@
-//! What a process that was killed in the middle of a put leaves in a local folder: the bytes so
-//! far, in a file beside the object's name with `#` and a number behind it, which the object store
-//! itself does not show. A put into a bucket is one request and leaves nothing.
+//! Partial files that killed processes leave in a local object store: the object store writes to a
+//! file named like the object with `#` and a number appended, and does not list it. A write to a
+//! bucket is one request and leaves nothing.
 
 use std::fs;
 use std::io;
@@ -12,29 +12,29 @@ use crate::error::Result;
 use crate::objects::{FOLDER, Objects};
 use crate::objects_error::ObjectsError;
 
-/// Nobody writes on at what has not been written for this long.
+/// Age after which a partial file counts as abandoned.
 const SETTLED: Duration = Duration::from_secs(60);
 
-/// A put that has not ended.
+/// A write of an object that has not ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Staged {
-    /// The file below the folder of the objects.
+    /// Path of the file below the folder of the objects.
     pub path: String,
-    /// Its size so far.
+    /// Present size, bytes.
     pub bytes: u64,
-    /// When it was last written, microseconds since 1970.
+    /// Time of the last write, microseconds since 1970.
     pub modified_us: i64,
 }
 
 impl Objects {
-    /// Every put that has not ended, or never will; none in a bucket.
+    /// Returns the partial files of writes that have not ended, or never will; none for a bucket.
     pub async fn staged(&self) -> Result<Vec<Staged>> {
         let Some(root) = self.folder.clone() else { return Ok(Vec::new()) };
         blocking(move || find(&root)).await
     }
 
-    /// Holds off [`clear_staged`](Self::clear_staged) while something is put; nothing where the
-    /// file system knows no locks.
+    /// Takes a shared lock that holds off [`clear_staged`](Self::clear_staged) during a write; none
+    /// where the file system has no locks.
     pub(crate) async fn putting(&self) -> Result<Option<fs::File>> {
         let Some(root) = self.folder.clone() else { return Ok(None) };
         blocking(move || {
@@ -43,13 +43,15 @@ impl Objects {
         .await
     }
 
-    /// Removes what puts have left whose processes have ended: nobody puts anything while this
-    /// holds the folder, and what was written a moment ago stays for the sake of earlier programs,
-    /// which do not hold it. Returns how many there were.
+    /// Removes the partial files of processes that have ended, and returns their number. An
+    /// exclusive lock on the folder excludes writes meanwhile; recently written files stay, because
+    /// programs of earlier releases take no lock.
     pub async fn clear_staged(&self) -> Result<usize> {
         let Some(root) = self.folder.clone() else { return Ok(0) };
         blocking(move || {
             let folder = fs::File::open(&root)?;
+            // Another process writes at present, or the file system has no locks: nothing is
+            // removed.
             if folder.try_lock().is_err() {
                 return Ok(0);
             }
@@ -65,8 +67,7 @@ impl Objects {
         .await
     }
 
-    /// Removes what a put has left that never ended. Only who knows that it is not under way may do
-    /// so.
+    /// Removes one partial file. The caller must be sure that its write is not in progress.
     pub async fn remove_staged(&self, staged: &Staged) -> Result<()> {
         let Some(root) = self.folder.clone() else { return Ok(()) };
         let path = root.join(&staged.path);
@@ -91,7 +92,7 @@ fn find(root: &Path) -> io::Result<Vec<Staged>> {
     Ok(found)
 }
 
-/// The entries of a folder; none where it is not there.
+/// Returns the entries of a folder; none if it does not exist.
 fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
@@ -110,18 +111,19 @@ fn is_staged(path: &Path) -> bool {
     })
 }
 
-/// The file, unless its put has ended by now.
+/// Returns a partial file, unless its write has ended meanwhile.
 fn staged(root: &Path, file: &Path) -> io::Result<Option<Staged>> {
     let about = match fs::metadata(file) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         about => about?,
     };
+    // Relative to the root, as the listing of objects names them.
     let path = file.strip_prefix(root).unwrap_or(file).to_string_lossy().into_owned();
     let modified_us = about.modified()?.duration_since(UNIX_EPOCH).map_or(0, micros);
     Ok(Some(Staged { path, bytes: about.len(), modified_us }))
 }
 
-/// What is gone already is gone.
+/// Ignores that a file to be removed is already absent.
 fn gone(removed: io::Result<()>) -> io::Result<()> {
     match removed {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
@@ -134,7 +136,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// What a put leaves that was cut by a kill goes, unless somebody may still be writing it.
+    /// Leftovers of a killed write are removed, unless they may still be written.
     #[tokio::test]
     async fn what_a_kill_has_left_is_removed() {
         let root = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! What the list of a fleet says of its ships: of all that are on a page at once, for a page of
-//! fifty would take hundreds of statements otherwise.
+//! State of all ships on a page of the fleet list, in a few statements: one ship at a time, a page
+//! of fifty would take hundreds.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::statements::{pair, statements};
 use crate::store::Store;
 use crate::version::{Version, VersionHead};
 
-/// A text about the names of `$1`, a JSON list, which it goes through first.
+/// A statement about the names in `$1`, a JSON list, which it reads first.
 macro_rules! of_names {
     ($columns:literal, $joined:literal) => {
         pair(
@@ -38,7 +38,7 @@ statements! {
         "aliases a CROSS JOIN versions v WHERE a.model = n.value AND a.alias = 'champion' \
         AND v.model = a.model AND v.number = a.version_number"
     );
-    // A diagnosis concerns the version that it is of, and the one that came of it.
+    // A diagnosis concerns the diagnosed version, and the one that resulted from it.
     DIAGNOSES = pair(
         "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, \
         d.effects, d.trials, d.unexplained, d.drift, d.created_us \
@@ -62,7 +62,7 @@ statements! {
         1) t"
     );
     FACTS = of_names!("f.ship, f.value", "ship_facts f WHERE f.ship = n.value AND f.fact = $2");
-    // Here and below a limit keeps PostgreSQL from joining all rows.
+    // Here and below, a limit keeps PostgreSQL from joining all rows.
     SERIES = pair(
         "SELECT f.ship, f.value FROM json_each($1) n CROSS JOIN ship_facts f \
         WHERE f.ship = n.value AND f.fact >= $2 AND f.fact < $3 ORDER BY f.ship, f.fact",
@@ -80,19 +80,19 @@ statements! {
     );
 }
 
-/// How a ship stands.
+/// State of a ship in the fleet list.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ShipStanding {
-    /// The version that is its champion.
+    /// Its champion.
     pub champion: Option<VersionHead>,
-    /// The newest diagnoses that the champion was subject or result of, at most 200, the latest
+    /// The latest diagnoses of the champion, or from which it resulted, at most 200, the latest
     /// first.
     pub diagnoses: Vec<Diagnosed>,
-    /// The fact that was asked for.
+    /// Value of the requested fact.
     pub fact: Option<f64>,
-    /// The facts whose names begin as was asked for, by name.
+    /// Values of the facts with the requested prefix, ordered by name.
     pub series: Vec<f64>,
-    /// The families that it belongs to, by name.
+    /// Names of its families.
     pub families: Vec<String>,
 }
 
@@ -124,7 +124,7 @@ record! {
 }
 
 record! {
-    /// That a ship belongs to a family.
+    /// Membership of a ship in a family.
     pub struct Membership {
         /// The ship.
         pub ship: String,
@@ -134,20 +134,20 @@ record! {
 }
 
 impl Store {
-    /// The champions of those of these ships that have one, with their documents.
+    /// Returns the champions of these ships with their documents; ships without one are skipped.
     pub async fn champions(&self, ships: &[String]) -> Result<Vec<Version>> {
         self.database().all(CHAMPION_DOCUMENTS, args![names: &names_list(ships)]).await
     }
 
-    /// Which of these trials are deleted, by their ids.
+    /// Returns the ids of those of the trials that are deleted.
     pub async fn deleted_trials(&self, ids: &[String]) -> Result<Vec<String>> {
         let found: Vec<TrialId> =
             self.database().all(DELETED, args![ids: &names_list(ids)]).await?;
         Ok(found.into_iter().map(|trial| trial.id).collect())
     }
 
-    /// How each of these ships stands, with one of its facts, and those whose names begin like
-    /// `series`; one of which nothing is known has an empty standing.
+    /// Returns the state of each ship, with the value of one fact and of all facts whose names
+    /// begin with `series`; a ship without data has an empty state.
     pub async fn standings(
         &self,
         ships: &[String],
@@ -155,6 +155,7 @@ impl Store {
         series: &str,
     ) -> Result<BTreeMap<String, ShipStanding>> {
         let (database, names) = (self.database(), names_list(ships));
+        // Every requested ship has an entry, also one without data.
         let empty = |ship: &String| (ship.clone(), ShipStanding::default());
         let mut all: BTreeMap<String, ShipStanding> = ships.iter().map(empty).collect();
         let champions: Vec<VersionHead> = database.all(CHAMPIONS, args![names: &names]).await?;
@@ -162,6 +163,7 @@ impl Store {
         let concerning: Vec<Concerning> =
             database.all(DIAGNOSES, args![ids: &names_list(&ids)]).await?;
         let mut diagnoses: BTreeMap<String, Vec<Diagnosed>> = BTreeMap::new();
+        // The statement has sorted them, the latest first for each version.
         for Concerning { head, concerns } in concerning {
             diagnoses.entry(concerns).or_default().push(head);
         }
@@ -175,7 +177,7 @@ impl Store {
         for FactOf { ship, value } in facts {
             all.entry(ship).and_modify(|standing| standing.fact = Some(value));
         }
-        // Names are of letters, digits and spaces, all of which come before this.
+        // Names of facts consist of letters, digits and spaces, all of which sort before `~`.
         let end = format!("{series}~");
         let of_series = args![names: &names, from: series, before: &end];
         for FactOf { ship, value } in database.all(SERIES, of_series).await? {

@@ -1,20 +1,20 @@
-//! SQL texts: one per operation, the same for both databases but where it cannot be. Each
-//! repository declares its own with [`statements!`], which also lists them, so that one test
-//! prepares every text on both databases.
+//! SQL statements: one per operation, the same for both databases where possible. Each repository
+//! declares its own with [`statements!`], which also lists them, so that one test prepares every
+//! statement on both databases.
 
-/// The text of an operation.
+/// The SQL text of an operation, for each database.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Statement {
     pub(crate) sqlite: &'static str,
     pub(crate) postgres: &'static str,
 }
 
-/// One text for both databases.
+/// Creates a statement with one text for both databases.
 pub(crate) const fn same(sql: &'static str) -> Statement {
     Statement { sqlite: sql, postgres: sql }
 }
 
-/// A text for each, where they must differ.
+/// Creates a statement with a text for each database.
 pub(crate) const fn pair(sqlite: &'static str, postgres: &'static str) -> Statement {
     Statement { sqlite, postgres }
 }
@@ -49,6 +49,8 @@ mod prepare {
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
+        // A new repository must be added here, otherwise its statements are not prepared by the
+        // test.
         ("aliases", aliases::STATEMENTS),
         ("audit", audit::STATEMENTS),
         ("bulks", bulks::STATEMENTS),

@@ -1,5 +1,5 @@
-//! Sufficient statistics of trials, under the hash of everything that shapes them. They can be made
-//! again from the samples, so that whoever comes first keeps them and nobody minds who.
+//! Sufficient statistics of trials, keyed by the hash of all their inputs. They can be computed
+//! again from the samples, so that concurrent writers need no order: the first one is kept.
 
 use crate::arguments::args;
 use crate::checks;
@@ -18,7 +18,7 @@ statements! {
 record! {
     /// The statistics of a trial.
     pub struct StatisticsRow {
-        /// The hash of everything that shapes them.
+        /// Hash of all inputs of the statistics.
         pub key: String,
         /// The statistics, JSON.
         pub document: String,
@@ -27,19 +27,19 @@ record! {
     }
 }
 
-/// The statistics that a store keeps.
+/// Repository of sufficient statistics.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialStatistics<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Sufficient statistics of trials.
+    /// Returns the repository of sufficient statistics.
     pub fn statistics(&self) -> TrialStatistics<'_> {
         TrialStatistics(self)
     }
 }
 
 impl TrialStatistics<'_> {
-    /// Keeps statistics by key and document, all or nothing; those that are there stay as they are.
+    /// Stores statistics, pairs of key and document, all or nothing; existing ones stay.
     pub async fn put(&self, all: &[(String, String)]) -> Result<()> {
         let mut tx = self.0.begin().await?;
         for (key, document) in all {
@@ -53,7 +53,10 @@ impl TrialStatistics<'_> {
         tx.commit().await
     }
 
-    /// The document under a key, if it is there. One that is not what was kept is refused.
+    /// Returns the document of a key, if it exists.
+    ///
+    /// # Errors
+    /// Returns a conflict if the document does not have its hash.
     pub async fn get(&self, key: &str) -> Result<Option<String>> {
         let Some(found) = self.0.database().optional::<StatisticsRow>(GET, args![key: key]).await?
         else {

@@ -1,5 +1,5 @@
-//! The store: one database, a clock and a maker of ids. Each repository is reached from it by a
-//! method that stands in the repository's own file.
+//! The store: one database, a clock and a generator of ids. Each repository is reached by a method
+//! of [`Store`] that is defined in the repository's own file.
 
 use std::fmt;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::reserve;
 use crate::statements::{same, statements};
 use crate::unit::Unit;
 
-/// How long the database may take to say that it is there.
+/// Maximum time of the health check of the database.
 const SOON: std::time::Duration = std::time::Duration::from_millis(800);
 
 statements! {
@@ -24,7 +24,7 @@ statements! {
 record! {
     /// The answer to a ping.
     pub struct Pong {
-        /// 1.
+        /// Always 1.
         pub alive: i64,
     }
 }
@@ -38,9 +38,9 @@ struct StoreParts {
     clock: Arc<dyn Clock>,
     ids: Arc<dyn Ids>,
     questions: Questions,
-    /// The file that keeps room for the next start.
+    /// File of the reserved space for the next start.
     reserve: Option<std::path::PathBuf>,
-    /// Where a test wants a unit of work to end.
+    /// Moment at which a test wants the next unit of work to stop.
     #[cfg(feature = "testing")]
     ending: Arc<std::sync::Mutex<Option<crate::unit::Moment>>>,
 }
@@ -52,15 +52,16 @@ impl fmt::Debug for Store {
 }
 
 impl Store {
-    /// Opens `sqlite://path/file.db`, `sqlite::memory:` or `postgres://...` and brings its schema
-    /// up to date; several processes may do so at once.
+    /// Opens `sqlite://path/file.db`, `sqlite::memory:` or `postgres://...` and migrates its
+    /// schema; several processes may do so at the same time.
     pub async fn connect(url: &str, clock: Arc<dyn Clock>) -> Result<Self> {
         Self::connect_with(url, clock, Arc::new(UuidIds::default())).await
     }
 
-    /// The same, with ids made by `ids`.
+    /// Opens a database as [`Self::connect`] does, with a generator of ids.
     pub async fn connect_with(url: &str, clock: Arc<dyn Clock>, ids: Arc<dyn Ids>) -> Result<Self> {
         let database = match connect::connect(url).await {
+            // A full disk: the reserved space is freed, and the database opened once more.
             Err(error) if error.is_out_of_space() && reserve::release(url) => {
                 connect::connect(url).await?
             }
@@ -81,13 +82,14 @@ impl Store {
         Self(Arc::new(parts))
     }
 
-    /// A handle whose reads and writes belong to a unit of work.
+    /// Returns a handle whose reads and writes belong to a unit of work.
     pub(crate) fn within(&self, unit: Unit) -> Self {
         let StoreParts { database, clock, ids, .. } = &*self.0;
         Self::of(StoreParts {
             database: Database { unit: Some(unit), ..database.clone() },
             clock: Arc::clone(clock),
             ids: Arc::clone(ids),
+            // Not used: the lookups of a unit of work are not batched.
             questions: Questions::default(),
             reserve: self.0.reserve.clone(),
             #[cfg(feature = "testing")]
@@ -95,14 +97,13 @@ impl Store {
         })
     }
 
-    /// The next unit of work goes no further than this moment, as if its process had ended: for
-    /// tests.
+    /// Stops the next unit of work at a moment, as if its process had ended; for tests.
     #[cfg(feature = "testing")]
     pub fn end_at(&self, moment: crate::unit::Moment) {
         *self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(moment);
     }
 
-    /// Whether no unit of work is still to end so.
+    /// Returns true if no unit of work is still to be stopped by [`Self::end_at`].
     #[cfg(feature = "testing")]
     pub fn has_ended(&self) -> bool {
         self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner).is_none()
@@ -114,20 +115,20 @@ impl Store {
         ending.take_if(|at| *at == moment).is_some()
     }
 
-    /// Whether the database answers, and soon.
+    /// Checks that the database answers in a short time.
     pub async fn health(&self) -> Result<()> {
         let answered = tokio::time::timeout(SOON, self.database().optional::<Pong>(PING, &[]));
         let late = |_| sqlx::Error::Io(std::io::ErrorKind::TimedOut.into());
         answered.await.map_err(late)?.map(drop)
     }
 
-    /// Ends all connections once what is under way has ended.
+    /// Closes all connections once the work in progress has ended.
     pub async fn close(&self) {
         self.questions().close();
         self.database().close().await;
     }
 
-    /// The clock that this store goes by, in microseconds since 1970.
+    /// Returns the present time of the store's clock, microseconds since 1970.
     pub fn now_us(&self) -> i64 {
         self.0.clock.now_us()
     }

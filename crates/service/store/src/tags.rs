@@ -1,4 +1,4 @@
-//! Tags: words that people put on ships, to find them by.
+//! Tags: words that users assign to ships, to find them by.
 
 use serde_json::json;
 
@@ -10,12 +10,12 @@ use crate::record::{Counted, record};
 use crate::ships::{self, Ships, subject};
 use crate::statements::{pair, same, statements};
 
-/// The most tags of one ship.
+/// Maximum number of tags of a ship.
 pub const MAX_TAGS: usize = 100;
 
 statements! {
-    // Taggers of one ship wait for each other, so that none counts past another. SQLite's writers
-    // do so anyway.
+    // Insertions for one ship are serial, so that two of them cannot exceed the maximum together.
+    // SQLite has one writer anyway.
     LOCK = pair("SELECT 1 WHERE $1 = ''", "SELECT 1 FROM ships WHERE name = $1 FOR NO KEY UPDATE");
     PUT = same("INSERT INTO ship_tags (ship, tag) VALUES ($1, $2) ON CONFLICT (ship, tag) DO \
         NOTHING");
@@ -33,19 +33,20 @@ record! {
 }
 
 impl Ships<'_> {
-    /// The tags of a ship, in alphabetical order.
+    /// Returns the tags of a ship, in alphabetical order.
     pub async fn tags(&self, name: &str) -> Result<Vec<String>> {
         let tags: Vec<Tag> = self.0.database().all(OF_SHIP, args![ship: name]).await?;
         Ok(tags.into_iter().map(|tag| tag.tag).collect())
     }
 
-    /// Puts a tag on a ship, at most [`MAX_TAGS`]; one that it has already stays.
+    /// Adds a tag to a ship, which may have at most [`MAX_TAGS`]; an existing tag stays.
     pub async fn tag(&self, name: &str, tag: &str) -> Result<()> {
         checks::name("tag", tag)?;
         let mut tx = self.0.begin().await?;
         ships::find(&mut tx, name).await?;
         tx.execute(LOCK, args![ship: name]).await?;
         let new = tx.execute(PUT, args![ship: name, tag: tag]).await?;
+        // Counted after the insertion, under the lock; too many roll it back.
         check_count(&mut tx, name).await?;
         if new > 0 {
             let after = json!({ "tag": tag });
@@ -54,7 +55,7 @@ impl Ships<'_> {
         tx.commit().await
     }
 
-    /// Takes a tag off a ship.
+    /// Removes a tag from a ship.
     pub async fn untag(&self, name: &str, tag: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         ships::find(&mut tx, name).await?;

@@ -22,25 +22,26 @@ mod plans;
 mod s3;
 mod server;
 
-/// An empty database that goes when this is dropped (on PostgreSQL, when the test process ends).
+/// An empty database that is removed when this is dropped (on PostgreSQL, when the test process
+/// ends).
 #[derive(Debug)]
 pub struct TestDatabase {
-    /// What to connect to.
+    /// URL of the database.
     pub url: String,
     /// A folder for this test alone.
     pub folder: TempDir,
 }
 
 impl TestDatabase {
-    /// A new SQLite file.
+    /// Creates a new SQLite file.
     pub fn sqlite() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         Self { url: format!("sqlite://{}", folder.path().join("store.db").display()), folder }
     }
 
-    /// A new database on the private PostgreSQL server of this process. Without PostgreSQL's
-    /// programs on this machine it says so and returns none, unless
-    /// `SISTERSHIP_REQUIRE_POSTGRES=1`, which makes it a failure.
+    /// Creates a database on the private PostgreSQL server of this process. Returns none, with a
+    /// message, if PostgreSQL is not installed, unless `SISTERSHIP_REQUIRE_POSTGRES=1`, which makes
+    /// that a failure.
     pub async fn postgres() -> Option<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let server = server::shared()?;
@@ -58,7 +59,7 @@ impl TestDatabase {
         })
     }
 
-    /// Opens it with a clock that stands still.
+    /// Opens the database with a clock that stands still.
     pub async fn open(self) -> TestStore {
         let clock = Arc::new(ManualClock::new(1_800_000_000_000_000));
         let store = Store::connect(&self.url, clock.clone()).await.expect("a store");
@@ -67,12 +68,14 @@ impl TestDatabase {
 }
 
 impl TestDatabase {
-    /// Changes rows as no program of ours would: without triggers and without foreign keys.
+    /// Executes a statement that no valid program would: without triggers and without foreign keys.
     pub async fn damage(&self, sql: &str) {
         match self.url.starts_with("sqlite") {
             true => self.damage_sqlite(sql).await,
             false => self.damage_postgres(sql).await,
         }
+        // Triggers refuse changes of immutable rows, and foreign keys missing references: both are
+        // disabled.
         .expect("a damaged database");
     }
 
@@ -90,28 +93,30 @@ impl TestDatabase {
 
     async fn damage_postgres(&self, sql: &str) -> sqlx::Result<()> {
         let mut connection = PgConnection::connect(&self.url).await?;
+        // In this role no triggers and no checks of foreign keys are executed.
         connection.execute("SET session_replication_role = replica").await?;
         connection.execute(AssertSqlSafe(sql.to_owned())).await.map(drop)
     }
 }
 
-/// A table of a PostgreSQL database that can be read but not written, until this is dropped.
+/// A lock on a table of a PostgreSQL database, which can be read but not written until this is
+/// dropped.
 #[derive(Debug)]
 pub struct HeldTable(#[expect(dead_code, reason = "the lock is its connection's")] PgConnection);
 
 impl TestDatabase {
-    /// Makes whoever writes to a table of a PostgreSQL database wait until what this returns is
-    /// dropped.
+    /// Blocks writers to a table of a PostgreSQL database until the returned value is dropped.
     pub async fn hold_writes(&self, table: &str) -> HeldTable {
         let mut connection = PgConnection::connect(&self.url).await.expect("a connection");
+        // The transaction stays open, and with it the lock, until the connection is dropped.
         let held = format!("BEGIN; LOCK TABLE {table} IN EXCLUSIVE MODE");
         connection.execute(AssertSqlSafe(held)).await.expect("a lock on the table");
         HeldTable(connection)
     }
 }
 
-/// A database that sorts as people do, where the server can (from PostgreSQL 15): keys must not
-/// depend on that.
+/// Creates a database with an English collation, where the server supports it (from PostgreSQL 15):
+/// the order of keys must not depend on it.
 async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
     let plain = format!("CREATE DATABASE {name} TEMPLATE template0");
     let sorted = format!("{plain} LOCALE_PROVIDER icu ICU_LOCALE 'en'");
@@ -122,7 +127,7 @@ async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
 }
 
 impl Store {
-    /// How many rows each table has, but for what follows ships in the background.
+    /// Returns the number of rows of each table, except those that are written in the background.
     pub async fn row_counts(&self) -> sqlx::Result<Vec<(&'static str, i64)>> {
         let mut counts = Vec::new();
         let kept = |table: &&&str| {

@@ -1,4 +1,4 @@
-//! Trials: what is known of a recorded manoeuvre; its samples are an object, named by their hash.
+//! Trials: metadata of recorded manoeuvres; their samples are objects, named by their hash.
 
 use std::collections::BTreeSet;
 
@@ -19,9 +19,12 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
+    // The same samples of a ship again: no row is inserted, and the next statement returns the
+    // existing one.
     INSERT = same("INSERT INTO trials (id, ship, sha256, name, manifest, conventions, manoeuvre, \
         sample_rows, duration_s, warnings, object_key, created_us) VALUES ($1, $2, $3, $4, $5, $6, \
         $7, $8, $9, $10, $11, $12) ON CONFLICT (ship, sha256) DO NOTHING");
+    // Returns the row in any case, and removes the mark of deletion.
     REVIVE = same("UPDATE trials SET deleted_us = NULL WHERE ship = $1 AND sha256 = $2 RETURNING \
         id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, \
         warnings, object_key, created_us, deleted_us");
@@ -34,6 +37,7 @@ statements! {
     LIST = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
         duration_s, warnings, object_key, created_us, deleted_us FROM trials \
         WHERE ship = $1 AND id > COALESCE($2, '') AND deleted_us IS NULL ORDER BY id LIMIT $3");
+    // Includes deleted trials, which versions may still name.
     WAS = same("SELECT COUNT(*) AS rows FROM trials WHERE id = $1");
     ALL = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
         duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE id > \
@@ -55,51 +59,51 @@ record! {
         pub ship: String,
         /// The SHA-256 of the samples.
         pub sha256: String,
-        /// What the uploader called it.
+        /// Name given by the uploader.
         pub name: String,
         /// The manifest, JSON.
         pub manifest: String,
-        /// The conventions of the file it came from, JSON.
+        /// Conventions of the input file, JSON.
         pub conventions: String,
-        /// The manoeuvre, where it is known.
+        /// Manoeuvre, if known.
         pub manoeuvre: Option<String>,
         /// The number of samples.
         pub sample_rows: i64,
-        /// How long it lasts.
+        /// Duration, s.
         pub duration_s: f64,
-        /// What the checks had to say, JSON.
+        /// Warnings of the checks, JSON.
         pub warnings: String,
-        /// Where the samples are, see [`crate::Objects`].
+        /// Key of the object with the samples, see [`crate::Objects`].
         pub object_key: String,
-        /// When it was uploaded.
+        /// Time of the upload, microseconds since 1970.
         pub created_us: i64,
         /// When it was deleted, if it is.
         pub deleted_us: Option<i64>,
     }
 }
 
-/// What a trial is made of. The object must be in the object store before the trial is inserted.
+/// A trial to be stored. Its object must be in the object store before the trial is inserted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewTrial {
     /// The ship.
     pub ship: String,
     /// The SHA-256 of the samples.
     pub sha256: String,
-    /// What the uploader calls it.
+    /// Name given by the uploader.
     pub name: String,
     /// The manifest, JSON.
     pub manifest: String,
-    /// The conventions of the file it comes from, JSON.
+    /// Conventions of the input file, JSON.
     pub conventions: String,
-    /// The manoeuvre, where it is known.
+    /// Manoeuvre, if known.
     pub manoeuvre: Option<String>,
     /// The number of samples.
     pub sample_rows: i64,
-    /// How long it lasts.
+    /// Duration, s.
     pub duration_s: f64,
-    /// What the checks have to say, JSON.
+    /// Warnings of the checks, JSON.
     pub warnings: String,
-    /// Where the samples are.
+    /// Key of the object with the samples.
     pub object_key: String,
 }
 
@@ -115,43 +119,43 @@ impl NewTrial {
     }
 }
 
-/// What an insertion found or made.
+/// Result of an insertion that may find an existing row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inserted<T> {
-    /// The row that is there now.
+    /// The inserted or existing row.
     pub row: T,
-    /// Whether this call made it.
+    /// True if this call has inserted it.
     pub new: bool,
 }
 
-/// The trials of a store.
+/// Repository of trials.
 #[derive(Debug, Clone, Copy)]
 pub struct Trials<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Trials of ships; their samples are [`crate::Objects`].
+    /// Returns the repository of trials; their samples are [`crate::Objects`].
     pub fn trials(&self) -> Trials<'_> {
         Trials(self)
     }
 }
 
 impl Trials<'_> {
-    /// Puts a trial in. The same samples of the same ship again give the trial that is there,
-    /// brought back if it was deleted.
+    /// Inserts a trial. If the ship has a trial with the same samples, that one is returned, and
+    /// restored if it was deleted.
     pub async fn insert(&self, new: &NewTrial) -> Result<Inserted<Trial>> {
         let mut inserted = self.insert_all(std::slice::from_ref(new)).await?;
         inserted.pop().ok_or_else(|| StoreError::missing("trial", &new.name))
     }
 
-    /// Puts several trials in, all of them or none.
+    /// Inserts several trials, all or none.
     pub async fn insert_all(&self, all: &[NewTrial]) -> Result<Vec<Inserted<Trial>>> {
         self.write(all, None, |_| None).await.map(|(inserted, _)| inserted)
     }
 
-    /// The same with a job that is to follow, if `job` asks for one: whoever sees the trials finds
-    /// the job too. Where an object of theirs is no longer in `objects`, because
-    /// [`Store::remove_unreferred`] was faster, that object is not found and nothing is put in; put
-    /// it there again and come back.
+    /// Inserts several trials, all or none, with a subsequent job if `job` returns one: trials and
+    /// job become visible together. If an object of theirs is no longer in `objects`, because
+    /// [`Store::remove_unreferred`] has removed it meanwhile, the result is an error for the
+    /// missing object and nothing is inserted; store the object again and retry.
     pub async fn insert_all_and_enqueue<F>(
         &self,
         all: &[NewTrial],
@@ -179,10 +183,13 @@ impl Trials<'_> {
         for new in all {
             inserted.push(self.insert_one(&mut tx, new).await?);
         }
+        // Checked after the insertions, which wait for a removal of unreferenced objects in
+        // progress.
         if let Some(objects) = objects {
             objects.must_have(inserted.iter().map(|trial| trial.row.object_key.clone())).await?;
         }
-        // In one order, or two who put in trials of the same ships would wait for each other.
+        // In a fixed order: two transactions that insert trials of the same ships could deadlock
+        // otherwise.
         for ship in all.iter().map(|new| &new.ship).collect::<BTreeSet<_>>() {
             search_index::mark(self.0, &mut tx, ship).await?;
         }
@@ -210,39 +217,39 @@ impl Trials<'_> {
         Ok(Inserted { row, new: inserted == 1 })
     }
 
-    /// The trial of this id.
+    /// Returns the trial of an id.
     pub async fn get(&self, id: &str) -> Result<Trial> {
         let trial = self.0.database().optional(GET, args![id: id]).await?;
         trial.ok_or_else(|| StoreError::missing("trial", id))
     }
 
-    /// The trial of a ship with these samples.
+    /// Returns the trial of a ship with these samples.
     pub async fn find(&self, ship: &str, sha256: &str) -> Result<Trial> {
         let trial = self.0.database().optional(FIND, args![ship: ship, sha256: sha256]).await?;
         trial.ok_or_else(|| StoreError::missing("trial", format!("{ship}/{sha256}")))
     }
 
-    /// Whether there is a trial of this id, deleted or not.
+    /// Returns true if there is a trial of this id, deleted or not.
     pub async fn was(&self, id: &str) -> Result<bool> {
         let found: Option<Counted> = self.0.database().optional(WAS, args![id: id]).await?;
         Ok(found.is_some_and(|found| found.rows > 0))
     }
 
-    /// Every trial of every ship, deleted or not, in the order of their upload.
+    /// Lists all trials of all ships, deleted or not, in the order of their upload.
     pub async fn all(&self, page: &Page) -> Result<List<Trial>> {
         let trials =
             self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
     }
 
-    /// The trials of a ship, in the order of their upload.
+    /// Lists the trials of a ship, in the order of their upload.
     pub async fn list(&self, ship: &str, page: &Page) -> Result<List<Trial>> {
         let values = args![ship: ship, after: &page.after, limit: page.fetch()?];
         let trials = self.0.database().all(LIST, values).await?;
         Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
     }
 
-    /// Deletes a trial; [`undelete`](Self::undelete) undoes it. Its samples stay: versions name
+    /// Deletes a trial; [`undelete`](Self::undelete) reverts it. Its samples stay: versions name
     /// them by their hash.
     pub async fn delete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
@@ -256,7 +263,7 @@ impl Trials<'_> {
         trial.ok_or_else(|| StoreError::missing("trial", id))
     }
 
-    /// Brings a deleted trial back.
+    /// Restores a deleted trial.
     pub async fn undelete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
         let trial: Option<Trial> = tx.optional(UNDELETE, args![id: id]).await?;
@@ -269,12 +276,12 @@ impl Trials<'_> {
     }
 }
 
-/// What stands for a trial in the audit.
+/// Returns the subject of audit entries about a trial.
 fn subject(trial: &Trial) -> String {
     format!("trial:{}", trial.id)
 }
 
-/// A trial as the audit has it.
+/// Returns the state of a trial for the audit.
 fn state(trial: &Trial) -> Value {
     json!({ "ship": trial.ship, "name": trial.name, "sha256": trial.sha256 })
 }

@@ -1,6 +1,6 @@
-//! The transaction of a unit of work. It begins with the first write, so that what comes before it
-//! holds nobody up, and reads through the handle see it. Each repository's own transaction becomes
-//! a step of it, undone by itself where it fails.
+//! The transaction of a unit of work. It begins with the first write, so that the reads before do
+//! not block others, and later reads through the handle see it. Each transaction of a repository
+//! becomes a step of it, rolled back alone if it fails.
 
 use std::fmt;
 use std::sync::Arc;
@@ -19,14 +19,15 @@ pub(crate) struct Unit(Arc<Mutex<UnitState>>);
 #[derive(Default)]
 struct UnitState {
     transaction: Option<DatabaseTransaction>,
-    /// What its steps enter into the audit, at its end: who has done that waits for nothing more.
+    /// Audit entries of its steps, appended at its end: after that the transaction waits for
+    /// nothing more.
     entries: Vec<Entry>,
-    /// Whether the last step came to nothing and is still to be taken back.
+    /// True if the last step has failed and is still to be rolled back.
     undo: bool,
     ended: bool,
 }
 
-/// The unit while somebody uses it; a step of it is taken back unless [kept](Self::keep).
+/// Exclusive use of the unit; a step that writes is rolled back unless [kept](Self::keep).
 pub(crate) struct UnitStep {
     state: OwnedMutexGuard<UnitState>,
     writes: bool,
@@ -39,7 +40,7 @@ impl fmt::Debug for Unit {
 }
 
 impl Unit {
-    /// Begins a step, and with the first one the transaction.
+    /// Begins a step, and the transaction with the first one.
     pub(crate) async fn step(&self, writer: &Writer) -> Result<UnitStep> {
         let mut step = self.enter().await?;
         if step.state.transaction.is_none() {
@@ -50,7 +51,7 @@ impl Unit {
         Ok(step)
     }
 
-    /// The transaction to read in, if it has begun.
+    /// Returns the unit for reads in its transaction, if that has begun.
     pub(crate) async fn open(&self) -> Result<Option<UnitStep>> {
         let step = self.enter().await?;
         Ok(step.state.transaction.is_some().then_some(step))
@@ -64,7 +65,8 @@ impl Unit {
         if std::mem::take(&mut state.undo)
             && let Some(mut transaction) = state.transaction.take()
         {
-            // Where this fails the whole of it is taken back, with what must not be kept.
+            // If the rollback fails, the unit ends and its transaction is dropped, as it contains
+            // the failed step.
             state.ended = true;
             transaction.run("ROLLBACK TO SAVEPOINT step").await?;
             (state.transaction, state.ended) = (Some(transaction), false);
@@ -72,7 +74,7 @@ impl Unit {
         Ok(UnitStep { state, writes: false })
     }
 
-    /// Ends it, and gives the transaction if it has begun, with all in it but the commit.
+    /// Ends the unit and returns the transaction, if it has begun, complete except for the commit.
     pub(crate) async fn end(&self) -> Result<Option<DatabaseTransaction>> {
         let mut step = self.enter().await?;
         step.state.ended = true;
@@ -82,11 +84,11 @@ impl Unit {
         Ok(Some(transaction))
     }
 
-    /// Ends it with nothing kept.
+    /// Ends the unit and rolls it back.
     pub(crate) async fn undo(&self) {
         if let Ok(mut step) = self.enter().await {
             step.state.ended = true;
-            // Whatever cannot be rolled back in words goes with its connection.
+            // Dropping the transaction rolls it back.
             drop(step.state.transaction.take());
         }
     }
@@ -97,7 +99,7 @@ impl UnitStep {
         self.state.transaction.as_mut().ok_or_else(ended)
     }
 
-    /// Keeps the step, with what it enters into the audit, as a part of the whole.
+    /// Releases the savepoint of the step and adds its audit entries to the unit.
     pub(crate) async fn keep(mut self, entries: Vec<Entry>) -> Result<()> {
         self.transaction()?.run("RELEASE SAVEPOINT step").await?;
         self.state.entries.extend(entries);
@@ -108,6 +110,7 @@ impl UnitStep {
 
 impl Drop for UnitStep {
     fn drop(&mut self) {
+        // `drop` cannot wait for the database: the next use of the unit rolls the step back.
         self.state.undo |= self.writes;
     }
 }
@@ -116,12 +119,12 @@ fn ended() -> StoreError {
     StoreError::conflict("unit of work", "", "has ended")
 }
 
-/// Where a test can end a unit of work as the end of its process would.
+/// Moment at which a test can stop a unit of work, as the end of its process would.
 #[cfg(feature = "testing")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moment {
-    /// Everything is written and nothing is kept.
+    /// Everything is written and nothing is committed.
     BeforeCommit,
-    /// Everything is kept and nobody has been told.
+    /// Everything is committed and nothing is acknowledged.
     AfterCommit,
 }

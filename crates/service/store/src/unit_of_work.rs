@@ -1,5 +1,5 @@
-//! A unit of work: whatever is written through one handle of the store, in one transaction, with
-//! the outcome of the request that asked for it.
+//! Units of work: all writes through one handle of the store, in one transaction, with the answer
+//! to the request that caused them.
 
 use crate::error::Result;
 use crate::idempotency::{self, Ticket};
@@ -8,8 +8,8 @@ use crate::store::Store;
 use crate::unit::Moment;
 use crate::unit::Unit;
 
-/// Work of which all is kept or nothing, see [`Store::unit`]. It is undone when this and the
-/// handles of it are dropped.
+/// Work that is committed completely or not at all, see [`Store::unit`]. It is rolled back when
+/// this and its handles are dropped.
 #[derive(Debug)]
 pub struct UnitOfWork {
     store: Store,
@@ -17,7 +17,7 @@ pub struct UnitOfWork {
 }
 
 impl Store {
-    /// Begins work of which all is kept or nothing.
+    /// Begins a unit of work.
     pub fn unit(&self) -> UnitOfWork {
         let unit = Unit::default();
         UnitOfWork { store: self.within(unit.clone()), unit }
@@ -25,13 +25,16 @@ impl Store {
 }
 
 impl UnitOfWork {
-    /// The handle through which the work is done: what is written by any other is no part of it.
+    /// Returns the handle of the unit; writes through other handles are not part of it.
     pub fn store(&self) -> &Store {
         &self.store
     }
 
-    /// Keeps the work, and in the same transaction the answer to the request that asked for it. A
-    /// conflict, which undoes the work, where that request has been taken over meanwhile.
+    /// Commits the work, and in the same transaction the answer (ticket, HTTP status, body) to the
+    /// request that caused it.
+    ///
+    /// # Errors
+    /// Returns a conflict, and rolls the work back, if another process has taken over the request.
     pub async fn keep(self, answer: Option<(&Ticket, i64, &str)>) -> Result<()> {
         if let Some((ticket, status, body)) = answer {
             let mut tx = self.store.begin().await?;
@@ -52,7 +55,7 @@ impl UnitOfWork {
         Ok(())
     }
 
-    /// Takes the work back.
+    /// Rolls the work back.
     pub async fn undo(self) {
         self.unit.undo().await;
     }

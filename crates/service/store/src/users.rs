@@ -1,5 +1,5 @@
-//! Users: who signs in by name and password. One that goes is disabled, and its name stays taken:
-//! the audit names it.
+//! Users, who sign in by name and password. A user who leaves is disabled, and the name stays
+//! reserved, as the audit refers to it.
 
 use serde_json::json;
 
@@ -14,6 +14,7 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
+    // A conflict on the name returns no row.
     INSERT = same("INSERT INTO users (name, title, password_hash, created_us) VALUES ($1, $2, $3, \
         $4) ON CONFLICT (name) DO NOTHING RETURNING name, title, password_hash, created_us, \
         disabled_us");
@@ -23,6 +24,7 @@ statements! {
         WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
     PASSWORD = same("UPDATE users SET password_hash = $2 WHERE name = $1 \
         RETURNING name, title, password_hash, created_us, disabled_us");
+    // Only an enabled user; a second call changes no row, and keeps the first time.
     DISABLE = same("UPDATE users SET disabled_us = $2 WHERE name = $1 AND disabled_us IS NULL \
         RETURNING name, title, password_hash, created_us, disabled_us");
     ENABLE = same("UPDATE users SET disabled_us = NULL WHERE name = $1 AND disabled_us IS NOT NULL \
@@ -33,44 +35,44 @@ statements! {
 record! {
     /// A user.
     pub struct User {
-        /// The name, for ever.
+        /// Name, which never changes.
         pub name: String,
-        /// What people call this one.
+        /// Display name.
         pub title: String,
-        /// The Argon2id hash of the password as a PHC string; none where none is set.
+        /// Argon2id hash of the password as a PHC string; none if no password is set.
         pub password_hash: Option<String>,
         /// When it was created.
         pub created_us: i64,
-        /// Since when it may do nothing, if it may not.
+        /// Time of disabling, microseconds since 1970; none for an enabled user.
         pub disabled_us: Option<i64>,
     }
 }
 
-/// The users of a store.
+/// Repository of users.
 #[derive(Debug, Clone, Copy)]
 pub struct Users<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Who signs in by name.
+    /// Returns the repository of users.
     pub fn users(&self) -> Users<'_> {
         Users(self)
     }
 }
 
 impl User {
-    /// What stands for it in [`crate::Grants`] and in the audit.
+    /// Returns the principal of a user in [`crate::Grants`] and in the audit.
     pub fn principal(name: &str) -> String {
         format!("user:{name}")
     }
 
-    /// Whether it may do anything.
+    /// Returns true if the user is not disabled.
     pub fn is_enabled(&self) -> bool {
         self.disabled_us.is_none()
     }
 }
 
 impl Users<'_> {
-    /// Creates a user with some roles; a name that was ever taken is a conflict.
+    /// Creates a user with roles; a name that was ever used is a conflict.
     pub async fn create(
         &self,
         name: &str,
@@ -88,24 +90,24 @@ impl Users<'_> {
         Ok(user)
     }
 
-    /// A user.
+    /// Returns a user.
     pub async fn get(&self, name: &str) -> Result<User> {
         self.find(name).await?.ok_or_else(|| StoreError::missing("user", name))
     }
 
-    /// A user, if there is one of this name.
+    /// Finds a user by name.
     pub async fn find(&self, name: &str) -> Result<Option<User>> {
         self.0.database().optional(GET, args![name: name]).await
     }
 
-    /// The users by name.
+    /// Lists the users by name.
     pub async fn list(&self, page: &Page) -> Result<List<User>> {
         let values = args![after: &page.after, limit: page.fetch()?];
         let users = self.0.database().all(LIST, values).await?;
         Ok(page.of(users, |user: &User| user.name.clone()))
     }
 
-    /// Sets a password; whoever is signed in under the name is signed out.
+    /// Sets a password and ends the sessions of the user.
     pub async fn set_password(&self, name: &str, password_hash: &str) -> Result<User> {
         let mut tx = self.0.begin().await?;
         let set = tx.optional(PASSWORD, args![name: name, password_hash: password_hash]).await?;
@@ -115,7 +117,7 @@ impl Users<'_> {
         Ok(user)
     }
 
-    /// Takes every right from a user, and signs it out.
+    /// Disables a user and ends the user's sessions.
     pub async fn disable(&self, name: &str) -> Result<User> {
         let mut tx = self.0.begin().await?;
         let values = args![name: name, disabled_us: self.0.now_us()];
@@ -127,7 +129,7 @@ impl Users<'_> {
         Ok(user)
     }
 
-    /// Gives a disabled user its rights again.
+    /// Enables a disabled user.
     pub async fn enable(&self, name: &str) -> Result<User> {
         let mut tx = self.0.begin().await?;
         let enabled = tx.optional(ENABLE, args![name: name]).await?;
@@ -138,7 +140,8 @@ impl Users<'_> {
         Ok(user)
     }
 
-    /// The user as it was changed, signed out; or why it was not.
+    /// Ends the sessions of a user and returns the changed row, or the reason why no row was
+    /// changed.
     async fn changed(
         &self,
         tx: &mut Transaction,
@@ -146,6 +149,7 @@ impl Users<'_> {
         changed: Option<User>,
         why: &str,
     ) -> Result<User> {
+        // In every case: no session outlasts a change of the account.
         sign_out(tx, name).await?;
         if let Some(user) = changed {
             return Ok(user);
@@ -169,7 +173,7 @@ pub(crate) async fn insert(
     tx.optional(INSERT, values).await?.ok_or_else(taken)
 }
 
-/// A user that must be there.
+/// Returns a user, or an error if there is none.
 pub(crate) async fn there(tx: &mut Transaction, name: &str) -> Result<User> {
     let found = tx.optional(GET, args![name: name]).await?;
     found.ok_or_else(|| StoreError::missing("user", name))

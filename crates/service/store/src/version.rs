@@ -1,4 +1,4 @@
-//! Versions as rows, and whether there is one.
+//! Versions as rows, and checks of their existence.
 
 use crate::arguments::args;
 use crate::checks;
@@ -15,25 +15,25 @@ statements! {
 }
 
 record! {
-    /// A version, but for its document.
+    /// A version without its document.
     pub struct VersionHead {
         /// Its id.
         pub id: String,
         /// The model (the ship's name).
         pub model: String,
-        /// 1, 2, 3, ... within the model.
+        /// Number: 1, 2, 3, ... within the model.
         pub number: i64,
-        /// The id of the version it was made from.
+        /// Id of the version from which it was made.
         pub parent: Option<String>,
         /// The law of motion.
         pub law: String,
-        /// How it was made: `published-source`, `published`, `weak`, `trajectory`, ...
+        /// Method: `published-source`, `published`, `weak`, `trajectory`, ...
         pub method: String,
         /// The SHA-256 of the document.
         pub sha256: String,
         /// When it was made.
         pub created_us: i64,
-        /// Who asked for it; none where it was made before that was kept.
+        /// Author; none for versions from before authors were recorded.
         pub author: Option<String>,
     }
 }
@@ -42,31 +42,31 @@ record! {
     /// A version.
     pub struct Version {
         flatten head: VersionHead,
-        /// The whole record of the version as canonical JSON, byte for byte.
+        /// Version document as canonical JSON, byte for byte.
         pub document: String,
     }
 }
 
-/// What a version is made of. The document holds neither the number nor the time: the same recipe
-/// gives the same bytes.
+/// A version to be stored. The document holds neither number nor time: the same recipe gives the
+/// same bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewVersion {
     /// The model (the ship's name).
     pub model: String,
-    /// The id of the version it is made from.
+    /// Id of the version from which it is made.
     pub parent: Option<String>,
     /// The law of motion.
     pub law: String,
-    /// How it was made.
+    /// Method.
     pub method: String,
-    /// The whole record of the version as canonical JSON.
+    /// Version document as canonical JSON.
     pub document: String,
-    /// The key of the object with the weights of its learned branch, where it has one.
+    /// Key of the object with the weights of its learned correction, if it has one.
     pub weights: Option<String>,
 }
 
 impl NewVersion {
-    /// Whether every field may be kept.
+    /// Checks that all fields can be stored.
     pub(crate) fn check(&self) -> Result<()> {
         checks::name("model", &self.model)?;
         checks::name("law", &self.law)?;
@@ -76,14 +76,14 @@ impl NewVersion {
     }
 }
 
-/// Whether the transaction sees this version.
+/// Checks that the transaction sees a version of this number.
 pub(crate) async fn check_exists(tx: &mut Transaction, model: &str, number: i64) -> Result<()> {
     let version: Option<VersionHead> =
         tx.optional(HEAD, args![model: model, number: number]).await?;
     version.map(drop).ok_or_else(|| missing(model, number))
 }
 
-/// Whether the transaction sees the version that `field` names.
+/// Checks that the transaction sees the version of an id; an error names `field`.
 pub(crate) async fn check_id(tx: &mut Transaction, field: &'static str, id: &str) -> Result<()> {
     let version: Option<VersionHead> = tx.optional(HEAD_BY_ID, args![id: id]).await?;
     version
@@ -91,7 +91,7 @@ pub(crate) async fn check_id(tx: &mut Transaction, field: &'static str, id: &str
         .ok_or_else(|| StoreError::invalid(field, format!("there is no version `{id}`")))
 }
 
-/// The error of a version that is not there.
+/// Returns the error of a missing version.
 pub(crate) fn missing(model: &str, number: i64) -> StoreError {
     StoreError::missing("version", format!("{model}/{number}"))
 }

@@ -1,4 +1,4 @@
-//! Versions of models: insert-only, numbered without gaps.
+//! Versions of models: insert-only, and numbered without gaps.
 
 use serde_json::json;
 
@@ -16,8 +16,8 @@ use crate::store::Store;
 use crate::version::{NewVersion, Version, VersionHead, check_id, missing};
 
 statements! {
-    // The row of the model stays locked until the commit, and an undone transaction gives its
-    // number back: no gaps.
+    // The row of the model stays locked until the commit, and a rolled back transaction returns its
+    // number: the numbers have no gaps.
     NUMBER = same("INSERT INTO models (name, next_number) VALUES ($1, 2) \
         ON CONFLICT (name) DO UPDATE SET next_number = models.next_number + 1 RETURNING \
         next_number - 1 AS number");
@@ -30,11 +30,13 @@ statements! {
         versions WHERE model = $1 AND number = $2");
     BY_ID = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
         author FROM versions WHERE id = $1");
+    // By the index of model and number, read backwards.
     LATEST = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
         author FROM versions WHERE model = $1 ORDER BY number DESC LIMIT 1");
     LIST = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM \
         versions WHERE model = $1 AND number < COALESCE($2, 9223372036854775807) ORDER BY number \
         DESC LIMIT $3");
+    // Ids sort by time: the order of ids is that of creation.
     ALL = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
         author FROM versions WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us, author \
@@ -44,7 +46,7 @@ statements! {
 }
 
 record! {
-    /// The object with the weights of a learned branch.
+    /// Key of an object with the weights of a learned correction.
     pub struct WeightsKey {
         /// Its key.
         pub weights_key: String,
@@ -52,26 +54,26 @@ record! {
 }
 
 record! {
-    /// A number just taken.
+    /// Number of a new version.
     pub struct NextNumber {
         /// The number.
         pub number: i64,
     }
 }
 
-/// The versions of a store.
+/// Repository of versions.
 #[derive(Debug, Clone, Copy)]
 pub struct Versions<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Versions of models, insert-only.
+    /// Returns the repository of versions (insert-only).
     pub fn versions(&self) -> Versions<'_> {
         Versions(self)
     }
 }
 
 impl Versions<'_> {
-    /// Makes the next version of a model and moves aliases to it, all or nothing.
+    /// Creates the next version of a model and moves aliases to it, all or nothing.
     pub async fn create(&self, new: &NewVersion, moves: &[AliasMove]) -> Result<VersionHead> {
         let mut tx = self.0.begin().await?;
         let version = insert(self.0, &mut tx, new, moves).await?;
@@ -79,59 +81,60 @@ impl Versions<'_> {
         Ok(version)
     }
 
-    /// A version without its document.
+    /// Returns a version without its document.
     pub async fn head(&self, model: &str, number: i64) -> Result<VersionHead> {
         let found = self.0.database().optional(HEAD, args![model: model, number: number]).await?;
         found.ok_or_else(|| missing(model, number))
     }
 
-    /// A version by its number.
+    /// Returns a version by its number.
     pub async fn get(&self, model: &str, number: i64) -> Result<Version> {
         let version = self.0.database().optional(GET, args![model: model, number: number]).await?;
         version.ok_or_else(|| missing(model, number))
     }
 
-    /// The version that an alias of a ship stands for now; none where ship or alias are not there.
+    /// Returns the version that an alias of a ship points to now; none if the ship or the alias
+    /// does not exist.
     pub async fn current(&self, ship: &str, alias: &str) -> Result<Option<CurrentVersion>> {
         self.0.current(ship, alias).await
     }
 
-    /// A version by its id.
+    /// Returns a version by its id.
     pub async fn by_id(&self, id: &str) -> Result<Version> {
         let version = self.0.database().optional(BY_ID, args![id: id]).await?;
         version.ok_or_else(|| StoreError::missing("version", id))
     }
 
-    /// The version of a model with the highest number.
+    /// Returns the version of a model with the highest number.
     pub async fn latest(&self, model: &str) -> Result<Version> {
         let version = self.0.database().optional(LATEST, args![model: model]).await?;
         version.ok_or_else(|| StoreError::missing("model", model))
     }
 
-    /// The versions of a model, the latest first.
+    /// Lists the versions of a model, the latest first.
     pub async fn list(&self, model: &str, page: &Page<i64>) -> Result<List<VersionHead, i64>> {
         let values = args![model: model, after: page.after, limit: page.fetch()?];
         let versions = self.0.database().all(LIST, values).await?;
         Ok(page.of(versions, |version: &VersionHead| version.number))
     }
 
-    /// Every version of every model with its document, in the order in which they were made.
+    /// Lists all versions of all models with their documents, in the order of their creation.
     pub async fn all(&self, page: &Page) -> Result<List<Version>> {
         let versions =
             self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(versions, |version: &Version| version.head.id.clone()))
     }
 
-    /// The objects with the weights of learned branches, by key.
+    /// Lists the keys of objects with the weights of learned corrections.
     pub async fn weights(&self, page: &Page) -> Result<List<WeightsKey>> {
         let values = args![after: &page.after, limit: page.fetch()?];
         let keys = self.0.database().all(WEIGHTS, values).await?;
         Ok(page.of(keys, |key: &WeightsKey| key.weights_key.clone()))
     }
 
-    /// Makes the next version of a model, whose learned branch has its weights in `objects`, and
-    /// moves aliases to it, all or nothing. Where the weights are no longer there, because
-    /// [`Store::remove_unreferred`] was faster, nothing is made.
+    /// Creates the next version of a model, whose learned correction has its weights in `objects`,
+    /// and moves aliases to it, all or nothing. If the weights are no longer there, because
+    /// [`Store::remove_unreferred`] has removed them meanwhile, nothing is created.
     pub async fn create_with_weights(
         &self,
         objects: &Objects,
@@ -145,7 +148,7 @@ impl Versions<'_> {
         Ok(version)
     }
 
-    /// The versions, of whatever model, that were made from the version `id`, the oldest first.
+    /// Lists the versions of any model that were made from the version `id`, the oldest first.
     pub async fn children(&self, id: &str, page: &Page) -> Result<List<VersionHead>> {
         let values = args![parent: id, after: &page.after, limit: page.fetch()?];
         let versions = self.0.database().all(CHILDREN, values).await?;
@@ -153,7 +156,7 @@ impl Versions<'_> {
     }
 }
 
-/// Makes a version and moves aliases to it within a transaction.
+/// Creates a version and moves aliases to it within a transaction.
 pub(crate) async fn insert(
     store: &Store,
     tx: &mut Transaction,
@@ -164,6 +167,7 @@ pub(crate) async fn insert(
     if let Some(parent) = &new.parent {
         check_id(tx, "parent", parent).await?;
     }
+    // From here on the row of the model is locked until the commit.
     let NextNumber { number } = tx.one(NUMBER, args![model: &new.model]).await?;
     let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
     let author = Actor::current().name;

@@ -1,8 +1,8 @@
-//! Webhooks: places on the web that are told of what happens, and what each is told.
+//! Webhooks: URLs that are notified of events, and the deliveries to them.
 //!
-//! A delivery is written by the transaction that it tells of, so that none is lost of what was
-//! acknowledged, and none tells of what was undone. Whoever takes one has it for a time; if the
-//! taker is gone by then, it is due again: it arrives at least once.
+//! A delivery is written by the transaction of the event, so that no acknowledged event is lost,
+//! and no event is reported that was rolled back. A worker takes a delivery for a limited time; if
+//! the worker dies meanwhile, the delivery is due again: each arrives at least once.
 
 use serde_json::{Value, json};
 
@@ -19,9 +19,9 @@ use crate::store::Store;
 pub const CHAMPION_MOVED: &str = "champion.moved";
 /// A diagnosis found that a version lacks something.
 pub const DIAGNOSIS_FAILED: &str = "diagnosis.failed";
-/// A champion leaves much more of new trials than of those that it was fitted on.
+/// The residual of a champion on new trials is much larger than on the trials of its fit.
 pub const DRIFT: &str = "drift";
-/// What a webhook may be told.
+/// All events of webhooks.
 pub const EVENTS: [&str; 3] = [CHAMPION_MOVED, DIAGNOSIS_FAILED, DRIFT];
 
 /// The columns of a webhook.
@@ -55,118 +55,125 @@ statements! {
     SHIP = same("SELECT name AS word FROM ships WHERE name = $1");
     LISTEN = same("INSERT INTO webhook_events (event, webhook) VALUES ($1, $2)");
     EVENTS_OF = same("SELECT event AS word FROM webhook_events WHERE webhook = $1 ORDER BY event");
+    // For events other than drift the caller passes the largest number, above every threshold.
     LISTENING = same("SELECT w.id AS word FROM webhook_events e JOIN webhooks w ON w.id = \
         e.webhook WHERE e.event = $1 AND w.ended_us IS NULL AND (w.ship IS NULL OR w.ship = $2) \
         AND w.drift_above < $3 ORDER BY w.id");
     PUT = same("INSERT INTO deliveries (id, webhook, event, body, created_us, attempts, due_us) \
         VALUES ($1, $2, $3, $4, $5, 0, $5)");
+    // On PostgreSQL, a row that another worker has locked is skipped instead of waited for.
     DUE = pair(
         delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1"),
         delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1 FOR UPDATE \
             SKIP LOCKED"),
     );
-    // Whether it is worth to begin to write.
+    // A read without a transaction, so that polling does not take the write lock.
     DUE_NOW = same(delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1"));
+    // The new due time is the end of the lease: without a result until then it is sent again.
     TAKE = same(delivery!("UPDATE deliveries SET attempts = attempts + 1, due_us = $2 WHERE id = \
         $1 RETURNING", ""));
     ARRIVED = same("UPDATE deliveries SET due_us = NULL, delivered_us = $2, answer = $3 WHERE id = \
         $1");
+    // A late failure does not undo an arrival that another worker has recorded.
     FAILED = same("UPDATE deliveries SET due_us = $2, answer = $3 WHERE id = $1 AND delivered_us \
         IS NULL");
+    // Without a due time a delivery is never sent.
     GIVE_UP = same("UPDATE deliveries SET due_us = NULL, answer = 'the webhook has ended' \
         WHERE webhook = $1 AND due_us IS NOT NULL");
     AGAIN = same(delivery!("UPDATE deliveries SET due_us = $3, attempts = 0 \
         WHERE id = $1 AND webhook = $2 AND delivered_us IS NULL RETURNING", ""));
+    // '~' sorts after every id: without a cursor the list starts at the latest one.
     DELIVERIES = same(delivery!("SELECT", "FROM deliveries WHERE webhook = $1 AND id < \
         COALESCE($2, '~') ORDER BY id DESC LIMIT $3"));
 }
 
 record! {
-    /// A place that is told of what happens.
+    /// A URL that is notified of events.
     pub struct Webhook {
         /// Its id.
         pub id: String,
-        /// What it is for.
+        /// Purpose, in words.
         pub title: String,
-        /// Where it is.
+        /// Target of the deliveries.
         pub url: String,
-        /// What deliveries are signed with.
+        /// Secret with which deliveries are signed.
         pub secret: String,
-        /// The ship of which it is told; none for all.
+        /// Ship whose events are reported; none for all.
         pub ship: Option<String>,
-        /// How many times as much a champion leaves of new trials as of those that it was fitted on
-        /// before it is told of drift.
+        /// Threshold of the drift event: ratio of the residual of the champion on new trials to
+        /// that on the trials of its fit.
         pub drift_above: f64,
         /// When it was made.
         pub created_us: i64,
-        /// When it was ended, if it was.
+        /// End, microseconds since 1970; none while it is active.
         pub ended_us: Option<i64>,
     }
 }
 
 record! {
-    /// What a webhook is told.
+    /// A notification of a webhook.
     pub struct Delivery {
         /// Its id.
         pub id: String,
         /// The webhook.
         pub webhook: String,
-        /// What happened, one of [`EVENTS`].
+        /// Event, one of [`EVENTS`].
         pub event: String,
-        /// What is sent, JSON.
+        /// Body of the request, JSON.
         pub body: String,
-        /// When it happened.
+        /// Time of the event, microseconds since 1970.
         pub created_us: i64,
-        /// How often it was sent.
+        /// Number of attempts.
         pub attempts: i64,
-        /// When it is sent next; none once it has arrived or was given up.
+        /// Time of the next attempt, microseconds since 1970; none once it has arrived or is given
+        /// up.
         pub due_us: Option<i64>,
-        /// When it arrived, if it did.
+        /// Time of arrival, microseconds since 1970.
         pub delivered_us: Option<i64>,
-        /// What came of the last attempt.
+        /// Result of the last attempt.
         pub answer: Option<String>,
     }
 }
 
 record! {
-    /// A word.
+    /// One column of text: an event, or the id of a webhook.
     pub struct WebhookWord {
-        /// The word.
+        /// The value.
         pub word: String,
     }
 }
 
-/// A webhook that is to be kept.
+/// A webhook to be created.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewWebhook {
-    /// What it is for.
+    /// Purpose, in words.
     pub title: String,
-    /// Where it is.
+    /// Target of the deliveries.
     pub url: String,
-    /// What deliveries are signed with.
+    /// Secret with which deliveries are signed.
     pub secret: String,
-    /// The ship of which it is told; none for all.
+    /// Ship whose events are reported; none for all.
     pub ship: Option<String>,
-    /// How many times as much a champion leaves of new trials as of those that it was fitted on
-    /// before it is told of drift.
+    /// Threshold of the drift event: ratio of the residual of the champion on new trials to that on
+    /// the trials of its fit.
     pub drift_above: f64,
-    /// What it is told, of [`EVENTS`], each once.
+    /// Events, of [`EVENTS`], each once.
     pub events: Vec<String>,
 }
 
-/// The webhooks of a store.
+/// Repository of webhooks.
 #[derive(Debug, Clone, Copy)]
 pub struct Webhooks<'a>(pub(crate) &'a Store);
 
 impl Store {
-    /// Places that are told of what happens.
+    /// Returns the repository of webhooks.
     pub fn webhooks(&self) -> Webhooks<'_> {
         Webhooks(self)
     }
 }
 
 impl Webhooks<'_> {
-    /// Keeps a webhook.
+    /// Creates a webhook.
     pub async fn create(&self, new: &NewWebhook) -> Result<Webhook> {
         let NewWebhook { title, url, secret, ship, drift_above, events } = new;
         checks::not_negative("drift_above", *drift_above)?;
@@ -191,26 +198,26 @@ impl Webhooks<'_> {
         Ok(webhook)
     }
 
-    /// A webhook.
+    /// Returns a webhook.
     pub async fn get(&self, id: &str) -> Result<Webhook> {
         let found = self.0.database().optional(GET, args![id: id]).await?;
         found.ok_or_else(|| StoreError::missing("webhook", id))
     }
 
-    /// What a webhook is told.
+    /// Returns the events of a webhook.
     pub async fn events(&self, id: &str) -> Result<Vec<String>> {
         let words: Vec<WebhookWord> = self.0.database().all(EVENTS_OF, args![webhook: id]).await?;
         Ok(words.into_iter().map(|event| event.word).collect())
     }
 
-    /// The webhooks by id, those that have ended too.
+    /// Lists the webhooks by id, including ended ones.
     pub async fn list(&self, page: &Page) -> Result<List<Webhook>> {
         let values = args![after: &page.after, limit: page.fetch()?];
         let webhooks = self.0.database().all(LIST, values).await?;
         Ok(page.of(webhooks, |webhook: &Webhook| webhook.id.clone()))
     }
 
-    /// Ends a webhook, for ever; what it was still to be told is given up.
+    /// Ends a webhook permanently; its pending deliveries are given up.
     pub async fn end(&self, id: &str) -> Result<Webhook> {
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
@@ -220,6 +227,7 @@ impl Webhooks<'_> {
                 None => StoreError::missing("webhook", id),
             });
         };
+        // In the same transaction: no pending delivery is taken after the end.
         tx.execute(GIVE_UP, args![webhook: id]).await?;
         let after = json!({ "ended": true });
         tx.note(now, "webhook.end", format!("webhook:{id}"), None, Some(after));
@@ -227,21 +235,24 @@ impl Webhooks<'_> {
         Ok(webhook)
     }
 
-    /// What a webhook was told and is to be told, the latest first.
+    /// Lists the deliveries to a webhook, the latest first.
     pub async fn deliveries(&self, id: &str, page: &Page) -> Result<List<Delivery>> {
         let values = args![webhook: id, after: &page.after, limit: page.fetch()?];
         let deliveries = self.0.database().all(DELIVERIES, values).await?;
         Ok(page.of(deliveries, |delivery: &Delivery| delivery.id.clone()))
     }
 
-    /// Takes the delivery that is due first, if one is, until a moment: it is due again then.
+    /// Takes the delivery that is due first, if there is one, until `until_us`: then it is due
+    /// again.
     pub async fn take(&self, until_us: i64) -> Result<Option<(Delivery, Webhook)>> {
         let due: Option<Delivery> =
             self.0.database().optional(DUE_NOW, args![due_us: self.0.now_us()]).await?;
+        // The common case of polling: nothing is due, and no transaction is needed.
         if due.is_none() {
             return Ok(None);
         }
         let mut tx = self.0.begin().await?;
+        // Read again under the lock; on PostgreSQL, rows that other workers hold are skipped.
         let due: Option<Delivery> = tx.optional(DUE, args![due_us: self.0.now_us()]).await?;
         let Some(due) = due else { return Ok(None) };
         let taken: Delivery = tx.one(TAKE, args![id: &due.id, due_us: until_us]).await?;
@@ -250,7 +261,7 @@ impl Webhooks<'_> {
         Ok(Some((taken, webhook)))
     }
 
-    /// Notes that a delivery has arrived.
+    /// Records that a delivery has arrived.
     pub async fn arrived(&self, id: &str, answer: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         let values = args![id: id, delivered_us: self.0.now_us(), answer: answer];
@@ -258,14 +269,14 @@ impl Webhooks<'_> {
         tx.commit().await
     }
 
-    /// Notes that a delivery has not arrived, and when it is sent again, if it is.
+    /// Records a failed attempt, and the time of the next one, if there is one.
     pub async fn failed(&self, id: &str, due_us: Option<i64>, answer: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(FAILED, args![id: id, due_us: due_us, answer: answer]).await?;
         tx.commit().await
     }
 
-    /// Sends what has not arrived once more, from the beginning of its attempts.
+    /// Queues a delivery that has not arrived again, with its attempts counted from zero.
     pub async fn again(&self, webhook: &str, delivery: &str) -> Result<Delivery> {
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
@@ -294,7 +305,7 @@ fn check_events(events: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Tells all who listen of what a transaction does, once it is kept.
+/// Notifies all webhooks of an event, once the transaction is committed.
 pub(crate) async fn tell(
     store: &Store,
     tx: &mut Transaction,
@@ -305,7 +316,7 @@ pub(crate) async fn tell(
     tell_of(store, tx, (event, f64::MAX), ship, about).await
 }
 
-/// Tells those who listen, and ask for no more than a champion leaves of new trials.
+/// Notifies the webhooks whose threshold of drift is below `ratio`.
 pub(crate) async fn tell_drift(
     store: &Store,
     tx: &mut Transaction,
@@ -330,6 +341,7 @@ async fn tell_of(
     }
     let now = store.now_us();
     let body = json!({ "event": event, "ship": ship, "at_us": now, "about": about }).to_string();
+    // One body for all webhooks, checked once.
     checks::json("body", &body)?;
     for webhook in listening {
         let id = store.new_id();

@@ -1,5 +1,5 @@
-//! Long work: what workers do. A worker claims a job under a lease, and each claim raises the job's
-//! fence; whoever holds an older fence has lost the job and can no longer change it.
+//! Jobs from the side of the workers. A worker claims a job under a lease, and each claim raises
+//! the job's fencing number; a worker with an older number has lost the job and cannot change it.
 
 use std::time::Duration;
 
@@ -12,11 +12,13 @@ use crate::job::{Job, JobState, job};
 use crate::jobs::{Jobs, find};
 use crate::statements::{Statement, pair, same, statements};
 
-/// A job that has lost this many workers is taken for one that ends their processes, and is not
-/// begun again by itself.
+/// Number of lost workers from which a job counts as the cause of their death, and is not restarted
+/// by itself.
 pub const MAX_LOST_WORKERS: i64 = 2;
 
 statements! {
+    // Queued jobs, and running ones whose lease has expired; on PostgreSQL, rows that other workers
+    // have locked are skipped.
     NEXT = pair(
         job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR \
             lease_until_us < $1) ORDER BY id LIMIT 1"),
@@ -27,31 +29,33 @@ statements! {
         1, worker = $2, lease_until_us = $3, started_us = COALESCE(started_us, $4), lost_workers = \
         $5 WHERE id = $1 RETURNING", ""));
     COUNT_LOST = same("UPDATE jobs SET lost_workers = $2 WHERE id = $1");
-    // Whoever took the job over counted a worker as lost that was not.
+    // The claim that took over the job has counted a worker as lost that is alive.
     LIVES = same("UPDATE jobs SET lost_workers = lost_workers - 1 \
         WHERE id = $1 AND fence > $2 AND lost_workers > 0 AND state IN ('queued', 'running')");
+    // The fence must match: a worker that has lost the job changes nothing.
     HEARTBEAT = same(job!("UPDATE jobs SET progress = $3, message = $4, lease_until_us = $5 \
         WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
     END = same(job!("UPDATE jobs SET state = $3, result = $4, error = $5, finished_us = $6, \
         lease_until_us = NULL, progress = CASE WHEN CAST($4 AS TEXT) IS NULL THEN progress ELSE \
         1.0 END WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+    // The attempt was not completed and is not counted.
     RELEASE = same(job!("UPDATE jobs SET state = 'queued', attempt = attempt - 1, lease_until_us = \
         NULL, worker = NULL WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
 }
 
-/// What there is to do for a worker.
+/// Result of a worker's request for a job.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Claimed {
-    /// This job, which is the worker's now.
+    /// The job, which the worker holds now.
     Job(Box<Job>),
-    /// A job during which a process has ended: to be claimed by a process that does nothing else
-    /// meanwhile, so that no other job is taken for the cause if it happens again.
+    /// There is a job during which a process has died: it must be claimed by a process that does
+    /// nothing else meanwhile, so that no other job is blamed if that happens again.
     Alone,
-    /// Nothing.
+    /// There is no job.
     Nothing,
 }
 
-/// How a job ends.
+/// Outcome of a job.
 enum JobEnd<'a> {
     Succeeded { result: &'a str },
     Failed { error: &'a str },
@@ -59,10 +63,10 @@ enum JobEnd<'a> {
 }
 
 impl Jobs<'_> {
-    /// Takes the oldest job that waits, or whose worker has let its lease run out. One that has
-    /// lost [`MAX_LOST_WORKERS`] workers is set aside as failed; one that was to be cancelled when
-    /// its worker died is cancelled. `alone` says that the worker's process does nothing else until
-    /// the job ends.
+    /// Claims the oldest job that is queued, or whose lease has run out. A job that has lost
+    /// [`MAX_LOST_WORKERS`] workers ends as failed; one that was to be cancelled when its worker
+    /// died is cancelled. `alone` says that the worker's process does nothing else until the job
+    /// ends.
     pub async fn claim(&self, worker: &str, lease: Duration, alone: bool) -> Result<Claimed> {
         let mut tx = self.0.begin().await?;
         let now = self.0.now_us();
@@ -70,10 +74,12 @@ impl Jobs<'_> {
             let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else {
                 break Claimed::Nothing;
             };
+            // A running job is returned only with an expired lease: its worker counts as lost.
             let lost = job.lost_workers + i64::from(job.state == JobState::Running);
             if bury(&mut tx, &job, lost, now).await? {
                 continue;
             }
+            // The job may have killed its process: it runs only where no other job could be blamed.
             if lost > 0 && !alone {
                 break Claimed::Alone;
             }
@@ -85,15 +91,16 @@ impl Jobs<'_> {
         Ok(claimed)
     }
 
-    /// Tells that the worker which held a job under `fence` has lost it by coming late, not by its
-    /// end.
+    /// Reports that the worker which held a job under `fence` is alive: it lost the job by a late
+    /// heartbeat, not by its death.
     pub async fn lives(&self, id: &str, fence: i64) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(LIVES, args![id: id, fence: fence]).await?;
         tx.commit().await
     }
 
-    /// Tells how far a job is and prolongs its lease. Returns whether its worker is asked to stop.
+    /// Reports progress (0 to 1) and prolongs the lease. Returns true if the worker is asked to
+    /// stop.
     pub async fn heartbeat(
         &self,
         id: &str,
@@ -108,29 +115,28 @@ impl Jobs<'_> {
         self.held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
     }
 
-    /// Ends a job with what came of it, JSON. Where a version comes of it, see
+    /// Completes a job with a result, JSON. For a result with a version, see
     /// [`crate::Store::commit_refinement`].
     pub async fn complete(&self, id: &str, fence: i64, result: &str) -> Result<Job> {
         self.end(id, fence, JobEnd::Succeeded { result }).await
     }
 
-    /// Ends a job that failed.
+    /// Ends a job as failed.
     pub async fn fail(&self, id: &str, fence: i64, error: &str) -> Result<Job> {
         self.end(id, fence, JobEnd::Failed { error }).await
     }
 
-    /// Ends a job that was stopped on request.
+    /// Ends a job as cancelled.
     pub async fn cancelled(&self, id: &str, fence: i64) -> Result<Job> {
         self.end(id, fence, JobEnd::Cancelled).await
     }
 
-    /// Gives a job back to the queue, as a worker does that is told to leave; it does not count as
-    /// an attempt.
+    /// Returns a job to the queue, for a worker that is asked to stop; the attempt is not counted.
     pub async fn release(&self, id: &str, fence: i64) -> Result<Job> {
         self.held(RELEASE, id, fence, args![id: id, fence: fence]).await
     }
 
-    /// A change that only the holder of the job's fence may make.
+    /// Applies a change that only the holder of the job's fencing number may make.
     async fn held(
         &self,
         statement: Statement,
@@ -152,7 +158,7 @@ impl Jobs<'_> {
     }
 }
 
-/// Ends a job with its result within a transaction.
+/// Completes a job with its result within a transaction.
 pub(crate) async fn complete(
     tx: &mut Transaction,
     id: &str,
@@ -182,7 +188,7 @@ async fn end(
     held(tx, END, id, fence, values).await
 }
 
-/// Ends a job that must not be begun again, and tells whether it did.
+/// Ends a job that must not be restarted; returns true if it did.
 async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result<bool> {
     let worker = job.worker.as_deref().unwrap_or("?");
     let message = format!(
@@ -196,6 +202,7 @@ async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result
         JobState::Running if lost >= MAX_LOST_WORKERS => JobEnd::Failed { error: &message },
         _ => return Ok(false),
     };
+    // Before the end, so that the ended job shows the number of its lost workers.
     tx.execute(COUNT_LOST, args![id: &job.id, lost_workers: lost]).await?;
     end(tx, &job.id, job.fence, how, now_us).await.map(|_| true)
 }
@@ -210,6 +217,7 @@ async fn held(
     if let Some(job) = tx.optional(statement, values).await? {
         return Ok(job);
     }
+    // No row matched: the job does not exist, or another worker holds it under a newer fence.
     let job = find(tx, id).await?;
     let message =
         format!("is {} under fence {}; who holds fence {fence} has lost it", job.state, job.fence);

@@ -1,10 +1,10 @@
-//! Which of several forms an answer takes.
+//! Content negotiation by the header `Accept`.
 
 use axum::http::{HeaderMap, StatusCode, header};
 
 use crate::problem::{Problem, Result};
 
-/// The form that the caller likes best among those offered; the first where it does not say.
+/// Returns the offered media type that the caller prefers; the first one if the header is absent.
 pub fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static str> {
     let lines = headers.get_all(header::ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
     let accepted: Vec<(&str, f64)> = lines.flat_map(|line| line.split(',')).map(range).collect();
@@ -14,6 +14,7 @@ pub fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static 
     let mut best: Option<(&'static str, f64)> = None;
     for media in offered {
         let quality = quality(&accepted, media);
+        // Strictly greater: of equally preferred forms the first offered one is taken.
         if quality > 0.0 && best.is_none_or(|(_, most)| quality > most) {
             best = Some((media, quality));
         }
@@ -27,7 +28,7 @@ pub fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static 
     best.map(|(media, _)| media).ok_or_else(refusal)
 }
 
-/// A media range and how much it is liked.
+/// Parses a media range and its quality (default 1).
 fn range(text: &str) -> (&str, f64) {
     let mut parts = text.split(';').map(str::trim);
     let media = parts.next().unwrap_or_default();
@@ -36,7 +37,7 @@ fn range(text: &str) -> (&str, f64) {
     (media, quality)
 }
 
-/// The quality that the most specific range gives a media type.
+/// Returns the quality that the most specific matching range gives a media type; 0 if none matches.
 fn quality(accepted: &[(&str, f64)], media: &str) -> f64 {
     let family = format!("{}/*", media.split('/').next().unwrap_or_default());
     let of = |wanted: &str| {

@@ -1,4 +1,4 @@
-//! Whoever the present request is carried out for.
+//! The authenticated principal of the present request.
 
 use std::future::Future;
 use std::sync::Arc;
@@ -10,66 +10,68 @@ tokio::task_local! {
     static ACTING: Acting;
 }
 
-/// How somebody has shown who they are.
+/// Method of authentication.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
-    /// By being on this machine, on a server that asks nobody.
+    /// Access from this machine, on a server without authentication.
     Local,
-    /// By the server's one API key.
+    /// The server's API key.
     ServerKey,
-    /// By a service key.
+    /// A service key.
     Key,
-    /// By signing in; with the token that forms of this session send, and the session's hash.
+    /// A session of a signed-in user.
     Session {
-        /// What the session's forms send.
+        /// Token that the session's forms must send.
         form_token: String,
-        /// The hash of the session's secret.
+        /// Hash of the session's secret.
         sha256: String,
     },
 }
 
-/// Somebody with their rights.
+/// An authenticated user or key with its rights.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Principal {
-    /// As the audit names them.
+    /// Name, as in the audit.
     pub name: String,
-    /// What they may do.
+    /// Rights.
     pub rights: Rights,
-    /// How they have shown who they are.
+    /// Method of authentication.
     pub kind: Kind,
 }
 
-/// Somebody who asks, from somewhere.
+/// Principal and origin of a request.
 #[derive(Debug, Clone)]
 pub struct Acting {
-    /// Who.
+    /// Principal.
     pub principal: Arc<Principal>,
-    /// From where, as the audit has it.
+    /// Origin, as in the audit.
     pub origin: String,
 }
 
 impl Principal {
-    /// Somebody who may do everything.
+    /// Creates a principal with all rights.
     pub fn owner(name: &str, kind: Kind) -> Self {
         Self { name: name.to_owned(), rights: Rights::all(), kind }
     }
 }
 
 impl Acting {
-    /// Carries something out for this one: what the store keeps bears the name.
+    /// Runs a future in the name of this principal, which is also the author of changes in the
+    /// store.
     pub async fn scope<T>(self, work: impl Future<Output = T>) -> T {
         let actor = Actor::new(self.principal.name.clone(), self.origin.clone());
         ACTING.scope(self, actor.acting(work)).await
     }
 }
 
-/// Whoever the present task works for; nobody outside of a request.
+/// Returns the principal of the present task; none outside of a request.
 pub fn current() -> Option<Acting> {
     ACTING.try_with(Clone::clone).ok()
 }
 
-/// Work for a task of its own, that goes on in the same name.
+/// Wraps work for a spawned task, so that it continues in the name of the present principal.
 pub fn carried<T>(work: impl Future<Output = T>) -> impl Future<Output = T> {
+    // Read here, in the calling task: inside the spawned one it would be absent.
     let acting = current();
     async move {
         match acting {

@@ -1,29 +1,28 @@
-//! Champions as they were answered before: a version never changes, so that its answer does not
-//! either.
+//! Cache of answers with champions: a version never changes, and neither does its answer.
 
 use axum::http::HeaderValue;
 use bytes::Bytes;
 use quick_cache::Weighter;
 use quick_cache::sync::Cache;
 
-/// What the answers may take, bytes.
+/// Maximum size of the cache, bytes.
 const MOST: u64 = 16 << 20;
-/// About as many answers as that is.
+/// Estimated number of answers of that size.
 const COUNT: usize = 4096;
 
-/// What makes an answer: the version, the report on it, and the form.
+/// Key of an answer: the id of the version, that of the report on it, and the media type.
 pub type AnswerKey = (String, Option<String>, &'static str);
 
-/// An answer.
+/// A cached answer.
 #[derive(Debug, Clone)]
 pub struct Answer {
-    /// Its tag.
+    /// Entity tag.
     pub etag: HeaderValue,
-    /// Its bytes.
+    /// Body.
     pub body: Bytes,
 }
 
-/// Answers by what makes them, the least used of which go first.
+/// Cache of answers; the least used are removed first.
 #[derive(Debug)]
 pub struct Answers(Cache<AnswerKey, Answer, Size>);
 
@@ -32,6 +31,7 @@ struct Size;
 
 impl Weighter<AnswerKey, Answer> for Size {
     fn weight(&self, _: &AnswerKey, answer: &Answer) -> u64 {
+        // The body, and about 300 bytes for key, tag and the entry itself.
         answer.body.len() as u64 + 300
     }
 }
@@ -43,12 +43,12 @@ impl Default for Answers {
 }
 
 impl Answers {
-    /// An answer that was given before.
+    /// Returns a cached answer.
     pub fn get(&self, key: &AnswerKey) -> Option<Answer> {
         self.0.get(key)
     }
 
-    /// Keeps an answer for the next time.
+    /// Adds an answer to the cache.
     pub fn keep(&self, key: AnswerKey, answer: Answer) {
         self.0.insert(key, answer);
     }

@@ -1,4 +1,4 @@
-//! The server's API key, of which only the hash is kept, and the token of forms.
+//! The server's API key, of which only the hash is stored, and the token of forms.
 
 use sha2::{Digest as _, Sha256};
 use sistership_auth::{hex, same, sha256};
@@ -9,24 +9,25 @@ use uuid::Uuid;
 pub struct ApiKey([u8; 32]);
 
 impl ApiKey {
-    /// What is kept of a key.
+    /// Creates the stored form of a key.
     pub fn new(key: &str) -> Self {
         Self(sha256(key))
     }
 
-    /// Whether this is the key, in a time that does not tell how much of it is right.
+    /// Returns true if this is the key, in a time that does not depend on the position of a
+    /// difference.
     pub fn is(&self, presented: &str) -> bool {
         same(&self.0, &sha256(presented))
     }
 }
 
-/// What forms of pages send along, so that no other web site can send them: it cannot read a page
-/// of this server. With a key it follows from the key, so that every server with that key takes it;
-/// without one it is drawn at the start. Who is signed in has another, see `web::form`.
+/// Token that forms of pages send, so that no other web site can send them: it cannot read a page
+/// of this server. With an API key it is derived from the key, so that every server with that key
+/// accepts it; without one it is random. A signed-in user has another one, see `web::form`.
 pub struct FormToken(String);
 
 impl FormToken {
-    /// Of a server with this key, or without one.
+    /// Creates the token of a server with this key, or without one.
     pub fn of(key: Option<&ApiKey>) -> Self {
         let mut hash = Sha256::new_with_prefix("sistership form ");
         match key {
@@ -37,7 +38,7 @@ impl FormToken {
         Self(hex(&hash.finalize()))
     }
 
-    /// The token.
+    /// Returns the token.
     pub fn text(&self) -> &str {
         &self.0
     }

@@ -1,4 +1,4 @@
-//! `ETag`, `If-Match` and `If-None-Match`: nothing is changed by someone who has not seen its
+//! `ETag`, `If-Match` and `If-None-Match`: a change is refused if the caller has not seen the
 //! present state.
 
 use axum::extract::FromRequestParts;
@@ -22,7 +22,7 @@ enum Tags {
     These(Vec<String>),
 }
 
-/// The tag of a revision.
+/// Returns the entity tag of a revision.
 pub fn tag(revision: impl std::fmt::Display) -> String {
     format!("\"{revision}\"")
 }
@@ -41,13 +41,14 @@ impl Tags {
         let Some(value) = headers.get(name) else { return Ok(None) };
         let text = value.to_str().map_err(|_| malformed(name, "must be text".to_owned()))?;
         let tags: EntityTags = text.parse().map_err(|message| malformed(name, message))?;
+        // `*` stands for any existing representation.
         if tags.trim() == "*" {
             return Ok(Some(Self::Any));
         }
         Ok(Some(Self::These(tags.split(',').map(|tag| tag.trim().to_owned()).collect())))
     }
 
-    /// Whether the tags name this one. A weak tag is no ground to overwrite something.
+    /// Returns true if the tags include this one. A weak tag does not permit a change.
     fn name(&self, tag: &str) -> bool {
         matches!(self, Self::These(tags) if tags.iter().any(|known| known == tag))
             || *self == Self::Any
@@ -55,8 +56,11 @@ impl Tags {
 }
 
 impl Tags {
-    /// Whether the tags name this revision, with whatever was shown beside it.
+    /// Returns true if the tags include this revision, with or without the additional part of a
+    /// tag.
     fn name_revision(&self, revision: i64) -> bool {
+        // A tag may continue after the revision with a part for data shown with the item:
+        // `"3.xyz"`.
         let (alone, with_more) = (tag(revision), format!("\"{revision}."));
         let named = |known: &String| *known == alone || known.starts_with(&with_more);
         matches!(self, Self::These(tags) if tags.iter().any(named)) || *self == Self::Any
@@ -64,10 +68,10 @@ impl Tags {
 }
 
 impl Conditions {
-    /// The revision that a change must start from; `what` is at `current`.
+    /// Returns the revision on which a change must be based; `what` is at `current`.
     ///
     /// # Errors
-    /// None is named, or another one.
+    /// Returns an error if the request names no revision, or another one.
     pub fn revision(&self, what: &str, current: i64) -> Result<i64> {
         let Some(tags) = &self.if_match else {
             return Err(required(&format!("If-Match with the ETag of {what} as you last read it")));
@@ -75,19 +79,22 @@ impl Conditions {
         if tags.name_revision(current) { Ok(current) } else { Err(stale(what, Some(current))) }
     }
 
-    /// As [`Conditions::revision`], but a request without the header may change anything.
+    /// Returns the revision as [`Conditions::revision`] does, but a request without the header may
+    /// change any.
     ///
     /// # Errors
-    /// Another revision is named.
+    /// Returns an error if the request names another revision.
     pub fn optional_revision(&self, what: &str, current: i64) -> Result<Option<i64>> {
         self.if_match.as_ref().map(|_| self.revision(what, current)).transpose()
     }
 
-    /// What a change that may also create expects.
+    /// Returns the expectation of a change that may also create the item.
     ///
     /// # Errors
-    /// No condition is there, or one that does not hold.
+    /// Returns an error if there is no condition, or one that does not hold.
     pub fn expect(&self, what: &str, current: Option<i64>) -> Result<Expect> {
+        // `If-Match` moves an existing item, `If-None-Match: *` creates one; one of both is
+        // required.
         match (&self.if_match, &self.if_none_match, current) {
             (Some(_), _, Some(current)) => self.revision(what, current).map(Expect::Revision),
             (Some(_), _, None) => Err(stale(what, None)),
@@ -102,7 +109,7 @@ impl Conditions {
         }
     }
 
-    /// Whether the caller has this representation already.
+    /// Returns true if the caller already has this representation.
     pub fn has(&self, tag: &str) -> bool {
         self.if_none_match.as_ref().is_some_and(|tags| tags.name(tag))
     }

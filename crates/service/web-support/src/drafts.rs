@@ -1,4 +1,4 @@
-//! Uploads whose files have arrived and that a person looks over before they are kept.
+//! Drafts: uploads whose files have arrived and that a person reviews before they are stored.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,64 +8,65 @@ use sistership_pages::upload::Proposed;
 use tempfile::TempDir;
 use uuid::Uuid;
 
-/// The most that wait at once; the oldest gives way.
+/// Maximum number of drafts; the oldest is removed for a new one.
 const MOST: usize = 16;
-/// How long one may wait.
+/// Maximum age of a draft.
 const LONGEST: Duration = Duration::from_secs(3600);
 
-/// The uploads of this process that wait for a person.
+/// The drafts of this process, by id.
 #[derive(Debug, Default)]
 pub struct Drafts(Mutex<BTreeMap<String, (Instant, Arc<Draft>)>>);
 
-/// One of them.
+/// An upload under review.
 #[derive(Debug)]
 pub struct Draft {
-    /// Where its files lie under their names; they go with it.
+    /// Folder with its files under their names; it is removed with the draft.
     pub folder: TempDir,
-    /// Name and hash of each.
+    /// Name and hash of each file.
     pub files: Vec<(String, String)>,
-    /// How they are read.
+    /// Proposed manifest: how the files are read.
     pub proposed: Mutex<Proposed>,
 }
 
 impl Draft {
-    /// How its files are read now.
+    /// Returns the present proposal.
     pub fn proposed(&self) -> Proposed {
         self.proposed.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Reads them in another way from now on.
+    /// Replaces the proposal.
     pub fn set(&self, proposed: Proposed) {
         *self.proposed.lock().unwrap_or_else(PoisonError::into_inner) = proposed;
     }
 }
 
 impl Drafts {
-    /// An id for the next.
+    /// Creates an id for a new draft.
     pub fn id() -> String {
         Uuid::now_v7().to_string()
     }
 
-    /// Lets one wait.
+    /// Adds a draft, and removes expired ones.
     pub fn put(&self, id: String, draft: Draft) {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         all.retain(|_, (since, _)| since.elapsed() < LONGEST);
         while all.len() >= MOST {
-            // Ids rise with time.
+            // Ids increase with time, so the first one is the oldest.
             all.pop_first();
         }
         all.insert(id, (Instant::now(), Arc::new(draft)));
     }
 
-    /// One of a ship, as long as it waits.
+    /// Returns a draft of a ship, if it has not expired.
     pub fn get(&self, ship: &str, id: &str) -> Option<Arc<Draft>> {
         let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (since, draft) = all.get(id)?;
+        // The ship is part of the address: a draft of another ship is not shown.
         let waits = since.elapsed() < LONGEST && draft.proposed().ship == ship;
         waits.then(|| Arc::clone(draft))
     }
 
-    /// Takes one away.
+    /// Removes a draft.
     pub fn remove(&self, id: &str) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(id);
     }

@@ -1,4 +1,4 @@
-//! To whom a request is addressed, and what a browser says of where it comes from.
+//! Target of a request (`Host`), and its origin as stated by a browser.
 
 use std::net::IpAddr;
 
@@ -10,8 +10,8 @@ use crate::problem::{Problem, Result};
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
-/// The authority that a request is addressed to: exactly one (RFC 9112, 3.2). HTTP/1.0 knows no
-/// `Host`, and no browser speaks it: there it may be missing.
+/// Returns the authority to which a request is addressed: exactly one (RFC 9112, 3.2). HTTP/1.0 has
+/// no `Host`, and no browser uses it: there it may be missing.
 pub fn addressed(request: &Request) -> Result<Option<Authority>> {
     let host = single(request.headers(), &header::HOST)?;
     let host = host.map(|host| host.parse::<Authority>().map_err(|_| wrong_host())).transpose()?;
@@ -23,6 +23,7 @@ pub fn addressed(request: &Request) -> Result<Option<Authority>> {
             "the header `Host` is missing; send one, with the name or address and the port",
         ));
     }
+    // A target with an authority (a proxy's form) must agree with `Host`.
     match (request.uri().authority(), host) {
         (Some(target), Some(host)) if *target != host => Err(Problem::bad_request(
             "the header `Host` names another server than the request's target; send the same in \
@@ -39,7 +40,7 @@ fn wrong_host() -> Problem {
     )
 }
 
-/// A header that may be there once.
+/// Returns the value of a header that may occur once.
 pub fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>> {
     let mut values = headers.get_all(name).iter();
     let first = values.next();
@@ -58,9 +59,9 @@ pub fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'
     first.map(text).transpose()
 }
 
-/// Without a key, web pages of others that a browser on this machine shows must not reach the
-/// server: neither by a name that they let point here (`Host`), nor by sending forms (`Origin`,
-/// `Sec-Fetch-Site`).
+/// Checks that a request comes from this machine, on a server without an API key. Web pages of
+/// other sites in a browser on this machine must not reach the server, neither by a host name that
+/// points here (`Host`) nor by forms (`Origin`, `Sec-Fetch-Site`).
 pub fn from_this_machine(
     method: &Method,
     headers: &HeaderMap,
@@ -80,7 +81,7 @@ pub fn from_this_machine(
             "without an API key this server takes no changes from the web site `{origin}`"
         )));
     }
-    // `none` is what a person has typed or chosen.
+    // `none` is a request by a person, typed or from a bookmark.
     match site.filter(|site| !["same-origin", "none"].contains(site)) {
         Some(site) => Err(refused(format!(
             "without an API key this server takes no changes from other web sites (Sec-Fetch-Site: \
@@ -90,8 +91,8 @@ pub fn from_this_machine(
     }
 }
 
-/// Whether a browser says that a page of this very server asks. Its scheme may be another where a
-/// proxy stands before the server.
+/// Returns true if a browser states that the request comes from a page of this server. The scheme
+/// may differ where a proxy is in front of the server.
 pub fn is_same_origin(headers: &HeaderMap, host: Option<&Authority>) -> Result<bool> {
     let (origin, site) = (single(headers, &header::ORIGIN)?, single(headers, &SEC_FETCH_SITE)?);
     let authority = origin.and_then(|origin| origin.split_once("://")).map(|(_, own)| own);
@@ -104,11 +105,12 @@ fn refused(detail: String) -> Problem {
     Problem::new(StatusCode::FORBIDDEN, detail)
 }
 
-/// Whether an origin is this server: scheme, name and port (RFC 6454). The server itself speaks
-/// http; one that is reached by https is behind a proxy, and has a key.
+/// Returns true if an origin is this server: scheme, name and port (RFC 6454). The server itself
+/// uses http; one that is reached by https is behind a proxy, and has a key.
 fn is_own(origin: &str, host: Option<&Authority>) -> bool {
     let Some((scheme, authority)) = origin.split_once("://") else { return false };
     let (Ok(authority), Some(host)) = (authority.parse::<Authority>(), host) else { return false };
+    // The default port of http; https is not served here.
     let port = |authority: &Authority| authority.port_u16().unwrap_or(80);
     scheme.eq_ignore_ascii_case("http")
         && authority.host().eq_ignore_ascii_case(host.host())

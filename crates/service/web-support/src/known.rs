@@ -1,6 +1,6 @@
-//! Credentials as they were looked up within the last second, so that a program which asks often
-//! costs the database one look a second and not three a request. A right that is taken is gone at
-//! once in this process, and a second later in the others.
+//! Cache of credentials for one second, so that a program with many requests costs the database one
+//! lookup a second instead of three for each request. A revoked right is gone at once in this
+//! process, and a second later in others.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -10,12 +10,12 @@ use sistership_auth::sha256;
 
 use crate::acting::Principal;
 
-/// How long something is known.
+/// Maximum age of an entry.
 const FRESH: Duration = Duration::from_secs(1);
-/// Credentials that are known.
+/// Maximum number of entries.
 const MANY: usize = 4096;
 
-/// Credentials that were found right of late, by their hash.
+/// Recently verified credentials, by their hash.
 pub struct Known(Cache<[u8; 32], (Instant, Arc<Principal>)>);
 
 impl Default for Known {
@@ -25,20 +25,21 @@ impl Default for Known {
 }
 
 impl Known {
-    /// Whoever a credential was found to stand for within the last second.
+    /// Returns the principal of a credential that was verified within the last second.
     pub fn get(&self, credential: &str) -> Option<Arc<Principal>> {
+        // The hash is the key, so that the cache holds no credential.
         let (at, principal) = self.0.get(&sha256(credential))?;
         (at.elapsed() < FRESH).then_some(principal)
     }
 
-    /// Remembers whom a credential stands for.
+    /// Adds the principal of a credential.
     pub fn put(&self, credential: &str, principal: Principal) -> Arc<Principal> {
         let principal = Arc::new(principal);
         self.0.insert(sha256(credential), (Instant::now(), Arc::clone(&principal)));
         principal
     }
 
-    /// Forgets all: somebody's rights have changed.
+    /// Removes all entries, after a change of rights.
     pub fn forget(&self) {
         self.0.clear();
     }

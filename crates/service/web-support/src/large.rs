@@ -1,5 +1,5 @@
-//! Answers that are large in memory: they take their share until their last byte is on its way,
-//! since nobody may read it.
+//! Large answers: they hold their share of the memory budget until their last byte is sent, since a
+//! client may read slowly or not at all.
 
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
@@ -12,19 +12,20 @@ use hyper::body::{Frame, SizeHint};
 use crate::problem::Problem;
 use sistership_jobs::budget::{self, Share};
 
-/// Answers up to this size are not counted, bytes; larger ones are handed out in pieces of it, so
-/// that what has been handed out and is not yet on its way is no more.
+/// Maximum size of an answer that is not counted, bytes; larger ones are sent in pieces of it, so
+/// that at most one piece is outside of the count.
 const PIECE: usize = 64 << 10;
 
-/// A body with the share that it takes.
+/// A body with its share of the memory budget.
 struct Large {
     body: Body,
-    /// What is left of a frame.
+    /// Rest of a frame that is not sent yet.
     rest: Bytes,
     _share: Option<Share>,
 }
 
-/// Takes a share for an answer that is large; refuses the request where there is none.
+/// Takes a share of the memory budget for a large answer; replaces the answer by a refusal if there
+/// is none.
 pub async fn counted(response: Response) -> Response {
     let size = response.body().size_hint().exact().unwrap_or_default();
     if size <= PIECE as u64 {
@@ -34,6 +35,7 @@ pub async fn counted(response: Response) -> Response {
         Ok(share) => {
             response.map(|body| Body::new(Large { body, rest: Bytes::new(), _share: share }))
         }
+        // The answer is dropped here: its memory is free again before the refusal is sent.
         Err(shortage) => Problem::from(shortage).into_response(),
     }
 }
@@ -47,6 +49,7 @@ impl HttpBody for Large {
         context: &mut Context<'_>,
     ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
         if self.rest.is_empty() {
+            // Data frames are cut into pieces below; trailers pass unchanged.
             match ready!(Pin::new(&mut self.body).poll_frame(context))
                 .map(|frame| frame.map(Frame::into_data))
             {

@@ -1,6 +1,5 @@
-//! What every endpoint needs of HTTP: the one form of errors, bodies, parameters, conditions,
-//! negotiation, lists and answers, whoever a request is carried out for, and what is counted of
-//! requests. It knows no route.
+//! HTTP support for all endpoints: the common form of errors, bodies, parameters, conditions,
+//! negotiation, lists and answers, the principal of a request, and metrics. It knows no route.
 
 pub mod accept;
 pub mod acting;

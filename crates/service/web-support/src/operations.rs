@@ -1,4 +1,4 @@
-//! What every operation of the OpenAPI document has: a name, the problems that it may answer with,
+//! Common parts of all operations of the OpenAPI document: the operation id, the possible problems,
 //! and a description of each answer.
 
 use axum::http::StatusCode;
@@ -10,7 +10,7 @@ use utoipa::openapi::{
 use crate::problem::{MEDIA, Problem};
 use crate::query::parameters;
 
-/// Adds these to every operation.
+/// Adds the common parts to every operation.
 pub fn complete(document: &mut OpenApi) {
     for (path, item) in &mut document.paths.paths {
         for (method, operation) in operations(item) {
@@ -51,7 +51,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut O
     all.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
 }
 
-/// A name for programs that are made from the document: `get_ships_ship_model`.
+/// Returns the operation id, from which generated clients take names: `get_ships_ship_model`.
 fn id(method: &str, path: &str) -> String {
     let words = path
         .split('/')
@@ -60,7 +60,7 @@ fn id(method: &str, path: &str) -> String {
     std::iter::once(method).chain(words).collect::<Vec<_>>().join("_")
 }
 
-/// Whatever goes wrong is a problem; the statuses follow from what the operation reads.
+/// Adds the possible problems; their statuses follow from the inputs of the operation.
 fn add_problems(method: &str, path: &str, operation: &mut Operation) {
     let has = |place: ParameterIn, name: &str| {
         let all = parameters(operation);
@@ -74,6 +74,9 @@ fn add_problems(method: &str, path: &str, operation: &mut Operation) {
     let (body, change, key) =
         (operation.request_body.is_some(), method != "get", path.starts_with("/v1"));
     let if_match = has(ParameterIn::Header, "If-Match");
+    // Refusals of access and of reading apply below `/v1` only; 404 needs a path parameter, 406
+    // several forms of the answer, 409 and 507 a change, 412 and 428 `If-Match`, 408, 413 and 415 a
+    // body.
     let statuses = PROBLEMS.into_iter().filter(|status| match status {
         400 | 401 | 403 | 429 | 504 => key,
         404 => has(ParameterIn::Path, ""),
@@ -91,11 +94,12 @@ fn add_problems(method: &str, path: &str, operation: &mut Operation) {
             .entry(status.to_string())
             .or_insert_with(|| RefOr::Ref(Ref::from_response_name(problem_name(status))));
     }
+    // Any other status is described as an internal problem.
     responses.insert("default".to_owned(), RefOr::Ref(Ref::from_response_name(problem_name(500))));
     responses.iter_mut().for_each(|(status, response)| describe(status, response));
 }
 
-/// Every response must have a description; where none is written, the status has one.
+/// Fills a missing description of a response, which OpenAPI requires, from its status.
 fn describe(status: &str, response: &mut RefOr<Response>) {
     let RefOr::T(response) = response else { return };
     if response.description.is_empty() {

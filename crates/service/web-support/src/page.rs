@@ -1,4 +1,4 @@
-//! Lists, a page at a time.
+//! Pages of lists.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
@@ -10,12 +10,12 @@ use utoipa::{IntoParams, ToSchema};
 use crate::field::{Cursor, Limit};
 use crate::problem::{Fault, Problem, Result};
 
-/// The query of a list that is not filtered.
+/// Query of a list without filters.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct Paged {
-    /// The most items to return.
+    /// Maximum number of items to return.
     #[param(inline)]
     limit: Option<Limit>,
     /// `next` of the page before.
@@ -24,10 +24,10 @@ pub struct Paged {
 }
 
 impl Paged {
-    /// The page that it asks for.
+    /// Returns the requested page.
     ///
     /// # Errors
-    /// `after` is no place of the list.
+    /// Returns an error if `after` is not a cursor of this list.
     pub fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
         page(self.limit, self.after.as_ref())
     }
@@ -38,13 +38,14 @@ impl Paged {
 pub struct Listing<T> {
     /// The items, in the list's order.
     pub items: Vec<T>,
-    /// What to give as `after` for the next page, as it is; null on the last one. It stands for the
-    /// last item of this page: the next one goes on behind it, whatever is added meanwhile.
+    /// Value of `after` for the next page, to be passed unchanged; null on the last page. It refers
+    /// to the last item of this page: the next page starts after that item, even if items are added
+    /// meanwhile.
     pub next: Option<String>,
 }
 
 impl<T> Listing<T> {
-    /// The page with each row as the caller shows it.
+    /// Creates a page from rows, each converted by `view`.
     pub fn of<R, K: Serialize>(list: List<R, K>, view: impl FnMut(R) -> T) -> Self {
         Self {
             items: list.items.into_iter().map(view).collect(),
@@ -53,15 +54,15 @@ impl<T> Listing<T> {
     }
 }
 
-/// A key in a form that promises nothing but to be taken back.
+/// Encodes a key as an opaque cursor.
 pub fn cursor<K: Serialize>(key: &K) -> Option<String> {
     Some(BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(key).ok()?))
 }
 
-/// The page that a query asks for.
+/// Returns the page that a query requests.
 ///
 /// # Errors
-/// `after` is no place of the list.
+/// Returns an error if `after` is not a cursor of this list.
 pub fn page<K: DeserializeOwned>(limit: Option<Limit>, after: Option<&Cursor>) -> Result<Page<K>> {
     let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
     let wrong = || {

@@ -1,15 +1,15 @@
-//! Path and query, refused as problems.
+//! Extractors of path and query parameters whose rejections are problems.
 
 use axum::extract::{FromRequestParts, Path, Query};
 
 use crate::problem::Problem;
 
-/// The parameters of the path.
+/// Parameters of the path.
 #[derive(Debug, FromRequestParts)]
 #[from_request(via(Path), rejection(Problem))]
 pub struct Place<T>(pub T);
 
-/// The parameters of the query.
+/// Parameters of the query.
 #[derive(Debug, FromRequestParts)]
 #[from_request(via(Query), rejection(Problem))]
 pub struct Params<T>(pub T);

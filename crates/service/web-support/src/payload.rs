@@ -1,4 +1,4 @@
-//! A document as a body: JSON or YAML, whole and bounded.
+//! Bodies that are one document, JSON or YAML, of bounded size.
 
 use axum::RequestExt as _;
 use axum::extract::{FromRef, FromRequest, Request};
@@ -10,8 +10,8 @@ use serde::de::DeserializeOwned;
 use crate::problem::{Fault, Problem, Result};
 use sistership_jobs::budget;
 
-/// Memory that reading a document takes, by its bytes: the most that documents of one MiB made the
-/// server grow by, measured at its `VmHWM` with one document for each server. YAML: a list of one
+/// Memory for parsing a document, as a multiple of its size: the largest growth of the server for
+/// documents of one MiB, measured as `VmHWM` with one document for each server. YAML: a list of one
 /// letter each 93, of empty lists 83, a list one a line 67, a map 60, a law written out many times
 /// 26. JSON: a list of empty texts 17, of numbers 13.
 const YAML_FACTOR: u64 = 96;
@@ -24,12 +24,12 @@ pub struct Payload {
     bytes: Bytes,
 }
 
-/// The most that a document may have.
+/// Maximum sizes of documents.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentLimits {
-    /// Of JSON, bytes.
+    /// JSON, bytes.
     pub json_bytes: usize,
-    /// Of YAML, bytes.
+    /// YAML, bytes.
     pub yaml_bytes: usize,
 }
 
@@ -41,6 +41,7 @@ where
 
     async fn from_request(request: Request, state: &S) -> Result<Self> {
         let limits = DocumentLimits::from_ref(state);
+        // Compression is refused first: the limits below apply to the bytes that are sent.
         plain(request.headers())?;
         let media = media(request.headers());
         let mut payload = Self { media, bytes: Bytes::new() };
@@ -49,24 +50,27 @@ where
             false => (limits.yaml_bytes, YAML_FACTOR),
         };
         payload.bytes = whole(request, most).await?;
+        // Memory for parsing, on top of that of the bytes.
         budget::take(factor * payload.bytes.len() as u64).await?;
         Ok(payload)
     }
 }
 
-/// A body that is counted while it arrives: who stalls has taken no more than was sent.
+/// Reads a body, counted against the memory budget as it arrives: a stalled client holds no more
+/// than it has sent.
 async fn whole(request: Request, most: usize) -> Result<Bytes> {
     let mut stream = request.with_limited_body().into_body().into_data_stream();
     let mut bytes = BytesMut::new();
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(interrupted)?;
+        // Tested before the chunk is added, so that the buffer never exceeds the limit.
         if bytes.len() + chunk.len() > most {
             return Err(too_large(&format!(
                 "the document is larger than the {} KiB that are read",
                 most >> 10
             )));
         }
-        // The buffer grows by doubling.
+        // Twice the size, because the buffer grows by doubling.
         budget::take(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
     }
@@ -75,6 +79,7 @@ async fn whole(request: Request, most: usize) -> Result<Bytes> {
 
 fn interrupted(error: axum::Error) -> Problem {
     let text = error.to_string();
+    // The library has no type for this error, only its text.
     match text.contains("length limit") {
         true => too_large("the body is larger than this endpoint reads"),
         false => Problem::bad_request(format!("the body broke off: {text}")),
@@ -85,39 +90,41 @@ fn too_large(what: &str) -> Problem {
     Problem::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{what}; trials go to /v1/trials"))
 }
 
-/// A JSON document, whose faults are told by field.
+/// Parses a JSON document; faults name the field.
 ///
 /// # Errors
-/// Names the field and the line.
+/// Returns an error that names the field and the line.
 pub fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
     let mut reader = serde_json::Deserializer::from_slice(bytes);
     let value = serde_path_to_error::deserialize(&mut reader)
         .map_err(|error| refused(&error.path().to_string(), error.inner()))?;
+    // Text after the document is an error.
     reader.end().map_err(|error| refused(".", &error))?;
     Ok(value)
 }
 
-/// Takes the memory that a YAML document which has arrived takes to be read.
+/// Takes memory from the budget for parsing a YAML document of a size in bytes.
 ///
 /// # Errors
-/// There is none.
+/// Returns an error if there is not enough memory.
 pub async fn read_yaml(bytes: usize) -> Result<()> {
     Ok(budget::take(YAML_FACTOR * bytes as u64).await?)
 }
 
-/// The media type of a body, in lower case and without parameters; empty where there is none.
+/// Returns the media type of a body, in lower case and without parameters; empty if absent.
 pub fn media(headers: &HeaderMap) -> String {
     let value =
         headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
 }
 
-/// Refuses a compressed body: what it grows to is not bounded by what is sent.
+/// Refuses a compressed body: its size after decompression is not bounded by what is sent.
 ///
 /// # Errors
-/// It is one.
+/// Returns an error if the body is compressed.
 pub fn plain(headers: &HeaderMap) -> Result<()> {
     match headers.get(header::CONTENT_ENCODING) {
+        // `identity` means no encoding.
         Some(encoding) if encoding != "identity" => Err(Problem::new(
             StatusCode::UNSUPPORTED_MEDIA_TYPE,
             "send the body without Content-Encoding",
@@ -127,12 +134,12 @@ pub fn plain(headers: &HeaderMap) -> Result<()> {
 }
 
 impl Payload {
-    /// The bytes, which tell one request from another.
+    /// Returns the bytes, which also identify a repeated request.
     pub fn bytes(&self) -> &Bytes {
         &self.bytes
     }
 
-    /// Whether it says that it is JSON.
+    /// Returns true if the media type is JSON.
     pub fn is_json(&self) -> bool {
         self.media == "application/json" || self.media.ends_with("+json")
     }
@@ -143,10 +150,11 @@ impl Payload {
         known.contains(&self.media.as_str())
     }
 
-    /// The JSON document.
+    /// Parses the body as a JSON document.
     ///
     /// # Errors
-    /// It is of another type, or does not read; names the field and the line.
+    /// Returns an error if the body has another type or is not valid; it names the field and the
+    /// line.
     pub fn json<T: DeserializeOwned>(&self) -> Result<T> {
         if !self.is_json() {
             return Err(self.wrong("application/json"));
@@ -154,10 +162,10 @@ impl Payload {
         from_slice(&self.bytes)
     }
 
-    /// The YAML document as text.
+    /// Returns the body as the text of a YAML document.
     ///
     /// # Errors
-    /// It is of another type, or no UTF-8.
+    /// Returns an error if the body has another type or is not UTF-8.
     pub fn text(&self) -> Result<&str> {
         if !self.is_text() {
             return Err(self.wrong("application/yaml"));
@@ -166,7 +174,7 @@ impl Payload {
             .map_err(|error| Problem::bad_request(format!("the body is not UTF-8: {error}")))
     }
 
-    /// A refusal of the content type.
+    /// Returns the problem of an unsupported content type.
     pub fn wrong(&self, wanted: &str) -> Problem {
         let found =
             if self.media.is_empty() { "nothing".to_owned() } else { format!("`{}`", self.media) };
@@ -175,7 +183,7 @@ impl Payload {
     }
 }
 
-/// What the JSON library calls Rust's types, for people.
+/// Names of Rust types in messages of the JSON library, with replacements for users.
 const TYPES: [(&str, &str); 4] = [
     ("expected f64", "expected a number"),
     ("expected usize", "expected a whole number"),
@@ -183,7 +191,7 @@ const TYPES: [(&str, &str); 4] = [
     ("a sequence", "a list"),
 ];
 
-/// Broken JSON is 400, JSON that says the wrong thing 422.
+/// Returns the problem of a JSON document: 400 for a syntax error, 422 for invalid content.
 fn refused(path: &str, error: &serde_json::Error) -> Problem {
     let status =
         if error.is_data() { StatusCode::UNPROCESSABLE_ENTITY } else { StatusCode::BAD_REQUEST };

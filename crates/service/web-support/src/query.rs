@@ -1,5 +1,4 @@
-//! Parameters of the query that an operation does not have are refused: one that is misspelt would
-//! silently do nothing.
+//! Refusal of unknown query parameters: a misspelt one would silently have no effect.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,12 +12,12 @@ use utoipa::openapi::{OpenApi, RefOr};
 
 use crate::problem::{Fault, Problem, Result};
 
-/// The parameters of each operation, by path and method, as the document has them.
+/// Query parameters of each operation of the OpenAPI document, by path and method.
 #[derive(Debug)]
 pub struct KnownQuery(HashMap<(String, Method), Vec<String>>);
 
 impl KnownQuery {
-    /// Those of a document.
+    /// Collects the parameters of a document.
     pub fn of(document: &OpenApi) -> Self {
         let mut known = HashMap::new();
         for (path, item) in document.paths.paths.iter().filter(|(path, _)| path.starts_with("/v1"))
@@ -40,7 +39,9 @@ impl KnownQuery {
     }
 
     fn check(&self, path: &str, method: &Method, query: &str) -> Result<()> {
+        // HEAD is answered by the operation of GET and has its parameters.
         let method = if method == Method::HEAD { Method::GET } else { method.clone() };
+        // Paths that are not in the document, such as pages, are not checked.
         let (Some(known), false) = (self.0.get(&(path.to_owned(), method)), query.is_empty())
         else {
             return Ok(());
@@ -51,7 +52,7 @@ impl KnownQuery {
     }
 }
 
-/// The parameters of an operation.
+/// Returns the parameters of an operation.
 pub fn parameters(operation: &Operation) -> impl Iterator<Item = &Parameter> {
     operation.parameters.iter().flatten().filter_map(|known| match known {
         RefOr::T(parameter) => Some(parameter),
@@ -80,7 +81,7 @@ fn refused(name: &str, known: &[String]) -> Problem {
     Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
 }
 
-/// Lets a request through whose parameters are all known.
+/// Middleware that refuses requests with unknown query parameters.
 pub async fn refuse_unknown(
     State(known): State<Arc<KnownQuery>>,
     path: MatchedPath,

@@ -1,4 +1,4 @@
-//! The answer to a request that creates something; it can be kept and given again.
+//! Answers to requests that create something; they can be stored and replayed.
 
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -6,53 +6,53 @@ use serde::{Deserialize, Serialize};
 
 use crate::problem::{Problem, Result};
 
-/// An answer with its headers, in a form that is stored for replay.
+/// An answer with its headers, in the form that is stored for replay.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reply {
-    /// Its status.
+    /// HTTP status.
     pub status: u16,
-    /// Where what was made is.
+    /// URL of the created item.
     pub location: Option<String>,
-    /// The tag of what was made.
+    /// Entity tag of the created item.
     pub etag: Option<String>,
-    /// A JSON document.
+    /// Body, a JSON document.
     pub body: String,
-    /// Whether there is work for the workers now.
+    /// True if jobs were queued, so that workers must be woken.
     #[serde(skip)]
     pub queued: bool,
 }
 
 impl Reply {
-    /// An answer of a document.
+    /// Creates an answer from a document.
     ///
     /// # Errors
-    /// The document does not write.
+    /// Returns an error if the document cannot be written.
     pub fn new(status: StatusCode, body: &impl Serialize) -> Result<Self> {
         let body = serde_json::to_string(body).map_err(Problem::internal)?;
         Ok(Self { status: status.as_u16(), location: None, etag: None, body, queued: false })
     }
 
-    /// With the place of what was made, by the segments of its path.
+    /// Sets the URL of the created item, by the segments of its path.
     #[must_use]
     pub fn at(mut self, segments: &[&str]) -> Self {
         self.location = Some(path(segments));
         self
     }
 
-    /// With the place of a list of what was made: a path and one parameter of its query.
+    /// Sets the URL of a list of the created items: a path and one query parameter.
     #[must_use]
     pub fn at_list(mut self, segments: &[&str], (name, value): (&str, &str)) -> Self {
         self.location = Some(format!("{}?{name}={}", path(segments), encoded(value)));
         self
     }
 
-    /// With jobs that wait, for which the workers are woken once they are kept.
+    /// Marks that jobs were queued; the workers are woken after the commit.
     pub fn with_jobs(mut self) -> Self {
         self.queued = true;
         self
     }
 
-    /// With the tag of what was made.
+    /// Sets the entity tag of the created item.
     #[must_use]
     pub fn tagged(mut self, etag: String) -> Self {
         self.etag = Some(etag);
@@ -60,15 +60,16 @@ impl Reply {
     }
 }
 
-/// A path of segments, each percent-encoded.
+/// Returns a path of segments, each percent-encoded.
 pub fn path(segments: &[&str]) -> String {
     segments.iter().map(|segment| format!("/{}", encoded(segment))).collect()
 }
 
-/// A text within an address: every byte but the unreserved ones (RFC 3986, 2.3) percent-encoded.
+/// Percent-encodes every byte except the unreserved ones (RFC 3986, 2.3).
 fn encoded(text: &str) -> String {
     let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
     let each = text.bytes().map(|byte| match is_plain(byte) {
+        // Unreserved bytes are ASCII, so that each is one character.
         true => char::from(byte).to_string(),
         false => format!("%{byte:02X}"),
     });

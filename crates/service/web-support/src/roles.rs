@@ -1,4 +1,4 @@
-//! Roles as requests give them and answers show them.
+//! Roles in requests and answers.
 
 use serde::{Deserialize, Serialize};
 use sistership_auth::{Grant, Role, Scope};
@@ -8,41 +8,41 @@ use utoipa::ToSchema;
 use crate::field::{Name, Word};
 use crate::problem::{Problem, Result};
 
-/// What somebody may do; each has the rights of those before it.
+/// Role of a user or key; each includes the rights of those before it.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum RoleName {
-    /// Reads.
+    /// Reads and predicts.
     Reader,
-    /// Works.
+    /// Creates ships, uploads, refines and diagnoses.
     Engineer,
-    /// Promotes.
+    /// Promotes versions.
     Approver,
-    /// Gives rights.
+    /// Manages rights.
     Admin,
 }
 
-/// A role, and what it is given for: the whole server where neither ship nor family is named.
+/// A role with its scope: the whole server if neither ship nor family is given.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoleRequest {
     role: RoleName,
-    /// For this ship, its trials and its models only.
+    /// Limits the role to this ship, its trials and its models.
     #[schema(inline)]
     ship: Option<Name>,
-    /// For this family and the ships in it only.
+    /// Limits the role to this family and its ships.
     #[schema(inline)]
     family: Option<Word>,
 }
 
-/// A role, and what it is given for.
+/// A role with its scope.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct RoleView {
     /// `reader`, `engineer`, `approver` or `admin`.
     role: String,
-    /// Where it is given for one ship.
+    /// Ship to which the role is limited.
     ship: Option<String>,
-    /// Where it is given for one family.
+    /// Family to which the role is limited.
     family: Option<String>,
 }
 
@@ -58,14 +58,14 @@ impl From<RoleName> for Role {
 }
 
 impl RoleView {
-    /// Of a row.
+    /// Creates the view of a stored role.
     pub fn of(row: GrantRow) -> Self {
         let GrantRow { scope_kind, scope_name, role } = row;
         let name = |kind: &str| (scope_kind == kind).then(|| scope_name.clone());
         Self { role, ship: name("ship"), family: name("family") }
     }
 
-    /// Of what is given.
+    /// Creates the view of a role.
     pub fn of_grant(grant: &Grant) -> Self {
         let (kind, name) = grant.scope.parts();
         let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
@@ -73,10 +73,10 @@ impl RoleView {
     }
 }
 
-/// The roles that a request gives.
+/// Converts the roles of a request.
 ///
 /// # Errors
-/// The role at fault.
+/// Returns an error that names the invalid role.
 pub fn grants(roles: Vec<RoleRequest>) -> Result<Vec<Grant>> {
     roles.into_iter().enumerate().map(|(at, role)| grant(at, role)).collect()
 }
@@ -94,6 +94,7 @@ fn grant(at: usize, request: RoleRequest) -> Result<Grant> {
         (Some(ship), None) => Scope::Ship(ship.into_string()),
         (None, Some(family)) => Scope::Family(family.into_string()),
     };
+    // The rights of an administrator are not limited to a ship or a family.
     match role == Role::Admin && scope != Scope::Server {
         true => Err(Problem::invalid(
             &format!("roles[{at}].role"),

@@ -14,21 +14,21 @@ use crate::page;
 use crate::problem::{Fault, Problem, Result};
 use sistership_jobs::search::{self, Search, metric, particular};
 
-/// What the query may hold. Everything that is given must be true of a ship.
+/// Query of the list of ships. All conditions must hold.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
 pub struct Query {
-    /// The most items to return.
+    /// Maximum number of items to return.
     #[param(inline)]
     limit: Option<Limit>,
     /// `next` of the page before.
     #[param(inline)]
     after: Option<Cursor>,
-    /// Of this category only.
+    /// Ships of this category only.
     #[param(inline)]
     category: Option<Name>,
-    /// With this tag only.
+    /// Ships with this tag only.
     #[param(inline)]
     tag: Option<Word>,
     /// Ranges of particulars in SI, such as `lpp_m:100..200`, `beam_m:..32`; with those of metrics
@@ -49,11 +49,12 @@ pub struct Query {
     vector: Option<Definition>,
 }
 
-/// Reads the query, parameter by parameter.
+/// Parses the query, parameter by parameter.
 ///
 /// # Errors
-/// The parameter at fault.
+/// Returns an error that names the invalid parameter.
 pub fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey>)> {
+    // Parsed by hand, because `particular` and `metric` may occur several times.
     let (mut search, mut limit, mut after) = (Search::default(), None, None);
     for (name, value) in pairs {
         match name.as_str() {
@@ -83,7 +84,7 @@ fn parsed<T: FromStr<Err = String>>(name: &str, value: &str) -> Result<T> {
     value.parse().map_err(|message: String| wrong(name, message))
 }
 
-/// The names of the vectors.
+/// Returns the schema of the names of the vectors.
 pub fn vectors() -> RefOr<Schema> {
     one_of(Definition::ALL.map(Definition::name))
 }
@@ -96,7 +97,7 @@ fn metrics() -> RefOr<Schema> {
     ranges(search::metrics())
 }
 
-/// Ranges of what has one of these names.
+/// Returns the schema of ranges of facts with these names.
 fn ranges(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
     let range = ObjectBuilder::new()
         .schema_type(Type::String)
@@ -106,6 +107,7 @@ fn ranges(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
 }
 
 fn once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {
+    // A repeated parameter is refused: it is unclear which value is meant.
     match slot.replace(value) {
         None => Ok(()),
         Some(_) => Err(wrong(name, "may be given once only")),
@@ -138,7 +140,7 @@ fn unknown(name: &str) -> Problem {
     )
 }
 
-/// The refusal of a parameter.
+/// Returns the problem of an invalid parameter.
 pub fn wrong(name: &str, message: impl Into<String>) -> Problem {
     let message = message.into();
     Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))

@@ -1,4 +1,4 @@
-//! Files under way: counted and hashed as they arrive.
+//! Temporary files of uploads, hashed as they arrive.
 
 use std::io;
 
@@ -14,16 +14,16 @@ use crate::problem::{Problem, Result};
 
 pub use crate::spool_folder::Spool;
 
-/// A file that has arrived; it goes when this is dropped.
+/// A received file, which is removed when this is dropped.
 #[derive(Debug)]
 pub struct Spooled {
-    /// Where it lies.
+    /// Path.
     pub path: TempPath,
-    /// The hash of its bytes.
+    /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
 }
 
-/// Writes a stream to a file.
+/// Writes a stream to a temporary file.
 pub async fn spool<E: Into<Problem>>(
     place: &Spool,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
@@ -39,17 +39,17 @@ pub async fn spool<E: Into<Problem>>(
     Ok(Spooled { path, sha256: hex(&hash.finalize()) })
 }
 
-/// A hash in lower-case hexadecimal.
+/// Returns a hash in lower-case hexadecimal.
 pub fn hex(hash: &[u8]) -> String {
     hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A file among the uploads under way; it goes when this is dropped.
+/// Creates a temporary file, which is removed when it is dropped.
 pub fn temporary(place: &Spool) -> Result<NamedTempFile> {
     place.temporary().map_err(unwritten)
 }
 
-/// Why an upload could not be written.
+/// Returns the problem of an upload that could not be written.
 pub fn unwritten(error: io::Error) -> Problem {
     let reason = format!("an upload cannot be written: {error}");
     if is_out_of_space(&error) { Problem::no_room(reason) } else { Problem::internal(reason) }

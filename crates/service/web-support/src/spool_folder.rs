@@ -1,5 +1,5 @@
-//! Files under way: a folder for each process, which the next one removes where a process was
-//! killed.
+//! Folders of temporary files, one for each process; the folder of a killed process is removed by
+//! the next process.
 
 use std::fs::{self, TryLockError};
 use std::io;
@@ -12,14 +12,14 @@ use uuid::Uuid;
 
 use sistership_store::is_out_of_space;
 
-/// Files that earlier programs left beside the folders, and that are older than this, belong to a
-/// process that was killed.
+/// Age from which files next to the folders, written by earlier releases, count as leftovers of a
+/// killed process.
 const STALE: Duration = Duration::from_secs(3600);
 const PREFIX: &str = "upload-";
 const FOLDER: &str = "process-";
 
-/// The files of this process: a folder that it holds a lock on, which the system takes back when
-/// the process ends.
+/// Temporary files of this process: a folder with a lock, which the system releases when the
+/// process ends.
 #[derive(Debug)]
 pub struct Spool {
     root: PathBuf,
@@ -29,30 +29,31 @@ pub struct Spool {
 #[derive(Debug)]
 struct Held {
     folder: PathBuf,
-    /// Closing it gives the lock back.
+    /// Lock on the folder; closing the file releases it.
     _lock: Option<fs::File>,
 }
 
 impl Spool {
-    /// The files of this process below a folder that processes share; nothing is made before the
-    /// first of them.
+    /// Creates the spool of this process below a folder that processes share; nothing is created on
+    /// the disk before the first file.
     pub fn below(root: PathBuf) -> Self {
         Self { root, held: Mutex::default() }
     }
 
-    /// The folder of this process, made if it is not there.
+    /// Returns the folder of this process, created if absent.
     fn folder(&self) -> io::Result<PathBuf> {
         let mut held = self.held.lock().unwrap_or_else(PoisonError::into_inner);
+        // The folder may have been removed by another program; then a new one is made.
         if let Some(held) = held.as_ref().filter(|held| held.folder.is_dir()) {
             return Ok(held.folder.clone());
         }
         Ok(held.insert(Held::make(&self.root)?).folder.clone())
     }
 
-    /// Removes what processes have left behind that have ended.
+    /// Removes the leftovers of processes that have ended.
     ///
     /// # Errors
-    /// A folder cannot be read or removed.
+    /// Returns an error if a folder cannot be read or removed.
     pub fn clear(&self) -> io::Result<()> {
         let entries = match fs::read_dir(&self.root) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
@@ -70,26 +71,26 @@ impl Spool {
         Ok(())
     }
 
-    /// A file under way; it goes when this is dropped.
+    /// Creates a temporary file, which is removed when it is dropped.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// Returns an error if it cannot be created.
     pub fn temporary(&self) -> io::Result<NamedTempFile> {
         Builder::new().prefix(PREFIX).tempfile_in(self.folder()?)
     }
 
-    /// A folder for files under way; it goes with them when this is dropped.
+    /// Creates a temporary folder, which is removed with its files when it is dropped.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// Returns an error if it cannot be created.
     pub fn folder_under_way(&self) -> io::Result<TempDir> {
         Builder::new().prefix(PREFIX).tempdir_in(self.folder()?)
     }
 
-    /// Whether there is room for a file of this many bytes.
+    /// Returns true if there is space for a file of this many bytes.
     ///
     /// # Errors
-    /// Writing fails for another reason than a full disk.
+    /// Returns an error if writing fails for another reason than a full disk.
     pub fn has_room(&self, bytes: usize) -> io::Result<bool> {
         let written =
             self.temporary().and_then(|mut file| io::Write::write_all(&mut file, &vec![0; bytes]));
@@ -103,7 +104,7 @@ impl Spool {
 impl Drop for Spool {
     fn drop(&mut self) {
         if let Some(held) = self.held.get_mut().unwrap_or_else(PoisonError::into_inner) {
-            // Where a file is still being read, the next process removes it.
+            // A folder with a file that is still in use stays; the next process removes it.
             let _ = fs::remove_dir(&held.folder);
         }
     }
@@ -115,7 +116,7 @@ impl Held {
             let folder = root.join(format!("{FOLDER}{}", Uuid::now_v7()));
             fs::create_dir_all(&folder)?;
             let lock = locked(&folder);
-            // Another process that clears may have been faster than the lock.
+            // Another process may have cleared the folder before it was locked: try again.
             if folder.is_dir() {
                 return Ok(Self { folder, _lock: lock });
             }
@@ -123,8 +124,8 @@ impl Held {
     }
 }
 
-/// The lock on a folder; none where the file system knows no locks, and then no process gets one to
-/// clear it by either.
+/// Locks a folder; none if the file system has no locks, and then no process can lock it to clear
+/// it either.
 fn locked(folder: &Path) -> Option<fs::File> {
     let file = fs::File::open(folder).ok()?;
     file.lock().ok().map(|()| file)
@@ -152,7 +153,7 @@ fn clear_stale(file: &Path) -> io::Result<()> {
     if modified < SystemTime::now() - STALE { gone(fs::remove_file(file)) } else { Ok(()) }
 }
 
-/// What is gone already is gone.
+/// Ignores that a file to be removed is already absent.
 fn gone(removed: io::Result<()>) -> io::Result<()> {
     removed
         .or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })

@@ -1,8 +1,8 @@
-//! What the library that writes the document cannot say, put right in the document as a whole.
+//! Corrections of the OpenAPI document that the library which writes it cannot express.
 
 use serde_json::{Map, Value, json};
 
-/// Puts right what is known to be written wrongly, wherever it stands.
+/// Applies all corrections to the document.
 pub fn tidy(document: &mut Value) {
     match document {
         Value::Object(object) => {
@@ -10,6 +10,7 @@ pub fn tidy(document: &mut Value) {
             parameter(object);
             events(object);
             yaml(object);
+            // The library has no keyword `not`; types write it as an extension.
             if let Some(not) = object.remove("x-not") {
                 object.insert("not".to_owned(), not);
             }
@@ -20,8 +21,8 @@ pub fn tidy(document: &mut Value) {
     }
 }
 
-/// A schema and what is said of the field that has it are one schema, not two that both must hold:
-/// the second would be an object.
+/// Merges a schema and the description of its field into one schema: the library writes two that
+/// both must hold, and the second would be an object.
 fn described(object: &mut Map<String, Value>) {
     let Some([Value::Object(schema), Value::Object(about)]) =
         object.get("allOf").and_then(Value::as_array).map(Vec::as_slice)
@@ -30,6 +31,7 @@ fn described(object: &mut Map<String, Value>) {
     };
     let only =
         |name: &String| ["description", "type", "deprecated", "example"].contains(&name.as_str());
+    // Two schemas that both have rules are left alone.
     if !about.keys().all(only) || about.get("type").is_some_and(|kind| kind != "object") {
         return;
     }
@@ -40,7 +42,7 @@ fn described(object: &mut Map<String, Value>) {
     object.extend(merged);
 }
 
-/// A parameter is there or not: none is null.
+/// Removes null from the types of parameters: a parameter is present or absent, never null.
 fn parameter(object: &mut Map<String, Value>) {
     if !object.contains_key("in") || !object.contains_key("name") {
         return;
@@ -60,14 +62,15 @@ fn parameter(object: &mut Map<String, Value>) {
     }
 }
 
-/// A schema is about what YAML says, not about its text; all documents here are maps.
+/// Sets the schema of YAML bodies to an object: the schema describes the content, not the text, and
+/// all documents here are maps.
 fn yaml(object: &mut Map<String, Value>) {
     if let Some(media) = object.get_mut("application/yaml").and_then(Value::as_object_mut) {
         media.insert("schema".to_owned(), json!({ "type": "object" }));
     }
 }
 
-/// The schema of an event stream is that of one event's data.
+/// Sets the schema of an event stream to that of the data of one event.
 fn events(object: &mut Map<String, Value>) {
     let Some(stream) = object.get_mut("text/event-stream").and_then(Value::as_object_mut) else {
         return;

@@ -1,4 +1,4 @@
-//! Confidence bands: the standard manoeuvres sailed by models drawn from a posterior.
+//! Uncertainty bands: the standard manoeuvres of models drawn from a posterior.
 
 use std::collections::BTreeMap;
 
@@ -15,41 +15,42 @@ use crate::uncertainty::next_trial::{Drawn, NextTrial, next_trial};
 use crate::uncertainty::physical::physical_value;
 use crate::uncertainty::sampling::{Sampling, draws};
 
-/// Draws that sail in lockstep.
+/// Draws that are simulated in lockstep.
 const TOGETHER: usize = 10;
-/// Steps by the time in which the ship sails its length: of draws that reverse the rudder at the
-/// end of a step, and of those that do so within it and are held against the estimate at the fine
-/// one. At the former's step the latter's bands end elsewhere by 0.3 % of their width in the median
-/// (at most 9 %); draws of another seed by 6 % (a tanker, 152 coefficients, 200 draws).
+/// Steps in units of the time in which the ship travels its own length: `STEP` for draws that
+/// reverse the rudder at the end of a step, `EXACT_STEP` for those that do so within it and are
+/// corrected by the estimate at the fine step. Bands at the latter's step differ from those at the
+/// former's by 0.3 % of their width in the median (at most 9 %); draws of another seed by 6 % (a
+/// tanker, 152 coefficients, 200 draws).
 const STEP: f64 = 0.02;
 const EXACT_STEP: f64 = 0.05;
 
-/// The bands of a model's standard manoeuvres.
+/// Uncertainty bands of a model's standard manoeuvres.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
-    /// How the posterior was sampled.
+    /// Sampling of the posterior.
     pub sampling: Sampling,
-    /// Draws that left the physical range in some manoeuvre.
+    /// Number of draws that left the physical range in some manoeuvre.
     pub failed: usize,
-    /// By figure.
+    /// Bands by figure.
     pub figures: Vec<Band>,
-    /// The trial that would narrow them most.
+    /// Trial that would narrow the bands most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_trial: Option<NextTrial>,
 }
 
 impl Bands {
-    /// The band of a figure.
+    /// Returns the band of a figure.
     pub fn of(&self, figure: &str) -> Option<&Band> {
         self.figures.iter().find(|band| band.figure == figure)
     }
 }
 
-/// The band of a figure: 95 % of the draws that reached it are inside. A draw whose figure cannot
-/// be that of a ship, as a tactical diameter below zero, has not reached it.
+/// The band of a figure: 95 % of the draws that reached it are inside. A draw with an impossible
+/// figure, such as a tactical diameter below zero, counts as one that has not reached it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Band {
-    /// The figure, as [`Figure::name`].
+    /// Name of the figure.
     pub figure: String,
     /// Its unit.
     pub unit: String,
@@ -64,9 +65,9 @@ pub struct Band {
     pub pass: Option<f64>,
 }
 
-/// The bands of the standard manoeuvres; none where the model has no posterior of its present
-/// coefficients. Where no step is given, [`STEP`] or [`EXACT_STEP`] of the time of a ship length.
-/// `depth_m` is for laws that know it.
+/// Returns the bands of the standard manoeuvres; `None` if the model has no posterior of its
+/// present coefficients. The default step is [`STEP`] or [`EXACT_STEP`] of the time of a ship
+/// length. `depth_m` is for laws that depend on it.
 pub fn bands(
     model: &Model,
     law: &Law,
@@ -78,7 +79,9 @@ pub fn bands(
     let within_steps = sampling.within_steps;
     let (ship, fast) = prepared(model, law, settings, depth_m, sampling)?;
     let sailed = sailed(&ship, &draws, &fast)?;
+    // A draw that fails one manoeuvre still gives the figures of the others.
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
+    // Draws run at a coarse step; the estimate, simulated at both, gives the correction for it.
     let by_step = match within_steps {
         true => errors_by_step(&ship, &ship.sister(model)?, settings, &fast),
         false => BTreeMap::new(),
@@ -88,6 +91,7 @@ pub fn bands(
     let mut drawn = vec![Drawn::new(); sailed.len()];
     for (draw, sailed) in sailed.into_iter().enumerate() {
         for mut figure in sailed.figures() {
+            // Impossible figures are removed before the quantiles are taken.
             let by_step = by_step.get(&figure.name).copied().unwrap_or(0.0);
             figure.value =
                 figure.value.and_then(|value| physical_value(&figure.name, value, by_step));
@@ -99,12 +103,13 @@ pub fn bands(
         }
     }
     let figures = order.iter().filter_map(|name| band(&figures[name], draws.len())).collect();
+    // The most informative trial is part of the request for reversals within steps.
     let next_trial = next_trial(&drawn).filter(|_| within_steps);
     Some(Bands { sampling, failed, figures, next_trial })
 }
 
-/// The bands of figures over ships that sailed the standard manoeuvres, in the order in which they
-/// first come.
+/// Returns the bands of figures over simulated standard manoeuvres, in the order in which the
+/// figures first occur.
 pub fn bands_over(sailed: Vec<StandardManoeuvres>) -> Vec<Band> {
     let draws = sailed.len();
     let mut order: Vec<String> = Vec::new();
@@ -119,7 +124,8 @@ pub fn bands_over(sailed: Vec<StandardManoeuvres>) -> Vec<Band> {
     order.iter().filter_map(|name| band(&figures[name], draws)).collect()
 }
 
-/// The ship that draws are sisters of, and how they sail: at a coarse step.
+/// The ship whose coefficients draws replace, and the settings of their simulations, at a coarse
+/// step.
 fn prepared(
     model: &Model,
     law: &Law,
@@ -129,7 +135,9 @@ fn prepared(
 ) -> Option<(Ship, ManoeuvreSettings)> {
     let mut ship = Ship::sisters(model, law).ok()?;
     let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+    // The physical range is set once by the approach speed, since draws share the ship.
     ship.set_envelope_speed(speed_m_s);
+    // Draws are simulated outside the range of the trials, too.
     ship.forget_validity();
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
     let Sampling { within_steps: reversals_within_steps, figures_only, .. } = sampling;
@@ -139,6 +147,8 @@ fn prepared(
     Some((ship, ManoeuvreSettings { step_s, reversals_within_steps, figures_only, ..*settings }))
 }
 
+/// Standard manoeuvres of several models, simulated in lockstep; `None` if one of them differs in
+/// more than its coefficients.
 fn sailed(
     ship: &Ship,
     models: &[Model],
@@ -153,8 +163,8 @@ fn sailed(
     Some(sisters.par_chunks(TOGETHER).flat_map_iter(together).collect())
 }
 
-/// Figures of the standard manoeuvres, by their names, of models that have a model's law and
-/// particulars; none where the law does not fit.
+/// Returns the figures of the standard manoeuvres, by their names, of models with the law and
+/// particulars of a model; `None` if the law does not fit.
 pub fn figures(
     model: &Model,
     law: &Law,
@@ -169,7 +179,7 @@ pub fn figures(
     Some(sailed(&ship, models, &fast)?.into_iter().map(named).collect())
 }
 
-/// What the draws' coarse step adds to each figure, told by the estimate itself.
+/// Error of the draws' coarse step in each figure, from the estimate at both steps.
 fn errors_by_step(
     ship: &Ship,
     estimate: &[f64],
@@ -207,11 +217,12 @@ fn band(figures: &[Figure], draws: usize) -> Option<Band> {
     })
 }
 
-/// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American
-/// Statistician 50, 361-365, definition 6: without the shrinking of the tails that definition 7
-/// has).
+/// Returns a quantile of sorted values, linear between them (Hyndman and Fan 1996, The American
+/// Statistician 50, 361-365, definition 6: without the narrow tails of definition 7). `None`
+/// without values.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
+    // Definition 6: the k-th of n sorted values is the quantile of `k/(n + 1)`.
     let place = (share * (sorted.len() + 1) as f64 - 1.0).clamp(0.0, last as f64);
     let (below, above) = (place.floor() as usize, place.ceil() as usize);
     Some(sorted[below] + (place - below as f64) * (sorted[above] - sorted[below]))

@@ -1,11 +1,11 @@
-//! How much wider a posterior should be, by what its folds disagree.
+//! Widening of a posterior by the scatter of its folds.
 //!
-//! A posterior by the noise of the readings alone takes the law for true. Models that each missed
-//! some of the trials differ by what the law cannot follow, too: their scatter is the jackknife's
+//! A posterior by the noise of the readings alone presumes that the law is exact. Models that each
+//! missed some of the trials differ by the errors of the law, too: their scatter is the jackknife's
 //! estimate of a figure's variance, `(g - 1) / g sum (f_i - mean f)^2` over `g` folds (Efron and
-//! Tibshirani 1993, An introduction to the bootstrap, Eq. 11.5), beside which stands that of the
-//! posterior. Few folds tell the variance of one figure badly; that of the mean over the figures of
-//! all standard manoeuvres they tell better, the more so the less these depend on each other.
+//! Tibshirani 1993, An introduction to the bootstrap, Eq. 11.5), which is compared with that of the
+//! posterior. Few folds estimate the variance of one figure badly; the mean over the figures of all
+//! standard manoeuvres is better, the more so the less these depend on each other.
 
 use sistership_model::Model;
 use sistership_model::law::Law;
@@ -14,26 +14,26 @@ use crate::uncertainty::bands::figures;
 use crate::uncertainty::next_trial::Drawn;
 use crate::uncertainty::sampling::{Sampling, draws};
 
-/// Draws that tell the posterior's own scatter.
+/// Draws that estimate the posterior's own scatter.
 const DRAWS: usize = 40;
 
-/// The normal's quantile of 97.5 %.
+/// Quantile of 97.5 % of the normal distribution.
 const NORMAL: f64 = 1.959_964;
 
-/// By which quantile the folds' scatter becomes a band.
+/// Quantile by which the folds' scatter becomes a band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoldQuantile {
-    /// Student's, as if the folds had told the variance of a single figure: what versions made
-    /// before the other was there have. With six trials bands are wider by 1.3 and hold 100 % of
-    /// the true figures where 95 % are meant (docs/evidence/plain.md).
+    /// Student's, as if the folds estimated the variance of a single figure; stored versions use
+    /// it. With six trials bands are wider by 1.3 and contain 100 % of the true figures instead of
+    /// 95 % (docs/evidence/plain.md).
     Student,
-    /// The normal's: the variance is a mean over some twenty figures.
+    /// The normal distribution's: the variance is a mean over some twenty figures.
     Normal,
 }
 
-/// The root of the jackknife's variance by the posterior's, in the mean over the figures of the
-/// standard manoeuvres, by the quantile to the normal's; at least one, and one where fewer than
-/// three folds sail them.
+/// Returns the root of the ratio of the jackknife's variance to the posterior's, in the mean over
+/// the figures of the standard manoeuvres, times the ratio of the quantile to the normal one. At
+/// least 1, and 1 if fewer than three folds complete the manoeuvres.
 pub fn fold_factor(
     model: &Model,
     law: &Law,
@@ -48,9 +48,11 @@ pub fn fold_factor(
     let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
     let ratios: Vec<f64> = left_out[0]
         .keys()
+        // The IMO criteria repeat other figures.
         .filter(|name| !name.starts_with("IMO"))
         .filter_map(|name| {
             let count = left_out.len() as f64;
+            // Sum of squares about the folds' mean, times `(g - 1)/g`.
             let jackknife = (count - 1.0) / count * squares(&left_out, name)?;
             let own = squares(&drawn, name)? / drawn.len() as f64;
             (own > 0.0).then(|| jackknife / own)
@@ -64,9 +66,9 @@ pub fn fold_factor(
     (wider * mean.sqrt()).max(1.0)
 }
 
-/// Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964, Handbook
-/// of mathematical functions, Eq. 26.7.5, two terms: 10 % low for two degrees, 4 % for three, 1 %
-/// for five).
+/// Returns Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964,
+/// Handbook of mathematical functions, Eq. 26.7.5, two terms: 10 % low for two degrees, 4 % for
+/// three, 1 % for five).
 pub fn student(degrees: usize) -> f64 {
     let (x, degrees) = (NORMAL, degrees as f64);
     let first = (x.powi(3) + x) / 4.0;
@@ -74,7 +76,7 @@ pub fn student(degrees: usize) -> f64 {
     x + first / degrees + second / degrees.powi(2)
 }
 
-/// Sum of squares about the mean; none where a figure is not reached by all.
+/// Sum of squares about the mean; `None` if not all reach the figure.
 fn squares(figures: &[Drawn], name: &str) -> Option<f64> {
     let values: Vec<f64> =
         figures.iter().map(|one| one.get(name).copied()).collect::<Option<_>>()?;

@@ -1,5 +1,5 @@
-//! How sure a model's standard manoeuvres are: draws from its posterior, the bands that they give,
-//! the trial that would narrow them, and how far models are apart that each missed some trials.
+//! Uncertainty of a model's standard manoeuvres: draws from its posterior, the bands that they
+//! give, the trial that would narrow these, and the scatter of models that each missed some trials.
 
 mod bands;
 mod fold_scatter;

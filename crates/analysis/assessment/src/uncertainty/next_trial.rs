@@ -1,33 +1,34 @@
 //! The trial that would narrow the bands most.
 //!
-//! A manoeuvre that is sailed tells its own figures. With the draws of the posterior taken for
-//! normal, what then remains of the variance of another figure is `S_kk - S_kf S_ff^-1 S_fk`, `S`
-//! being the covariance of the figures over the draws and `f` those that were told: the residual of
-//! the figure's regression on them.
+//! A trial of a manoeuvre measures its figures. If the draws of the posterior are taken as normal,
+//! the remaining variance of another figure is `S_kk - S_kf S_ff^-1 S_fk`, `S` being the covariance
+//! of the figures over the draws and `f` the measured ones: the residual of the figure's regression
+//! on them.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Singular values below this share of the largest are none: mirrored manoeuvres tell the same.
+/// Singular values below this share of the largest count as zero: mirrored manoeuvres have the same
+/// information.
 const LEAST_SINGULAR: f64 = 1e-6;
 
-/// A scatter below this share of the mean is rounding.
+/// Scatter, as a share of the mean, below which it is rounding error.
 const LEAST_SCATTER: f64 = 1e-9;
 
-/// A manoeuvre by what sailing it would tell.
+/// A manoeuvre, with the gain of a trial of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NextTrial {
     /// The manoeuvre, such as `turn 35 deg`.
     pub manoeuvre: String,
-    /// By what share of their width the bands of all standard manoeuvres would be narrower in the
-    /// mean, wide ones counting for more.
+    /// Reduction of the width of the bands of all standard manoeuvres, as a share, in the mean,
+    /// weighted by relative width.
     pub narrower: f64,
 }
 
 impl NextTrial {
-    /// The advice as a sentence.
+    /// Returns the advice as a sentence.
     pub fn words(&self) -> String {
         let Self { manoeuvre, narrower } = self;
         let percent = 100.0 * narrower;
@@ -41,13 +42,15 @@ impl NextTrial {
 /// Figures of a draw by name.
 pub type Drawn = BTreeMap<String, f64>;
 
-/// The manoeuvre that tells most; none where fewer draws than twice the figures reached all of
-/// them, or none differs.
+/// Returns the most informative manoeuvre; `None` if fewer draws than twice the number of figures
+/// reached all of them, or if no figure scatters.
 pub(crate) fn next_trial(draws: &[Drawn]) -> Option<NextTrial> {
     let most = draws.iter().max_by_key(|draw| draw.len())?;
     let mut names: Vec<&String> = most.keys().filter(|name| manoeuvre(name).is_some()).collect();
+    // A covariance needs draws that reached every figure.
     let complete: Vec<&Drawn> =
         draws.iter().filter(|draw| names.iter().all(|name| draw.contains_key(*name))).collect();
+    // With fewer draws the covariance of the figures is too uncertain, or singular.
     if complete.len() < 2 * names.len().max(1) {
         return None;
     }
@@ -61,12 +64,13 @@ pub(crate) fn next_trial(draws: &[Drawn]) -> Option<NextTrial> {
         Some(NextTrial { manoeuvre: of.to_owned(), narrower: narrower(&own, &columns, &weights)? })
     };
     let mut manoeuvres: Vec<&str> = names.iter().filter_map(|name| manoeuvre(name)).collect();
+    // Figures are in the order of their names, so that those of a manoeuvre are neighbours.
     manoeuvres.dedup();
     let tried = manoeuvres.into_iter().filter_map(told).filter(|one| one.narrower > 0.0);
     tried.max_by(|a, b| a.narrower.total_cmp(&b.narrower))
 }
 
-/// The manoeuvre of a figure; none of criteria.
+/// The manoeuvre of a figure; `None` for criteria.
 fn manoeuvre(figure: &str) -> Option<&str> {
     let (manoeuvre, _) = figure.split_once(": ")?;
     (manoeuvre != "IMO").then_some(manoeuvre)
@@ -82,17 +86,19 @@ fn centred(draws: &[&Drawn], name: &str) -> DVector<f64> {
     DVector::from_iterator(draws.len(), draws.iter().map(|draw| draw[name] - mean))
 }
 
-/// Deviation by mean, so that metres, degrees and seconds can be added.
+/// Standard deviation divided by the mean, so that metres, degrees and seconds can be averaged.
 fn relative_scatter(draws: &[&Drawn], name: &str) -> f64 {
     let scatter = (centred(draws, name).norm_squared() / draws.len() as f64).sqrt();
     scatter / mean(draws, name).abs().max(f64::MIN_POSITIVE)
 }
 
-/// By what share figures are narrower, in the weighted mean, once some are told.
+/// Reduction of the width of the figures, as a share, in the weighted mean, if some are measured.
 fn narrower(told: &[&DVector<f64>], figures: &[DVector<f64>], weights: &[f64]) -> Option<f64> {
     let scaled: Vec<DVector<f64>> = told.iter().map(|column| column.normalize()).collect();
     let svd = DMatrix::from_columns(&scaled).svd(true, false);
     let largest = svd.singular_values.max();
+    // The left singular vectors are an orthonormal basis of the measured figures: projection on it
+    // is the regression on them, also where they are collinear.
     let axes = svd.u?;
     let known = |figure: &DVector<f64>| {
         let singular = svd.singular_values.iter().enumerate();

@@ -1,9 +1,9 @@
-//! Figures that are positive by nature: a draw whose figure is not has not sailed the manoeuvre.
+//! Figures that are positive by nature: a draw with another value has not completed the manoeuvre.
 //!
-//! A posterior is normal in the coefficients and knows nothing of that: some draws of a wide one
-//! turn against their rudder, or slide out of the turn, and have a tactical diameter below zero.
-//! The ship's own figure is positive; the band is of the draws that agree with this, the posterior
-//! conditioned on what is certain.
+//! A posterior is normal in the coefficients and does not exclude such values: some draws of a wide
+//! one turn against their rudder, or slide out of the turn, and have a tactical diameter below
+//! zero. The ship's own figure is positive; the band is that of the posterior conditioned on this
+//! fact.
 
 /// Endings of the names of figures that are above zero: lengths and times from the execution of the
 /// rudder on. A transfer is not among them: a ship that turns on the spot may have none.
@@ -15,11 +15,11 @@ const POSITIVE: [&str; 6] = [
     "initial turning",
     "initial turning ability",
 ];
-/// Of those that are zero at least: what the heading goes beyond the angle of reversal.
+/// Ending of the names of figures that are at least zero: the heading beyond the angle of reversal.
 const NOT_NEGATIVE: &str = "overshoot";
 
-/// A figure of a draw without the error of its coarse step; none where it cannot be that of a ship.
-/// The correction of a figure smaller than itself is not believed.
+/// Returns a figure of a draw without the error of its coarse step; `None` if it is impossible for
+/// a ship. A correction that would change the sign is not applied.
 pub(crate) fn physical_value(name: &str, value: f64, by_step: f64) -> Option<f64> {
     let corrected = value - by_step;
     if name.ends_with(NOT_NEGATIVE) {

@@ -1,4 +1,4 @@
-//! All that is known for and against one model.
+//! Appraisal of one model by published trials.
 
 use serde::Serialize;
 use sistership_model::law::Law;
@@ -18,9 +18,9 @@ pub struct Appraisal {
     pub model: String,
     /// The law of motion.
     pub law: String,
-    /// Where its figures come from.
+    /// Origin of its figures.
     pub origin: Status,
-    /// What it is worth.
+    /// Validation status.
     pub standing: Standing,
     /// Length between perpendiculars, m.
     pub lpp_m: f64,
@@ -28,30 +28,31 @@ pub struct Appraisal {
     pub speed_m_s: f64,
     /// Keys of the sources of its coefficients and parameters.
     pub sources: Vec<String>,
-    /// Every published figure beside the model's.
+    /// Published figures compared with the model's.
     pub comparisons: Vec<Comparison>,
     /// The standard manoeuvres.
     pub manoeuvres: StandardManoeuvres,
 }
 
 impl Appraisal {
-    /// A length of the turn to starboard, in ship lengths.
+    /// Returns a length of the turn to starboard, in ship lengths.
     pub fn turn_lengths(&self, of: impl Fn(&TurningMetrics) -> Option<f64>) -> Option<f64> {
         let starboard = self.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0)?;
         Some(of(starboard)? / self.lpp_m)
     }
 
-    /// The first overshoot of the zigzag that begins to starboard with this rudder, deg.
+    /// Returns the first overshoot of the zigzag that begins to starboard with this rudder angle,
+    /// deg.
     pub fn first_overshoot_deg(&self, rudder_deg: f64) -> Option<f64> {
         let mut zigzags = self.manoeuvres.zigzags.iter();
         zigzags.find(|zigzag| zigzag.rudder_deg == rudder_deg)?.first_overshoot_deg
     }
 }
 
-/// Sails a model's standard manoeuvres and those of its ship's published trials.
+/// Simulates a model's standard manoeuvres and those of its ship's published trials.
 ///
 /// # Errors
-/// Names what the model does not give.
+/// Returns an error with the quantity that the model lacks.
 pub fn appraise(vessel: &Vessel, model: &Model, law: &Law) -> Result<Appraisal, PlantError> {
     let ship = Ship::new(model, law)?;
     let comparisons = compare(&ship, &vessel.file.free_running);
@@ -71,7 +72,7 @@ pub fn appraise(vessel: &Vessel, model: &Model, law: &Law) -> Result<Appraisal, 
 /// Appraises every model of a vessel.
 ///
 /// # Errors
-/// Names the model and what it does not give.
+/// Returns an error with the model and the quantity that it lacks.
 pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<Appraisal>, FileError> {
     let one = |name: &str| {
         let model = zoo.published(vessel, Some(name))?;

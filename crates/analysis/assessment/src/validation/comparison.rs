@@ -1,4 +1,4 @@
-//! A model's manoeuvres beside published ones.
+//! Comparison of a model's manoeuvres with published ones.
 
 use serde::Serialize;
 use sistership_model::free_running::{FreeRunning, PublishedTurn, PublishedZigzag};
@@ -7,7 +7,7 @@ use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 
 use crate::validation::limits::{OVERSHOOT_DEG, OVERSHOOT_SHARE, TURN_SHARE};
 
-/// One published figure, and what a model makes of it.
+/// One published figure, compared with the model's.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// The figure: `turn 35 deg: advance`.
@@ -20,30 +20,31 @@ pub struct Comparison {
     pub published: f64,
     /// Half the width of its 95 % interval.
     pub uncertainty: f64,
-    /// As the model sails it; absent where it does not get so far.
+    /// As simulated by the model; none if the simulation does not reach it.
     pub sailed: Option<f64>,
-    /// The difference that is allowed.
+    /// Largest difference that is allowed.
     pub limit: f64,
 }
 
 impl Comparison {
-    /// The model's figure less the published one.
+    /// Returns the model's figure less the published one.
     pub fn error(&self) -> Option<f64> {
         self.sailed.map(|sailed| sailed - self.published)
     }
 
-    /// Whether the model is within the limit; one that does not get so far is not.
+    /// Returns true if the model is within the limit; false if it does not reach the figure.
     pub fn is_within(&self) -> bool {
         self.error().is_some_and(|error| error.abs() <= self.limit)
     }
 }
 
-/// Sails what was published, at the published speed, and sets the figures side by side.
+/// Simulates published manoeuvres at the published speed, and compares the figures.
 pub fn compare(ship: &Ship, trials: &[FreeRunning]) -> Vec<Comparison> {
     compare_at(ship, trials, 1.0)
 }
 
-/// The same with steps of so many times the usual ones.
+/// Simulates published manoeuvres with steps of `steps` times the usual ones, and compares the
+/// figures.
 pub(crate) fn compare_at(ship: &Ship, trials: &[FreeRunning], steps: f64) -> Vec<Comparison> {
     trials.iter().flat_map(|trial| of_trial(ship, trial, steps)).collect()
 }
@@ -54,7 +55,7 @@ fn of_trial(ship: &Ship, trial: &FreeRunning, steps: f64) -> Vec<Comparison> {
         reversals_within_steps: true,
         ..ManoeuvreSettings::default()
     };
-    // The usual step stays what it is where nothing else is asked for.
+    // A ratio of 1 leaves the step to the settings.
     let step_s = (steps != 1.0).then(|| steps * usual.step(ship));
     let settings = ManoeuvreSettings { step_s, ..usual };
     let turns = trial.turns.iter().flat_map(|published| {
@@ -87,6 +88,7 @@ fn sides<const N: usize>(
 }
 
 fn turn_figures(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> [Option<f64>; 4] {
+    // A manoeuvre that stops early has no figures; this is reported, not an error.
     let Ok(sailed) = turn(ship, rudder_deg, settings) else { return [None; 4] };
     let of = sailed.metrics;
     [of.advance_m, of.transfer_m, of.tactical_diameter_m, of.steady_radius_m]

@@ -1,21 +1,21 @@
-//! The uncertainty of a figure by the step of its simulation: ITTC 7.5-03-01-01, sec. 4, a study of
+//! Uncertainty of a figure due to the step of its simulation: ITTC 7.5-03-01-01, sec. 4, a study of
 //! convergence with three steps.
 
 /// Order of the integration (classical Runge-Kutta).
 const ORDER: f64 = 4.0;
-/// Each step by the next finer one.
+/// Ratio of each step to the next finer one.
 const RATIO: f64 = 2.0;
 /// Differences below this share of the figure are those of rounding and of the crossing's
-/// interpolation: no order is read from them.
+/// interpolation: they have no order of convergence.
 const ROUNDING: f64 = 1e-7;
 
-/// The uncertainty of the figure at the finest of three steps, each twice the one before:
-/// `figures` from the finest to the coarsest. None where they diverge.
+/// Returns the uncertainty of the figure at the finest of three steps, each twice the one before:
+/// `figures` from the finest to the coarsest. `None` if they diverge.
 ///
-/// With R = e21/e32 between 0 and 1 the error follows by Richardson, d = e21/(r^p - 1) with
-/// p = ln(1/R)/ln r, and with C = (r^p - 1)/(r^4 - 1) the uncertainty is (9.6 (1 - C)^2 + 1.1) |d|
+/// With R = e21/e32 between 0 and 1 the error follows by Richardson, d = e21/(r^p - 1) with p =
+/// ln(1/R)/ln r, and with C = (r^p - 1)/(r^4 - 1) the uncertainty is (9.6 (1 - C)^2 + 1.1) |d|
 /// where |1 - C| < 0.125 and (2 |1 - C| + 1) |d| elsewhere (Wilson, Shao and Stern 2004, J Fluids
-/// Eng 126, 704-706). Where they swing it is half of what they span.
+/// Eng 126, 704-706). If they oscillate it is half of their range.
 pub fn step_uncertainty(figures: [f64; 3]) -> Option<f64> {
     let [fine, medium, coarse] = figures;
     let (e21, e32) = (medium - fine, coarse - medium);
@@ -27,6 +27,7 @@ pub fn step_uncertainty(figures: [f64; 3]) -> Option<f64> {
     if ratio.abs() >= 1.0 || !ratio.is_finite() {
         return None;
     }
+    // Oscillating convergence: half the range.
     if ratio <= 0.0 {
         let span = figures.iter().copied().fold(f64::NEG_INFINITY, f64::max)
             - figures.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,12 +1,12 @@
-//! A ship's entry in catalogues of data: JSON-LD in the terms of schema.org.
+//! A ship's entry in data catalogues: JSON-LD in the terms of schema.org.
 
 use serde::Serialize;
 use sistership_model::Vessel;
 use sistership_model::source::Source;
 
-/// On what terms the zoo's own files stand.
+/// Licence of the zoo's own files.
 const OWN_LICENCE: &str = "MIT OR Apache-2.0";
-/// What a source says that says nothing of its terms.
+/// Licence text of a source that states no terms.
 const NONE_STATED: &str = "none stated";
 
 /// A ship as a `Dataset` of schema.org (<https://schema.org/Dataset>).
@@ -20,16 +20,16 @@ pub struct Dataset {
     pub identifier: String,
     /// One line for people.
     pub name: String,
-    /// What the file holds.
+    /// Content of the file.
     pub description: String,
     /// Category and type.
     pub keywords: Vec<String>,
-    /// On what terms the file itself stands.
+    /// Licence of the file itself.
     pub license: &'static str,
     /// The models by name and law.
     #[serde(rename = "variableMeasured", skip_serializing_if = "Vec::is_empty")]
     pub models: Vec<String>,
-    /// What the figures were taken from.
+    /// Sources of the figures.
     #[serde(rename = "isBasedOn")]
     pub sources: Vec<Work>,
 }
@@ -44,19 +44,19 @@ pub struct Work {
     pub alternate_name: String,
     /// The citation.
     pub name: String,
-    /// Where it is found.
+    /// Address.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub url: Option<String>,
-    /// On what terms; absent where the file does not say.
+    /// Licence; absent if the file does not state one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub license: Option<String>,
-    /// That the source states no terms.
+    /// Statement that the source has no terms.
     #[serde(rename = "usageInfo", skip_serializing_if = "Option::is_none")]
     pub usage: Option<&'static str>,
 }
 
 impl Dataset {
-    /// The entry of a vessel.
+    /// Creates the entry of a vessel.
     pub fn of(vessel: &Vessel) -> Self {
         let file = &vessel.file;
         let keywords = [Some(file.category.clone()), file.ship_type.clone()];
@@ -104,6 +104,7 @@ impl Work {
             kind: "CreativeWork",
             alternate_name: key.to_owned(),
             name: source.citation.clone(),
+            // A DOI is a permanent address and preferred to a repository.
             url: source
                 .doi
                 .as_ref()
@@ -115,9 +116,10 @@ impl Work {
     }
 }
 
-/// The repository that a citation names.
+/// The address of the repository in a citation.
 fn repository(citation: &str) -> Option<String> {
     let place = &citation[citation.find("github.com/")?..];
+    // The address ends at the first character that separates it from the rest of the citation.
     let end = place.find([',', ' ', ';', ')']).unwrap_or(place.len());
     Some(format!("https://{}", place[..end].trim_end_matches('/')))
 }

@@ -1,35 +1,35 @@
-//! What a check of a contributed ship says.
+//! Findings of the checks of a contributed ship.
 
 use serde::Serialize;
 
-/// How much a finding weighs.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// The file cannot be taken as it is.
+    /// The file cannot be accepted as it is.
     Refused,
-    /// A reviewer should look at it.
+    /// A reviewer should check it.
     Look,
 }
 
 /// One finding.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Finding {
-    /// How much it weighs.
+    /// Severity.
     pub severity: Severity,
-    /// The field or model that it is about.
+    /// Field or model at fault.
     pub about: String,
-    /// What was found, and what would be right.
+    /// Finding, and the correct state.
     pub message: String,
 }
 
 impl Finding {
-    /// The file cannot be taken as it is.
+    /// Creates a finding by which the file cannot be accepted as it is.
     pub fn refused(about: impl Into<String>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Refused, about: about.into(), message: message.into() }
     }
 
-    /// A reviewer should look at it.
+    /// Creates a finding that a reviewer should check.
     pub fn look(about: impl Into<String>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Look, about: about.into(), message: message.into() }
     }

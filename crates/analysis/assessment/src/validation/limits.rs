@@ -1,10 +1,10 @@
-//! Limits by which a model counts as validated, and ranges in which the figures of a ship are
+//! Limits of the errors of a validated model, and ranges in which the figures of a ship are
 //! expected.
 //!
 //! No standard has such limits: Berg (2015), State of the art document on validation of simulation
-//! models for ship manoeuvring (MARINTEK memo D0, SIMVAL), says in its abstract that nobody has yet
-//! described how to validate a shiphandling model. So these are chosen, above what trials differ by
-//! themselves and what careful predictions reach:
+//! models for ship manoeuvring (MARINTEK memo D0, SIMVAL), states in its abstract that no method of
+//! validating a shiphandling model has been described yet. These limits are therefore chosen, above
+//! the scatter of trials and the errors of careful predictions:
 //!
 //! - Port and starboard turns of one model test differ by 3 % in advance and 7 % in tactical
 //!   diameter (KVLCC1 in Aksu and Kose 2017, J ETA Maritime Science 5(1), as quoted in
@@ -16,26 +16,26 @@
 //!
 //! The uncertainty of the trial is added to each.
 
-/// Difference of a turning figure from the trial that is allowed, as a share of the trial's.
+/// Allowed difference of a turning figure from the trial, as a share of the trial's.
 pub const TURN_SHARE: f64 = 0.10;
 
-/// Difference of an overshoot that is allowed, as a share of the trial's.
+/// Allowed difference of an overshoot, as a share of the trial's.
 pub const OVERSHOOT_SHARE: f64 = 0.20;
 
-/// Difference of an overshoot that is allowed however small the trial's, deg.
+/// Smallest allowed difference of an overshoot, deg.
 pub const OVERSHOOT_DEG: f64 = 2.0;
 
-/// Change of speed on a straight course at the model's revolutions that is believed, as a share.
+/// Plausible change of speed on a straight course at the model's revolutions, as a share.
 pub const SPEED_KEPT_SHARE: f64 = 0.10;
 
-/// Change of heading on a straight course, deg in ten ship lengths.
+/// Plausible change of heading on a straight course, deg in ten ship lengths.
 pub const HEADING_KEPT_DEG: f64 = 10.0;
 
-/// By how much the diameters of turns to port and starboard may differ, as a share.
+/// Plausible difference of the diameters of turns to port and starboard, as a share.
 pub const SIDES_SHARE: f64 = 0.20;
 
-/// Tactical diameters at 35 deg that are seen, ship lengths.
+/// Usual tactical diameters at 35 deg, ship lengths.
 pub const TACTICAL_DIAMETERS: std::ops::RangeInclusive<f64> = 0.8..=8.0;
 
-/// First overshoots of a 10/10 zigzag that are seen, deg.
+/// Usual first overshoots of a 10/10 zigzag, deg.
 pub const FIRST_OVERSHOOTS_DEG: std::ops::RangeInclusive<f64> = 0.0..=40.0;

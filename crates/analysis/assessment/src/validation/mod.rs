@@ -1,6 +1,6 @@
-//! What speaks for a model of the zoo: its standard manoeuvres beside the published free-running
-//! trials of its ship, the status that follows, the checks that a contributed ship
-//! passes, its entry in catalogues, and the validation of any model by ITTC 7.5-02-06-03.
+//! Evidence for the models of the zoo: standard manoeuvres compared with the published free-running
+//! trials of the ship, the status that follows, the checks of a contributed ship, its entry in
+//! catalogues, and the validation of any model by ITTC 7.5-02-06-03.
 
 mod appraisal;
 mod comparison;

@@ -1,13 +1,13 @@
-//! Particulars that should go together.
+//! Consistency of particulars.
 
 use sistership_model::Vessel;
 
 use crate::validation::finding::Finding;
 
-/// What a ship has of a name.
+/// Value of a particular of a ship by its name.
 type Lookup<'a> = &'a dyn Fn(&str) -> Option<f64>;
 
-/// A ratio of particulars, and where ships are.
+/// A ratio of particulars, and its usual range.
 struct Ratio {
     about: &'static str,
     words: &'static str,
@@ -69,10 +69,10 @@ const RATIOS: [Ratio; 8] = [
     },
 ];
 
-/// Displacements that differ by more than this share need a word.
+/// Relative difference of displacements from which on it is reported.
 const DISPLACEMENT_SHARE: f64 = 0.02;
 
-/// Checks that the particulars of a ship go together.
+/// Checks that the particulars of a ship are consistent.
 pub fn check(vessel: &Vessel) -> Vec<Finding> {
     let of = |name: &str| vessel.particular(name);
     let ratios = RATIOS.iter().filter_map(|ratio| {
@@ -84,8 +84,9 @@ pub fn check(vessel: &Vessel) -> Vec<Finding> {
     ratios.chain(displacement(vessel)).chain(missing(vessel)).collect()
 }
 
-/// Displacement by volume, by mass and by block coefficient.
+/// Findings on displacement by volume, by mass and by block coefficient.
 fn displacement(vessel: &Vessel) -> Vec<Finding> {
+    // Stated values only: a derived displacement agrees by definition.
     let stated = |name: &str| vessel.particulars.get(name).map(|quantity| quantity.value);
     let density = vessel.particular("water_density_kg_m3");
     let boxed = || Some(stated("lpp_m")? * stated("beam_m")? * stated("draught_m")?);
@@ -101,7 +102,7 @@ fn displacement(vessel: &Vessel) -> Vec<Finding> {
     pairs.into_iter().flatten().collect()
 }
 
-/// What similarity and transfer need.
+/// Finding on particulars that similarity and transfer need and the ship lacks.
 fn missing(vessel: &Vessel) -> Vec<Finding> {
     const NEEDED: [&str; 4] = ["lpp_m", "beam_m", "draught_m", "displacement_m3"];
     let lacks = |name: &&&str| vessel.particular(name).is_none();

@@ -1,6 +1,6 @@
-//! What every ship does, whatever its law: it keeps its course, slows down when driven too fast,
-//! turns to the side of its rudder, loses speed in the turn, and does so nearly alike on both
-//! sides.
+//! Checks of behaviour that every ship has, whatever its law: it keeps its course, slows down when
+//! driven too fast, turns to the side of its rudder, loses speed in the turn, and does so nearly
+//! alike on both sides.
 
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, Sailed, sail_together};
@@ -13,10 +13,10 @@ use crate::validation::limits::{
     FIRST_OVERSHOOTS_DEG, HEADING_KEPT_DEG, SIDES_SHARE, SPEED_KEPT_SHARE, TACTICAL_DIAMETERS,
 };
 
-/// How far the straight runs go, ship lengths.
+/// Length of the straight runs, ship lengths.
 const STRAIGHT_LENGTHS: f64 = 10.0;
 
-/// Checks a model by physics; `appraisal` has its standard manoeuvres.
+/// Checks the behaviour of a model; `appraisal` has its standard manoeuvres.
 pub fn check(ship: &Ship, appraisal: &Appraisal) -> Vec<Finding> {
     let about = format!("models.{}", short(&appraisal.model));
     let failures = appraisal.manoeuvres.failures.iter();
@@ -35,7 +35,8 @@ fn short(model: &str) -> &str {
     model.split_once('/').map_or(model, |(_, name)| name)
 }
 
-/// A run with the rudder amidships at the model's own revolutions, from a share of its speed.
+/// A run with the rudder amidships at the model's own revolutions, from a share of its approach
+/// speed.
 fn run(ship: &Ship, share_of_speed: f64) -> Result<Sailed, String> {
     let own = ship.approach_speed_m_s();
     let settings = ManoeuvreSettings {
@@ -57,6 +58,7 @@ fn straight(ship: &Ship, about: &str) -> Vec<Finding> {
     let own = ship.approach_speed_m_s();
     let mut found = Vec::new();
     let changed = speed(last) / own - 1.0;
+    // At its own revolutions a balanced model keeps its approach speed.
     if changed.abs() > SPEED_KEPT_SHARE {
         let message = format!(
             "with the rudder amidships the speed changes by {:.0} % in {STRAIGHT_LENGTHS} lengths: \
@@ -76,7 +78,8 @@ fn straight(ship: &Ship, about: &str) -> Vec<Finding> {
     found
 }
 
-/// Above its own speed, at its own revolutions, a ship slows down.
+/// Finding if a ship above its approach speed, at the revolutions of the approach, does not slow
+/// down.
 fn drag(ship: &Ship, about: &str) -> Option<Finding> {
     let fast = run(ship, 1.1).ok()?;
     let slow = run(ship, 0.9).ok()?;
@@ -84,6 +87,8 @@ fn drag(ship: &Ship, about: &str) -> Option<Finding> {
     let (from_fast, from_slow) = (ended(&fast)?, ended(&slow)?);
     let own = ship.approach_speed_m_s();
     let apart = from_fast - from_slow;
+    // Runs from 1.1 and 0.9 of the speed begin 0.2 of it apart; resistance that grows with speed
+    // brings them together.
     if from_fast.is_finite() && apart < 0.2 * own * 0.999 {
         return None;
     }
@@ -97,6 +102,7 @@ fn drag(ship: &Ship, about: &str) -> Option<Finding> {
 fn turning(ship: &Ship, turn: &TurningMetrics, about: &str) -> Vec<Finding> {
     let mut found = Vec::new();
     let name = format!("turn {} deg", turn.rudder_deg);
+    // A turn to the wrong side never reaches 180 deg to the side of the rudder.
     match turn.tactical_diameter_m {
         None => found.push(Finding::refused(
             about,
@@ -126,6 +132,7 @@ fn sides(turns: &[TurningMetrics], about: &str) -> Option<Finding> {
         turns.iter().find(side)?.tactical_diameter_m
     };
     let (starboard, port) = (diameter(true)?, diameter(false)?);
+    // Relative to the mean of both sides.
     let apart = (starboard - port).abs() / (0.5 * (starboard + port));
     (apart > SIDES_SHARE).then(|| {
         let message = format!(

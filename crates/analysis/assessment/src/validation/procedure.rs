@@ -1,5 +1,5 @@
-//! The validation of a model by ITTC 7.5-02-06-03: every quantity of its ship's free-running
-//! trials that it was not made from.
+//! Validation of a model by ITTC 7.5-02-06-03: every quantity of its ship's free-running trials
+//! that was not used to make it.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::law::Law;
@@ -11,25 +11,25 @@ use crate::validation::quantity::{Evidence, ValidatedQuantity, Verdict};
 use crate::validation::trial_of_ship::TrialOfShip;
 use crate::validation::{published, recorded};
 
-/// A model held against everything that its ship has sailed.
+/// Validation of a model against all free-running trials of its ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Validation {
-    /// The procedure.
+    /// Procedure of validation.
     pub procedure: String,
     /// The model.
     pub model: String,
     /// Its law.
     pub law: String,
-    /// How many models were drawn from its posterior for U_input; 0 for a model without one.
+    /// Number of models drawn from its posterior for U_input; 0 for a model without one.
     pub draws: usize,
     /// Every quantity.
     pub quantities: Vec<ValidatedQuantity>,
-    /// What must be known to read them.
+    /// Remarks for the interpretation of the quantities.
     pub remarks: Vec<String>,
 }
 
 impl Validation {
-    /// How many quantities have a verdict.
+    /// Returns the number of quantities with a verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.quantities.iter().filter(|one| one.verdict == verdict).count()
     }
@@ -39,7 +39,7 @@ impl Validation {
 /// `trials`; `draws` are models from its posterior, if it has one.
 ///
 /// # Errors
-/// Names what the model does not give.
+/// Returns an error with the quantity that the model lacks.
 pub fn validate(
     vessel: &Vessel,
     model: &Model,
@@ -49,6 +49,7 @@ pub fn validate(
 ) -> Result<Validation, PlantError> {
     let ship = ready(model, law)?;
     let sisters = draws.iter().map(|draw| ready(draw, law)).collect::<Result<Vec<_>, _>>()?;
+    // Published figures first, then recorded trials.
     let mut evidence = published::evidence(&ship, &sisters, &vessel.file.free_running);
     evidence.extend(recorded::evidence(&ship, &sisters, trials));
     Ok(Validation {
@@ -61,7 +62,7 @@ pub fn validate(
     })
 }
 
-/// What the trials covered is not asked here.
+/// The ship without the range of its trials: trials outside it are validated, too.
 fn ready(model: &Model, law: &Law) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, law)?;
     ship.forget_validity();

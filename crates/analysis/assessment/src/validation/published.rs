@@ -7,11 +7,13 @@ use crate::validation::comparison::{Comparison, compare_at};
 use crate::validation::convergence::step_uncertainty;
 use crate::validation::quantity::{Evidence, NORMAL_95, mean_and_spread};
 
-/// Steps of draws by the usual ones: their scatter needs no finer ones.
+/// Steps of draws relative to the usual ones: their scatter needs no finer ones.
 const STEPS_OF_DRAWS: f64 = 2.5;
 
-/// What is known of every published figure; `draws` are sisters from the model's posterior.
+/// Returns the evidence on every published figure; `draws` are ships with coefficients from the
+/// model's posterior.
 pub fn evidence(ship: &Ship, draws: &[Ship], trials: &[FreeRunning]) -> Vec<Evidence> {
+    // Three steps for the study of convergence; figures are in the same order for all of them.
     let by_step = [1.0, 2.0, 4.0].map(|steps| compare_at(ship, trials, steps));
     let by_draw: Vec<Vec<Comparison>> =
         draws.iter().map(|draw| compare_at(draw, trials, STEPS_OF_DRAWS)).collect();
@@ -21,6 +23,7 @@ pub fn evidence(ship: &Ship, draws: &[Ship], trials: &[FreeRunning]) -> Vec<Evid
             [Some(fine), Some(medium), Some(coarse)] => step_uncertainty([fine, medium, coarse]),
             _ => None,
         };
+        // The same figure of every draw.
         let drawn: Vec<Option<f64>> = by_draw.iter().map(|all| all[k].sailed).collect();
         Evidence {
             quantity: figure.figure.clone(),
@@ -37,8 +40,8 @@ pub fn evidence(ship: &Ship, draws: &[Ship], trials: &[FreeRunning]) -> Vec<Evid
     by_step[0].iter().enumerate().map(one).collect()
 }
 
-/// Half the width of 95 % of what draws give; none where there are none, or one does not get so
-/// far.
+/// Returns half the width of the 95 % interval of draws; `None` without draws, or if one does not
+/// reach the figure.
 pub fn scatter(drawn: &[Option<f64>]) -> Option<f64> {
     let all: Option<Vec<f64>> = drawn.iter().copied().collect();
     mean_and_spread(&all?).map(|(_, spread)| NORMAL_95 * spread)

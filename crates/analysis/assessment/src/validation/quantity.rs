@@ -1,85 +1,85 @@
-//! One quantity held against data: ITTC 7.5-02-06-03, by the comparison of ITTC 7.5-03-01-01,
+//! Comparison of one quantity with data: ITTC 7.5-02-06-03, by the comparison of ITTC 7.5-03-01-01,
 //! sec. 3 (Coleman and Stern 1997, J Fluids Eng 119, 795-803; Stern and others 2001, J Fluids Eng
 //! 123, 793-802).
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What is known of a quantity before it is judged. Uncertainties are half the width of intervals
-/// of 95 %, in the unit of the quantity.
+/// Data, simulation and uncertainties of a quantity before its verdict. Uncertainties are half the
+/// width of intervals of 95 %, in the unit of the quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// The quantity: `turn 35 deg: advance`.
     pub quantity: String,
     /// Its unit: `L`, `m`, `deg`, `s`.
     pub unit: &'static str,
-    /// Where the data are from: the key of a source, or the names of trials.
+    /// Source of the data: the key of a citation, or the names of trials.
     pub data_from: String,
-    /// How many records the data are of; none where a source does not say.
+    /// Number of records of the data; none if a source does not state it.
     pub records: Option<usize>,
     /// The data, D.
     pub data: f64,
-    /// What the simulation gives, S; none where it does not get so far.
+    /// Simulation, S; none if it does not reach the quantity.
     pub simulated: Option<f64>,
-    /// Of the data, U_D; none where nobody knows it.
+    /// Uncertainty of the data, U_D; none if it is not known.
     pub data_uncertainty: Option<f64>,
-    /// By the step of the simulation, U_SN; none where figures diverge.
+    /// Uncertainty due to the step of the simulation, U_SN; none if figures diverge.
     pub step_uncertainty: Option<f64>,
-    /// By what goes into the simulation, U_input: what the model's own posterior leaves open; none
-    /// for a model without one.
+    /// Uncertainty due to the input of the simulation, U_input: that of the model's own posterior;
+    /// none for a model without one.
     pub input_uncertainty: Option<f64>,
 }
 
-/// A quantity, judged.
+/// A quantity with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ValidatedQuantity {
     /// The quantity: `turn 35 deg: advance`.
     pub quantity: String,
     /// Its unit.
     pub unit: String,
-    /// Where the data are from: the key of a source, or the names of trials.
+    /// Source of the data: the key of a citation, or the names of trials.
     pub data_from: String,
-    /// How many records the data are of; null where a source does not say.
+    /// Number of records of the data; null if a source does not state it.
     pub records: Option<usize>,
     /// The data, D.
     pub data: f64,
-    /// The simulation, S; null where it does not get so far.
+    /// The simulation, S; null if it does not reach the quantity.
     pub simulated: Option<f64>,
     /// The comparison error, E = D - S.
     pub comparison_error: Option<f64>,
-    /// Of the data, U_D, 95 %.
+    /// Uncertainty of the data, U_D, 95 %.
     pub data_uncertainty: Option<f64>,
-    /// Of the simulation's step, U_SN.
+    /// Uncertainty of the simulation's step, U_SN.
     pub step_uncertainty: Option<f64>,
-    /// Of the simulation's input, U_input; null for a model without a posterior.
+    /// Uncertainty of the simulation's input, U_input; null for a model without a posterior.
     pub input_uncertainty: Option<f64>,
-    /// The validation uncertainty, U_V^2 = U_D^2 + U_SN^2 + U_input^2; what is not known counts as
-    /// nothing, so that it is then a lower bound.
+    /// The validation uncertainty, U_V^2 = U_D^2 + U_SN^2 + U_input^2; unknown parts count as zero,
+    /// so that it is then a lower bound.
     pub validation_uncertainty: Option<f64>,
-    /// E by D, %.
+    /// E relative to D, %.
     pub comparison_error_percent: Option<f64>,
-    /// U_V by D, %.
+    /// U_V relative to D, %.
     pub validation_uncertainty_percent: Option<f64>,
-    /// What follows.
+    /// Verdict.
     pub verdict: Verdict,
 }
 
-/// What a comparison says.
+/// Verdict of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// |E| < U_V: validated at the level U_V; the model's own error is lost in the noise.
+    /// |E| < U_V: validated at the level U_V; the model's own error is below the noise.
     Validated,
     /// |E| >= U_V, all parts of U_V known: E is an error of the model by sign and size.
     NotValidated,
-    /// |E| is above what is known of U_V, which has parts that are not known.
+    /// |E| is above the known part of U_V, which has unknown parts.
     AboveWhatIsKnown,
-    /// The uncertainty of the data is not known, or the simulation does not get so far.
+    /// The uncertainty of the data is not known, or the simulation does not reach the quantity.
     Undecided,
 }
 
 impl Verdict {
-    /// In words.
+    /// Returns the verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Validated => "validated at U_V",
@@ -95,7 +95,7 @@ impl From<Evidence> for ValidatedQuantity {
         let error = of.simulated.map(|simulated| of.data - simulated);
         let parts = [of.data_uncertainty, of.step_uncertainty, of.input_uncertainty];
         let squares: f64 = parts.iter().flatten().map(|part| part * part).sum();
-        // Without the data's own uncertainty there is nothing to judge by.
+        // Without the data's own uncertainty there is no verdict.
         let uncertainty = of.data_uncertainty.map(|_| squares.sqrt());
         let verdict = match error.zip(uncertainty) {
             None => Verdict::Undecided,
@@ -104,6 +104,7 @@ impl From<Evidence> for ValidatedQuantity {
             Some(_) => Verdict::AboveWhatIsKnown,
         };
         let percent = |value: f64| 100.0 * value / of.data.abs();
+        // Data of zero have no relative error.
         let percent = |value: Option<f64>| value.filter(|_| of.data != 0.0).map(percent);
         Self {
             quantity: of.quantity,
@@ -124,15 +125,15 @@ impl From<Evidence> for ValidatedQuantity {
     }
 }
 
-/// Half the width of the interval of 95 % of a mean, from repeated values: t s/sqrt(n). None for
-/// less than two.
+/// Returns half the width of the 95 % interval of a mean, from repeated values: t s/sqrt(n). `None`
+/// for fewer than two values.
 pub fn mean_uncertainty(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let (_, spread) = mean_and_spread(values)?;
     Some(student_t(values.len() - 1) * spread / n.sqrt())
 }
 
-/// Mean and standard deviation (n - 1); none for less than two.
+/// Returns mean and standard deviation (n - 1); `None` for fewer than two values.
 pub fn mean_and_spread(values: &[f64]) -> Option<(f64, f64)> {
     if values.len() < 2 {
         return None;
@@ -143,9 +144,9 @@ pub fn mean_and_spread(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, (squares / (n - 1.0)).sqrt()))
 }
 
-/// The quantile of 97.5 % of Student's t (Abramowitz and Stegun 1964, table 26.10), by degrees of
-/// freedom; between the table's last and the normal distribution's by Fisher's expansion
-/// (26.7.5, first three terms).
+/// The quantile of 97.5 % of Student's t by degrees of freedom (Abramowitz and Stegun 1964, table
+/// 26.10); beyond the table by Fisher's expansion about the normal distribution (26.7.5, first
+/// three terms).
 fn student_t(freedom: usize) -> f64 {
     const TABLE: [f64; 10] =
         [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];

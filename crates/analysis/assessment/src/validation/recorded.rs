@@ -1,5 +1,4 @@
-//! Quantities of recorded turning circles and zigzags, each sailed by the model with the rudder
-//! that was recorded.
+//! Quantities of recorded turning circles and zigzags, each simulated with the recorded rudder.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +12,10 @@ use crate::validation::published::scatter;
 use crate::validation::quantity::{Evidence, mean_uncertainty};
 use crate::validation::trial_of_ship::TrialOfShip;
 
-/// Steps by the finest, in which figures are simulated.
+/// Steps of the simulations, relative to the finest.
 const STEPS: [f64; 3] = [1.0, 2.0, 4.0];
 
-/// A figure of one trial: as measured, by three steps, by every draw.
+/// A figure of one trial: measured, by three steps, and by every draw.
 struct Reading {
     trial: String,
     measured: f64,
@@ -24,8 +23,8 @@ struct Reading {
     by_draw: Vec<Option<f64>>,
 }
 
-/// What is known of every figure of the manoeuvres among trials; those of the same manoeuvre are
-/// repeats of it.
+/// Returns the evidence on every figure of the manoeuvres among trials; trials of the same
+/// manoeuvre are repeats of it.
 pub fn evidence(ship: &Ship, draws: &[Ship], trials: &[TrialOfShip<'_>]) -> Vec<Evidence> {
     let mut readings: BTreeMap<(String, &'static str), Vec<Reading>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| !trial.fitted) {
@@ -36,8 +35,8 @@ pub fn evidence(ship: &Ship, draws: &[Ship], trials: &[TrialOfShip<'_>]) -> Vec<
     readings.iter().map(|((quantity, unit), repeats)| of_repeats(quantity, unit, repeats)).collect()
 }
 
-/// Means over repeats. Each was steered a little differently, so that the scatter of the data is
-/// that of D - S.
+/// Means over repeats. The rudder of each was slightly different, so that the scatter of the data
+/// is that of D - S.
 fn of_repeats(quantity: &str, unit: &'static str, repeats: &[Reading]) -> Evidence {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let simulated = |place: usize| -> Option<Vec<f64>> {
@@ -48,6 +47,7 @@ fn of_repeats(quantity: &str, unit: &'static str, repeats: &[Reading]) -> Eviden
     let errors = fine.as_ref().map(|all| {
         repeats.iter().zip(all).map(|(one, simulated)| one.measured - simulated).collect::<Vec<_>>()
     });
+    // Only draws that every repeat has.
     let draws = repeats.iter().map(|one| one.by_draw.len()).min().unwrap_or(0);
     let of_draw = |draw: usize| -> Option<f64> {
         let all: Option<Vec<f64>> = repeats.iter().map(|one| one.by_draw[draw]).collect();
@@ -89,6 +89,7 @@ fn of_trial(
     let by_draw: Vec<_> =
         draws.iter().map(|draw| simulated(draw, trial, &recognised, usual_s)).collect();
     let reading = |(k, (figure, unit, value)): (usize, Figure)| {
+        // Figures have the same order in every simulation of a trial.
         let read = |all: &Option<Vec<Figure>>| all.as_ref().and_then(|all| all[k].2);
         let reading = Reading {
             trial: of_ship.name.to_owned(),
@@ -104,8 +105,8 @@ fn of_trial(
 /// Name, unit, value.
 type Figure = (&'static str, &'static str, Option<f64>);
 
-/// The figures of a trial by a model that is steered as recorded; none where it stops early or the
-/// trial lacks a channel.
+/// The figures of a trial simulated with the recorded rudder; `None` if the simulation stops early
+/// or the trial lacks a channel.
 fn simulated(
     ship: &Ship,
     trial: &Trial,
@@ -117,8 +118,8 @@ fn simulated(
     Some(named(&recognised.metrics(&run.track, &run.samples)?).1)
 }
 
-/// The manoeuvre, and its figures. The period of a zigzag is that of the recorded rudder, and
-/// judges nothing.
+/// The manoeuvre, and its figures. The period of a zigzag is that of the recorded rudder, so that
+/// it is no evidence.
 fn named(metrics: &ManoeuvreMetrics) -> (String, Vec<Figure>) {
     match metrics {
         ManoeuvreMetrics::Turn(turn) => (

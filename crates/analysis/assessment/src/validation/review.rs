@@ -1,4 +1,4 @@
-//! What a reviewer of a contributed ship should know.
+//! Review of a contributed ship.
 
 use serde::Serialize;
 use sistership_model::{FileError, Vessel, Zoo};
@@ -8,30 +8,31 @@ use crate::validation::appraisal::{Appraisal, appraise_vessel};
 use crate::validation::finding::{Finding, Severity};
 use crate::validation::{particulars, physics};
 
-/// A contributed ship: what was found, and how its models sail.
+/// A contributed ship with the findings on it, and its models.
 #[derive(Debug, Clone, Serialize)]
 pub struct Review {
     /// The ship.
     pub ship: String,
     /// One line for people.
     pub title: String,
-    /// Worst first.
+    /// Findings, the most severe first.
     pub findings: Vec<Finding>,
     /// Its models.
     pub models: Vec<Appraisal>,
 }
 
 impl Review {
-    /// Whether the file can be taken.
+    /// Returns true if the file can be accepted.
     pub fn is_taken(&self) -> bool {
         self.findings.iter().all(|finding| finding.severity != Severity::Refused)
     }
 }
 
-/// Checks a vessel that reads: its particulars, its sources, and each model by physics.
+/// Checks a vessel whose file can be read: its particulars, its sources, and the behaviour of each
+/// model.
 ///
 /// # Errors
-/// Names the model that does not fit its law.
+/// Returns an error with the model that does not fit its law.
 pub fn review(zoo: &Zoo, vessel: &Vessel) -> Result<Review, FileError> {
     let models = appraise_vessel(zoo, vessel)?;
     let mut findings = particulars::check(vessel);
@@ -61,7 +62,7 @@ fn by_physics(
     Ok(ship.map_or_else(Vec::new, |ship| physics::check(&ship, appraisal)))
 }
 
-/// Each source says where it can be found, and on what terms.
+/// Findings on sources that cannot be located or have no licence.
 fn sources(vessel: &Vessel) -> Vec<Finding> {
     let mut found = Vec::new();
     for (key, source) in &vessel.file.sources {
@@ -85,7 +86,7 @@ fn already_there(zoo: &Zoo, vessel: &Vessel) -> Option<Finding> {
     })
 }
 
-/// Published trials that a model does not meet.
+/// Findings on published trials that a model does not meet.
 fn missed(appraisal: &Appraisal) -> Vec<Finding> {
     let said = |missed: &crate::validation::Comparison| {
         let sailed = missed.sailed.map_or("nothing".to_owned(), |value| format!("{value:.2}"));

@@ -1,26 +1,27 @@
-//! What a model is worth, computed.
+//! The validation status of a model, computed.
 
 use serde::Serialize;
 use sistership_model::vessel::Status;
 
 use crate::validation::comparison::Comparison;
 
-/// What a model is worth, by where its figures come from and by the published trials of its ship.
+/// Validation status of a model, by the origin of its figures and the published trials of its ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// Every published free-running figure of its ship is met within [`crate::validation::limits`].
+    /// Every published free-running figure of the ship is within [`crate::validation::limits`].
     Validated,
-    /// From measurement or computation, and no free-running figure of its ship is known.
+    /// The coefficients are measured or computed, and no free-running figure of the ship is known.
     Published,
-    /// Some published free-running figure of its ship is missed.
+    /// Some published free-running figure of the ship is outside the limits.
     Disputed,
-    /// By formulas or judgement, and no free-running figure of its ship is known.
+    /// The coefficients are from formulas or judgement, and no free-running figure of the ship is
+    /// known.
     Estimated,
 }
 
 impl Standing {
-    /// Follows from the origin of the figures and the comparisons.
+    /// Returns the status for an origin of the figures and the comparisons.
     pub fn of(origin: Status, comparisons: &[Comparison]) -> Self {
         match (comparisons.is_empty(), comparisons.iter().all(Comparison::is_within)) {
             (false, true) => Self::Validated,
@@ -32,7 +33,7 @@ impl Standing {
         }
     }
 
-    /// The word for people.
+    /// Returns the word for reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Validated => "validated",

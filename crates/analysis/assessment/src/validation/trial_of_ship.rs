@@ -1,4 +1,4 @@
-//! A recorded trial, and whether it may judge.
+//! A recorded trial of the ship for validation.
 
 use sistership_model::trial::Trial;
 
@@ -9,6 +9,6 @@ pub struct TrialOfShip<'a> {
     pub name: &'a str,
     /// Its samples.
     pub trial: &'a Trial,
-    /// Whether the model was fitted on it: such a trial judges nothing.
+    /// True if the model was fitted on it; such a trial is no evidence.
     pub fitted: bool,
 }

@@ -1,7 +1,7 @@
-//! What effects would explain of trials that do not have them.
+//! Improvement of the fit by effects on trials that do not have them.
 //!
-//! The discrepancy is a random motion; what a law cannot follow is not, and an effect that
-//! resembles it would be believed. How often that is so is measured: on each clean trial, under
+//! The discrepancy is a random motion, but the error of a law is not, and an effect that resembles
+//! this error would be accepted. The frequency of that is measured: on each clean trial, under
 //! coefficients fitted on the others, and on all together.
 
 use std::collections::BTreeMap;
@@ -18,16 +18,18 @@ use super::trial_information::TrialInformation;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
-/// By `effect/form`.
+/// False-alarm levels by `effect/form`.
 ///
 /// # Errors
-/// Says that the information is not positive.
+/// Returns an error if the information is not positive.
 pub(super) fn levels(
     workspace: &LinearisedTrials<'_>,
     (known, but_one): (&TrialInformation<'_>, &[CoefficientPrior]),
     candidates: &[EffectCandidate],
 ) -> Result<BTreeMap<String, FalseAlarmLevel>, RefineError> {
     let size = known.fixed.weighted_mean.len();
+    // Coefficients first, then the columns of the candidates in their order, which `first` counts
+    // below.
     let columns: Vec<usize> =
         candidates.iter().flat_map(|candidate| workspace.columns().showing(candidate)).collect();
     let places: Vec<usize> = (0..size).chain(columns).collect();
@@ -46,6 +48,7 @@ pub(super) fn levels(
         let fixing: Vec<NormalPrior> = priors(candidate);
         let each = ratio(single.iter(), &columns, &fixing);
         let together = ratio(std::iter::once(&total), &columns, &fixing);
+        // Rounded, so that a stored level does not depend on the last digits of the arithmetic.
         let rounded = |x: f64| {
             (THRESHOLDS.calibration.rounding * x).round() / THRESHOLDS.calibration.rounding
         };
@@ -54,7 +57,8 @@ pub(super) fn levels(
     Ok(candidates.iter().map(&mut of).collect())
 }
 
-/// Explained by what chance explains; one where no trial says anything of the effect.
+/// Improvement of the fit by that expected by chance; one where no trial has information on the
+/// effect.
 fn ratio<'a>(
     reduced: impl Iterator<Item = &'a MarginalInformation>,
     columns: &[usize],

@@ -1,4 +1,4 @@
-//! What the trials that a model was fitted on leave open.
+//! Calibration: the uncertainty that remains after the trials on which a model was fitted.
 
 mod false_alarm;
 mod noise_model;
@@ -32,44 +32,45 @@ use sistership_filtering::{
 };
 use sistership_identification::refine::RefineError;
 
-/// What a model is calibrated with.
+/// Inputs of a calibration.
 #[derive(Clone, Copy)]
 struct Calibration<'a> {
     law: &'a Law,
     effects: &'a [Arc<Effect>],
     trials: &'a [&'a Trial],
-    /// Those on which the noise model is learned.
+    /// Trials on which the noise model is learned.
     noise: &'a [&'a Trial],
     settings: CalibrationSettings,
-    /// How far readings are apart on all of them, where that was asked for.
+    /// Least interval between independent readings on all trials, where it was requested.
     reading_interval_s: Option<f64>,
 }
 
-/// How it is learned what trials leave open: by a refinement's settings of these names.
+/// Settings of a calibration; the settings of a refinement have the same names.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CalibrationSettings {
-    /// Samples of the trials on which the noise model is learned; all where absent.
+    /// Number of samples of the trials on which the noise model is learned; all where absent.
     pub samples: Option<usize>,
-    /// No more is computed than needed: the noise model is searched in two rounds, and instruments
-    /// among the errors that seem to be there.
+    /// Limits the computation: the noise model is searched in two rounds, and instruments are
+    /// searched among the errors that one linearisation shows.
     pub economical: bool,
-    /// Instruments that follow rates follow those that the filter expects.
+    /// Instruments that depend on rates use the rates that the filter expects.
     pub expected_rates: bool,
-    /// How far readings are apart is asked of the samples as they were recorded, and kept.
+    /// The interval between independent readings is determined on the recorded samples, and stored.
     pub reading_interval: bool,
 }
 
-/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
-/// library's grammar that the model lacks are learned too, as far as those trials show them; and
-/// what effects would explain of these trials, which do not have them, is kept to judge them by
-/// later.
+/// Determines the uncertainty that remains after the trials on which a model was fitted, to be
+/// stored with it. Terms of the library's grammar that the model lacks are learned too, as far as
+/// those trials show them; and the false-alarm levels of effects on these trials, which do not have
+/// them, are stored for later judgements.
 ///
-/// Given a number of samples, the noise model, which is asked for again and again, is learned on
-/// trials that have about so many between them and stand for all; each trial is then linearised
-/// when its turn comes, and not kept.
+/// Given a number of samples, the noise model, which is evaluated repeatedly, is learned on
+/// representative trials that have about so many samples together; each trial is then linearised
+/// when it is needed, and not kept.
 ///
 /// # Errors
-/// Names the channel that a trial lacks, or says that the information is not positive.
+/// Returns an error that names the channel that a trial lacks, or one if the information is not
+/// positive.
 pub fn calibrate(
     model: &Model,
     law: &Law,
@@ -79,6 +80,7 @@ pub fn calibrate(
 ) -> Result<Uncertainty, RefineError> {
     let places = representative(trials, settings.samples.unwrap_or(usize::MAX));
     let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
+    // An earlier uncertainty belongs to other trials.
     let model = &Model { uncertainty: None, ..model.clone() };
     let reading_interval_s =
         settings.reading_interval.then(|| own_reading_interval_s(model, law, trials));
@@ -87,11 +89,15 @@ pub fn calibrate(
         Calibration { law, effects, trials, noise: &noise, settings, reading_interval_s };
     let learned = calibration.learn(model, None)?;
     let first = calibration.left_open(&learned)?;
+    // Errors of instruments are searched under the first calibration; where there are some,
+    // everything is learned again with them.
     let systematic_errors =
         systematic_errors::of(model, &first, law, effects, (&noise, settings.economical))?;
     if systematic_errors.is_empty() {
         return calibration.judged(&learned);
     }
+    // The second calibration starts from the noise model of the first one where computation is
+    // limited.
     let found = settings.economical.then_some(learned.found);
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
     let erring = Model { uncertainty: Some(erring), ..model.clone() };
@@ -103,15 +109,15 @@ fn own_reading_interval_s(model: &Model, law: &Law, trials: &[&Trial]) -> Result
     LinearisedTrials::own_reading_interval_s(&as_it_is, trials)
 }
 
-/// What is learned before it is asked what the trials leave open.
+/// Results of learning on the trials, before the uncertainty is determined.
 struct Learned<'a> {
     model: Model,
-    /// The model where trials have shifted it to, and by how much.
+    /// The model with the coefficients shifted by the trials, and the shift.
     shifted: CalibratedModel,
     shift: Vec<f64>,
     nuisance: Vec<Nuisance>,
     fixed: CoefficientPrior,
-    /// What instruments scatter by on the trials on which the noise model was learned.
+    /// Noise of the instruments on the trials on which the noise model was learned.
     scatter: Noise,
     found: NoiseModel,
     /// All trials with all columns, and their products, where they are few enough to be kept.
@@ -119,12 +125,13 @@ struct Learned<'a> {
 }
 
 impl<'a> Calibration<'a> {
-    /// Shift and noise where instruments err as the model's uncertainty says, or not at all; from
-    /// the noise where they were said not to, where that has been learned.
+    /// Learns shift and noise, with the systematic errors of the model's uncertainty if it has any;
+    /// starts from a noise model that was learned without them, if given.
     fn learn(&self, model: &Model, start: Option<NoiseModel>) -> Result<Learned<'a>, RefineError> {
         let &Self { law, effects, trials, noise, settings, reading_interval_s } = self;
         let economical = settings.economical;
         let terms = learned(model, law, effects, trials);
+        // Only terms with a regressor in this model can be columns.
         let extra: Vec<_> = terms
             .iter()
             .filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0)))
@@ -139,19 +146,24 @@ impl<'a> Calibration<'a> {
                 ..moved
             })
         };
+        // The first shift is found about the given model; the noise is then learned about the
+        // shifted one.
         let as_it_is = moved(&vec![0.0; nuisance.len()])?;
         let (shift, rough) = first_shift(&as_it_is, &nuisance, &prior, (noise, start, economical))?;
         let fixed = prior.from(&shift);
         let shifted = moved(&shift)?;
         let all_at_once = noise.len() == trials.len();
+        // Columns of all effects are needed later only if these trials are kept.
         let columns = if all_at_once {
             self.whole(model, &nuisance)
         } else {
             Columns { nuisance: nuisance.clone(), candidates: Vec::new() }
         };
         let learned_on = LinearisedTrials::new(&shifted, columns, noise, None)?;
+        // Noise by the readings alone, before the most probable one replaces it.
         let scatter = learned_on.noise.clone();
         let found = noise_model::most_probable(&learned_on, &fixed, (Some(rough), economical))?;
+        // Linearisations are kept only if all trials are used for the noise model.
         let kept = all_at_once.then(|| -> Result<_, RefineError> {
             let kept = learned_on.under(&found.noise);
             let grams = kept.each(&found.discrepancies)?;
@@ -172,8 +184,9 @@ impl<'a> Calibration<'a> {
         learned.one_at_a_time(self.whole(&learned.model, &learned.nuisance), self.trials)
     }
 
-    /// With the coefficients' columns alone, for what is rounded: the last digits are others than
-    /// with effects, whose equations stand in the tape at their absence.
+    /// Trials with the columns of coefficients alone, for values that are rounded: with the columns
+    /// of effects, whose equations are part of the tape also at their absence, the last digits
+    /// differ.
     fn without_effects(
         &self,
         learned: &Learned<'_>,
@@ -183,8 +196,8 @@ impl<'a> Calibration<'a> {
         learned.one_at_a_time(columns, trials)
     }
 
-    /// What the trials leave open of the coefficients; where no more is computed than needed, those
-    /// of the noise model, on which alone instruments are asked.
+    /// Uncertainty of the coefficients after the trials; where computation is limited, after those
+    /// of the noise model, on which alone systematic errors are searched.
     fn left_open(&self, learned: &Learned<'_>) -> Result<Uncertainty, RefineError> {
         let discrepancies = &learned.found.discrepancies;
         let of = |all: &LinearisedTrials<'_>, grams: &[Gram]| {
@@ -203,7 +216,8 @@ impl<'a> Calibration<'a> {
         }
     }
 
-    /// The same, and what later diagnoses are to be judged by.
+    /// Uncertainty of the coefficients, with false-alarm levels and remainders for the judgement of
+    /// later diagnoses.
     fn judged(&self, learned: &Learned<'_>) -> Result<Uncertainty, RefineError> {
         let discrepancies = &learned.found.discrepancies;
         if let Some((all, grams)) = &learned.kept {
@@ -216,6 +230,7 @@ impl<'a> Calibration<'a> {
         let grams = all.each(discrepancies)?;
         let known = known(learned, &grams);
         let but_one = known.but_one();
+        // The remainder is rounded and stored, so it is computed without the columns of effects.
         let remainder =
             remainder(&self.without_effects(learned, self.trials)?, &but_one, discrepancies)?;
         self.judged_by(learned, &all, (&known, &but_one), remainder)
@@ -229,9 +244,13 @@ impl<'a> Calibration<'a> {
         remainder: BTreeMap<String, f64>,
     ) -> Result<Uncertainty, RefineError> {
         let model = &learned.model;
+        // Terms that free a coefficient have a false-alarm level too, without a column of their
+        // own.
         let freed = lacked(model, self.law, self.effects, self.trials);
         let freed = freed.iter().map(|(effect, form)| EffectCandidate::absent(effect, form));
         let candidates: Vec<_> = all.columns().candidates.iter().cloned().chain(freed).collect();
+        // The learned errors of instruments are part of the model here, and are stored with its
+        // uncertainty.
         let errs = model.uncertainty.as_ref().map(|known| known.systematic_errors.clone());
         Ok(Uncertainty {
             systematic_errors: errs.unwrap_or_default(),
@@ -243,7 +262,7 @@ impl<'a> Calibration<'a> {
 }
 
 impl Learned<'_> {
-    /// Trials under what was learned; each is linearised when it is asked for.
+    /// Trials under the learned noise; each is linearised when it is needed.
     fn one_at_a_time<'a>(
         &self,
         columns: Columns,
@@ -254,14 +273,15 @@ impl Learned<'_> {
     }
 }
 
-/// What the trials say, coefficients differing from trial to trial as they seem to.
+/// Information of the trials, with the scatter of coefficients between trials that they show.
 fn known<'g>(learned: &'g Learned<'_>, grams: &'g [Gram]) -> TrialInformation<'g> {
+    // A ratio of one first, from which the actual one is determined.
     let known = TrialInformation { fixed: &learned.fixed, grams, scatter: 1.0 };
     TrialInformation { scatter: known.scatter(), ..known }
 }
 
-/// What the trials teach by one linearisation about the model as it is, and the discrepancies by
-/// that.
+/// Shift of the coefficients by one linearisation about the given model, and the noise model of
+/// that linearisation.
 fn first_shift(
     as_it_is: &CalibratedModel,
     nuisance: &[Nuisance],
@@ -279,7 +299,7 @@ fn first_shift(
     Ok((shift.ok_or_else(not_positive)?, scatter))
 }
 
-/// Instruments by what their scatter alone says.
+/// Instruments relative to the noise of their readings alone.
 fn instruments(fitted: &Noise, scatter: &Noise) -> BTreeMap<String, InstrumentFit> {
     let one = |(channel, own): (&Channel, &Instrument)| {
         let deviation_by_scatter = own.deviation / scatter.get(channel)?.deviation;
@@ -288,7 +308,7 @@ fn instruments(fitted: &Noise, scatter: &Noise) -> BTreeMap<String, InstrumentFi
     fitted.iter().filter_map(one).collect()
 }
 
-/// The largest remainder by channel, each trial under coefficients fitted on the others.
+/// Largest remainder of each channel, each trial under coefficients fitted on the others.
 fn remainder(
     workspace: &LinearisedTrials<'_>,
     but_one: &[CoefficientPrior],
@@ -304,6 +324,7 @@ fn remainder(
         .into_par_iter()
         .map(sizes)
         .collect::<Result<_, RefineError>>()?;
+    // The largest over all trials, rounded so that a version does not depend on last digits.
     let mut limits: BTreeMap<String, f64> = BTreeMap::new();
     for (channel, size) in sizes.into_iter().flatten() {
         let limit = limits.entry(channel.name().to_owned()).or_default();
@@ -318,10 +339,11 @@ fn uncertainty(
     known: &TrialInformation<'_>,
     learned: &Learned<'_>,
 ) -> Result<Uncertainty, RefineError> {
-    // From the model as it is, not as the trials have shifted it.
+    // Relative to the given model, not to the shifted one.
     let back: Vec<f64> = learned.shift.iter().map(|shift| -shift).collect();
     let all = known.all().from(&back);
     let size = all.weighted_mean.len();
+    // Scaled by the prior's standard deviations: coefficients differ by orders of magnitude.
     let scales: Vec<f64> =
         (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
     let scaled =
@@ -329,6 +351,7 @@ fn uncertainty(
     let right = DVector::from_fn(size, |i, _| all.weighted_mean[i] * scales[i]);
     let factor = Cholesky::new(scaled).ok_or_else(not_positive)?;
     let lower = factor.l();
+    // The offset L^-1 b, with which the scaled mean is L'^-1 times the offset.
     let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
     let axes = workspace.axes();
     let discrepancy: BTreeMap<_, Discrepancy> =

@@ -1,4 +1,4 @@
-//! The discrepancies and instruments under which trials are most probable.
+//! Discrepancies and instruments under which trials are most probable.
 
 use rayon::prelude::*;
 use sistership_model::trial::Channel;
@@ -11,14 +11,14 @@ use super::trial_information::{TrialInformation, shift};
 use sistership_filtering::{Discrepancies, Linearised, Noise, deviances};
 use sistership_identification::refine::RefineError;
 
-/// What readings scatter by beside the model.
+/// Discrepancies of accelerations and noise of instruments.
 #[derive(Debug, Clone)]
 pub(super) struct NoiseModel {
     pub discrepancies: Discrepancies,
     pub noise: Noise,
 }
 
-/// One number of it.
+/// One parameter of a noise model.
 #[derive(Debug, Clone, Copy)]
 enum NoiseParameter {
     Deviation(usize),
@@ -56,6 +56,7 @@ impl NoiseModel {
         let axes = 0..self.discrepancies.len();
         let of_axes =
             axes.flat_map(|axis| [NoiseParameter::Deviation(axis), NoiseParameter::White(axis)]);
+        // Only headings and positions follow velocities, so only they have a drift.
         let follow = [Channel::Psi, Channel::X, Channel::Y];
         let drifts = follow
             .into_iter()
@@ -65,12 +66,12 @@ impl NoiseModel {
     }
 }
 
-/// The most probable scatter, coefficients and scatter being fitted in turn. Each trial is judged
-/// by coefficients fitted on the others, so that what these have followed by chance is not taken
-/// for knowledge.
+/// Returns the most probable noise model; coefficients and noise are fitted in turn. Each trial is
+/// evaluated with coefficients fitted on the others, so that their chance fit does not reduce the
+/// noise.
 ///
 /// # Errors
-/// Says that the information is not positive.
+/// Returns an error if the information is not positive.
 pub(super) fn most_probable(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
@@ -80,6 +81,7 @@ pub(super) fn most_probable(
         true => &THRESHOLDS.calibration.factors_economical,
         false => &THRESHOLDS.calibration.factors,
     };
+    // A given start replaces the coarse rounds; only the last, finest one is needed.
     let first = if start.is_some() { rounds.len() - 1 } else { 0 };
     let mut best = match start {
         Some(start) => start,
@@ -92,8 +94,9 @@ pub(super) fn most_probable(
     Ok(best)
 }
 
-/// The best of a few levels of discrepancy, the same for all axes.
+/// Best of a few levels of discrepancy, the same for all axes.
 fn coarse(workspace: &LinearisedTrials<'_>) -> Result<NoiseModel, RefineError> {
+    // Coefficients are not shifted yet: the first level needs no fit.
     let as_it_is = vec![vec![0.0; workspace.columns().len()]; workspace.trials.len()];
     let (scales, parts) = (workspace.scales(), along(workspace, &as_it_is));
     let at = |level: &f64| NoiseModel {
@@ -107,7 +110,7 @@ fn coarse(workspace: &LinearisedTrials<'_>) -> Result<NoiseModel, RefineError> {
     best.map(|(_, best)| best).ok_or_else(not_positive)
 }
 
-/// For each trial the coefficients by the others; of a single trial, by itself.
+/// Coefficients of each trial by the others; those of a single trial, by itself.
 fn coefficients(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
@@ -119,7 +122,7 @@ fn coefficients(
     Ok(others.iter().map(|others| shift(others, workspace.columns().len())).collect())
 }
 
-/// Parts of trials with all columns in one.
+/// Parts of trials with all columns combined into one.
 type LinearisedParts = Vec<Vec<Linearised>>;
 
 fn along(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> LinearisedParts {
@@ -138,7 +141,7 @@ fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> Result<f64, Refine
     Ok(trials.collect::<Vec<_>>().iter().sum())
 }
 
-/// Each number alone, as far as it helps.
+/// Improves each parameter alone while the deviance falls.
 fn refined(
     workspace: &LinearisedTrials<'_>,
     start: NoiseModel,
@@ -152,6 +155,7 @@ fn refined(
             false => Ok(None),
         };
     let mut best = (deviance(&parts, &start)?, start);
+    // Coordinate descent: coarse factors first, every parameter in turn.
     for factor in factors {
         for number in best.1.numbers() {
             best = multiplied(best, number, *factor, &scored)?;
@@ -163,8 +167,8 @@ fn refined(
 /// A noise model with its deviance.
 type Scored = (f64, NoiseModel);
 
-/// One number multiplied by a factor, or divided by it, for as long as that helps. Both ways are
-/// looked at together; where one has helped, the other leads back.
+/// Multiplies or divides one parameter by a factor while that improves the deviance. Both
+/// directions are evaluated together; after a step in one direction, the other would lead back.
 fn multiplied(
     best: Scored,
     number: NoiseParameter,
@@ -173,7 +177,7 @@ fn multiplied(
 ) -> Result<Scored, RefineError> {
     let better = |from: &Scored, by: f64| -> Result<Option<Scored>, RefineError> {
         let most = from.0 - THRESHOLDS.calibration.least_gain;
-        // What is no number is no gain.
+        // A deviance that is not a number fails the comparison.
         let tried = scored(from.1.times(number, by), number)?;
         Ok(tried.filter(|(deviance, _)| *deviance <= most))
     };
@@ -189,7 +193,7 @@ fn multiplied(
     Ok(best)
 }
 
-/// No instrument errs by less than its readings scatter.
+/// Returns true if the noise of an instrument is not below the noise of its readings alone.
 fn is_possible(
     workspace: &LinearisedTrials<'_>,
     tried: &NoiseModel,
@@ -199,6 +203,7 @@ fn is_possible(
         return true;
     };
     let pair = workspace.noise.get(&channel).zip(tried.noise.get(&channel));
+    // The noise of the readings alone is the lower limit.
     let share = THRESHOLDS.calibration.scatter_share;
     pair.is_none_or(|(least, own)| {
         own.deviation >= share * least.deviation && own.drift >= share * least.drift

@@ -1,27 +1,28 @@
-//! A few trials that stand for many: what costs by the sample is learned on them.
+//! Representative subset of many trials, on which computations with a cost per sample are made.
 //!
-//! A maximin design (Johnson, Moore and Ylvisaker 1990, "Minimax and maximin distance designs",
-//! J. Stat. Plan. Inference 26): each next trial is the one farthest from those taken, so that what
-//! is seldom sailed is among them as well as what is common.
+//! A maximin design (Johnson, Moore and Ylvisaker 1990, "Minimax and maximin distance designs", J.
+//! Stat. Plan. Inference 26): each next trial is the one farthest from those selected, so that rare
+//! manoeuvres are included as well as common ones.
 
 use std::collections::BTreeMap;
 
 use sistership_model::trial::{Channel, Trial};
 
-/// Of fewer trials nothing is left away: they would not show how trials differ, and of six each may
-/// be left out of the fit once.
+/// Fewest trials that are selected: fewer would not show how trials differ, and each of six may be
+/// held out of the fit once.
 const LEAST: usize = 6;
 
-/// Where a ship was and how it headed say nothing of how it was sailed.
+/// Channels of position and heading, which carry no information on the manoeuvre.
 const PLACE: [Channel; 3] = [Channel::X, Channel::Y, Channel::Psi];
 
-/// Places, in order, of trials that together have about `samples` samples; all of them where they
+/// Indices, in order, of trials that together have about `samples` samples; all of them where they
 /// have no more than that, and at least [`LEAST`].
 pub(super) fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
     let all = 0..trials.len();
     if trials.iter().map(|trial| trial.len()).sum::<usize>() <= samples {
         return all.collect();
     }
+    // Distances are between the standardised moments of the trials.
     let points = scaled(trials.iter().map(|trial| signature(trial)).collect());
     let mut taken: Vec<usize> = Vec::new();
     let mut left: Vec<usize> = all.collect();
@@ -29,6 +30,7 @@ pub(super) fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
     while let Some(next) = farthest(&points, &taken, &left) {
         let place = left.swap_remove(next);
         sum += trials[place].len();
+        // The limit is passed only as far as the fewest trials need.
         if taken.len() >= LEAST && sum > samples {
             break;
         }
@@ -38,7 +40,7 @@ pub(super) fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
     taken
 }
 
-/// Mean and standard deviation of each channel that says how the ship moved and was steered.
+/// Mean and standard deviation of each channel of the ship's motion and steering.
 fn signature(trial: &Trial) -> BTreeMap<Channel, [f64; 2]> {
     let recorded = trial.channels.iter().filter(|(channel, _)| !PLACE.contains(channel));
     let moments = |values: &Vec<f64>| {
@@ -50,11 +52,12 @@ fn signature(trial: &Trial) -> BTreeMap<Channel, [f64; 2]> {
     recorded.map(|(&channel, values)| (channel, moments(values))).collect()
 }
 
-/// One coordinate for each number, scaled to a deviation of one over the trials; what a trial did
-/// not record is the mean of the others.
+/// Coordinates of each trial, one per moment, scaled to a standard deviation of one over the
+/// trials; a channel that a trial did not record has the mean of the others.
 fn scaled(signatures: Vec<BTreeMap<Channel, [f64; 2]>>) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::new(); signatures.len()];
     for channel in Channel::all() {
+        // Mean and standard deviation of a channel are separate coordinates.
         for part in 0..2 {
             let of = |of: &BTreeMap<Channel, [f64; 2]>| of.get(&channel).map(|both| both[part]);
             let known: Vec<f64> = signatures.iter().filter_map(of).collect();
@@ -62,6 +65,7 @@ fn scaled(signatures: Vec<BTreeMap<Channel, [f64; 2]>>) -> Vec<Vec<f64>> {
             let mean = known.iter().sum::<f64>() / count;
             let squares: f64 = known.iter().map(|value| (value - mean).powi(2)).sum();
             let deviation = (squares / count).sqrt();
+            // A moment that is equal on all trials does not separate them.
             if deviation > 0.0 {
                 points.iter_mut().zip(&signatures).for_each(|(point, own)| {
                     point.push((of(own).unwrap_or(mean) - mean) / deviation)
@@ -72,7 +76,7 @@ fn scaled(signatures: Vec<BTreeMap<Channel, [f64; 2]>>) -> Vec<Vec<f64>> {
     points
 }
 
-/// The place in `left` of what is farthest from those taken; at first, of what is nearest to the
+/// Index in `left` of the trial farthest from those selected; of the first, the one nearest to the
 /// mean, which is the origin.
 fn farthest(points: &[Vec<f64>], taken: &[usize], left: &[usize]) -> Option<usize> {
     let square = |point: &[f64]| point.iter().map(|x| x * x).sum::<f64>();
@@ -82,6 +86,7 @@ fn farthest(points: &[Vec<f64>], taken: &[usize], left: &[usize]) -> Option<usiz
         let nearest = taken.iter().map(|&other| apart(point, &points[other]));
         nearest.min_by(f64::total_cmp).unwrap_or(-square(point))
     };
+    // Ties are resolved by the lower index, so that the selection is reproducible.
     let order = |a: &usize, b: &usize| worth(a).total_cmp(&worth(b)).then(b.cmp(a));
     (0..left.len()).max_by(|&a, &b| order(&left[a], &left[b]))
 }

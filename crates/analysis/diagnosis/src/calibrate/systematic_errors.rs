@@ -1,5 +1,6 @@
-//! What instruments do wrong on the trials that a model was fitted on. Later trials are read by the
-//! same ones: an error that was there before is not new, and left alone it would hide what is.
+//! Systematic errors of instruments on the trials on which a model was fitted. Later trials are
+//! recorded by the same instruments: an error that was already present is not new, and if ignored
+//! it would hide what is new.
 
 use std::sync::Arc;
 
@@ -18,7 +19,10 @@ use super::super::{Request, Settings};
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
-/// Errors of instruments that have one size on all trials; none where the instruments agree.
+/// Errors of instruments that have one size on all trials; empty where the instruments agree.
+///
+/// # Errors
+/// Returns an error that names what a trial lacks.
 pub(super) fn of(
     model: &Model,
     known: &Uncertainty,
@@ -26,7 +30,7 @@ pub(super) fn of(
     effects: &[Arc<Effect>],
     (trials, economical): (&[&Trial], bool),
 ) -> Result<Vec<AppliedEffect>, RefineError> {
-    // False-alarm levels are not yet to be asked: an effect may be there.
+    // False-alarm levels are not applied yet: the effect may be present on these trials.
     let known = Uncertainty { false_alarm_levels: Default::default(), ..known.clone() };
     let model = Model { uncertainty: Some(known), ..model.clone() };
     let settings = Settings {
@@ -36,8 +40,9 @@ pub(super) fn of(
     let request = Request { model: &model, law, effects, trials, settings: &settings };
     let mut search = search(&request)?;
     search.freed.clear();
-    // What could not be shown here is nobody's question.
+    // Detection limits are not needed here.
     search.states_odds = false;
+    // Only effects on measurements are candidates.
     search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
     let seeming = seeming(&search)?;
     if seeming.is_empty() {
@@ -48,13 +53,14 @@ pub(super) fn of(
     }
     let base = search.base(&[], &search.levels)?;
     let choice = choose(&search, &base, &settings)?;
+    // Only the effects that the search has added to those of the model.
     Ok(model_with(search.model, &choice.best().candidates, None)
         .effects
         .split_off(model.effects.len()))
 }
 
-/// Errors that seem to be there by one linearisation, at the discrepancy that the trials have: most
-/// instruments agree, and a search over sets and levels would find so at ten times the cost.
+/// Errors that one linearisation shows, at the discrepancy of the trials: most instruments agree,
+/// and a search over sets and levels would find that at ten times the cost.
 fn seeming(search: &HypothesisSearch<'_>) -> Result<Vec<EffectCandidate>, RefineError> {
     // At the least level, that of the trials themselves, an error has the most evidence.
     let least_level = search.levels.iter().min_by(|a, b| a.factor.total_cmp(&b.factor)).copied();

@@ -1,10 +1,10 @@
-//! Changes in time: where a trial leaves something unexplained, the effect that begins, ends or
+//! Changes in time: for a trial with an unexplained remainder, the effect that begins, ends or
 //! drifts within it, or that this trial alone has.
 //!
-//! A trial is cut into stretches, and the columns of each effect with it: sums of stretches are the
-//! columns of the effect in any window of time, so that one filtering of the trial weighs all of
-//! them. Coefficients and the effects that are there already may give way as far as all that is
-//! known of them allows.
+//! A trial is divided into segments, and the columns of each effect with it: sums of segments are
+//! the columns of the effect in any window of time, so that one filtering of the trial evaluates
+//! all of them. Coefficients and the effects that are already present may adjust within their
+//! uncertainty.
 
 mod of_trial;
 mod source;
@@ -21,15 +21,15 @@ use sistership_identification::refine::RefineError;
 
 use of_trial::ChangeSearch;
 
-/// The changes of one effect that explain what remains, the most evident first: of the effect that
-/// explains most trials by the most evidence. Where it explains fewer than half of those that leave
-/// something, nothing is told: what explains one trial here and another there only resembles what
-/// is missing; nor where it is there throughout most trials, in another size in each. Of many such
-/// trials those are asked that leave most. `listed` are the effects that were tried, also those
-/// that were refused because they are not the same at all times.
+/// Returns the changes of one effect that explain the remainder, the most evident first: of the
+/// effect that explains most trials by the most evidence. Returns none where it explains fewer than
+/// half of the trials with a remainder, as such an effect only resembles the missing one, or where
+/// it is present throughout most trials, with a different size in each. Of many such trials those
+/// with the largest remainders are examined. `listed` are the effects that were evaluated,
+/// including those that were refused because they are not constant.
 ///
 /// # Errors
-/// Names what a trial lacks.
+/// Returns an error that names what a trial lacks.
 pub(super) fn changes(
     (search, best, listed): (&HypothesisSearch<'_>, &JudgedHypothesis, &[EffectCandidate]),
     remaining: &[Unexplained],
@@ -41,15 +41,17 @@ pub(super) fn changes(
     let workspace = search.workspace(columns(search, best, listed))?;
     let changing = ChangeSearch::new(search, best, &workspace);
     let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
+    // In the order of the remainders, the largest first.
     let asked: Vec<usize> = open(remaining).iter().filter_map(place).collect();
     let asked = &asked[..asked.len().min(THRESHOLDS.changes.asked)];
     let found = common(in_turn(&changing, asked, least_evidence)?, least_evidence);
+    // A change throughout most trials is a permanent effect of varying size, no change in time.
     let whole = found.iter().filter(|change| change.course == ChangeCourse::Throughout).count();
     let is_change = whole as f64 <= THRESHOLDS.changes.throughout * workspace.trials.len() as f64;
     Ok(if is_change { found } else { Vec::new() })
 }
 
-/// Trials that leave something, those first that leave most.
+/// Names of trials with a remainder, those with the largest first.
 pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for stretch in remaining {
@@ -60,7 +62,7 @@ pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
     names
 }
 
-/// The changes that explain each trial, of effects that may still explain enough of them.
+/// Changes that explain each trial, of effects that may still explain enough of them.
 fn in_turn(
     changing: &ChangeSearch<'_, '_>,
     asked: &[usize],
@@ -73,29 +75,32 @@ fn in_turn(
             let of_effect = |changes: &&Vec<Change>| changes.iter().any(|one| one.effect == effect);
             each.iter().filter(of_effect).count()
         };
+        // An effect is dropped as soon as the trials to come cannot make it explain enough.
         let may_be = |effect: &str| is_enough(explained(effect) + to_come, asked.len());
         each.push(changing.of_trial(place, least, &may_be)?);
     }
     Ok(each)
 }
 
-/// Whether the changes of an effect explain enough of the trials.
+/// Returns true if the changes of an effect explain enough of the trials.
 fn is_enough(trials: usize, of: usize) -> bool {
     trials as f64 >= THRESHOLDS.changes.trials * of as f64
 }
 
-/// Of the changes that explain each trial, those of the effect that is taken.
+/// Changes of the effect that explains most trials, with the other effects that are as likely.
 fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
     let mut effects: BTreeMap<String, (usize, f64)> = BTreeMap::new();
     for change in each.iter().flatten() {
         let (trials, evidence) = effects.entry(change.effect.clone()).or_default();
         (*trials, *evidence) = (*trials + 1, *evidence + change.evidence);
     }
+    // By the number of trials first, then by the evidence.
     let taken = effects.iter().max_by(|a, b| a.1.0.cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
     let Some((effect, &(trials, evidence))) = taken else { return Vec::new() };
     if !is_enough(trials, each.len()) {
         return Vec::new();
     }
+    // Effects that explain as many trials with nearly the same evidence are alternatives.
     let is_near = |(name, (of, own)): &(&String, &(usize, f64))| {
         *name != effect && *of == trials && evidence - own < least_evidence * trials as f64
     };
@@ -107,7 +112,7 @@ fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
     found
 }
 
-/// The effects that are there, where they stand, and all others at their absence.
+/// Effects that are present, at their estimates, and all others at their absence.
 fn columns(
     search: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,

@@ -1,4 +1,4 @@
-//! The changes that explain a trial.
+//! Changes that explain a trial.
 
 use std::collections::BTreeSet;
 use std::ops::AddAssign;
@@ -21,21 +21,22 @@ use sistership_identification::refine::RefineError;
 use super::source::{ChangeSource, sources};
 use super::windows::{Stretches, Window, interval};
 
-/// What is the same for all trials.
+/// Data that are the same for all trials.
 pub(super) struct ChangeSearch<'s, 'a> {
     search: &'s HypothesisSearch<'a>,
     workspace: &'s LinearisedTrials<'a>,
     discrepancies: Discrepancies,
     sources: Vec<ChangeSource>,
-    /// Columns that are there beside a change: of coefficients, and of the effects taken.
+    /// Columns that are present together with a change: those of coefficients, and of the accepted
+    /// effects.
     kept: Vec<usize>,
-    /// What the other trials say of the effects taken.
+    /// Priors of the accepted effects by the other trials.
     taken: Vec<NormalPrior>,
-    /// What the laws of the effects taken leave open, by their columns.
+    /// Relative uncertainty of the accepted effects' laws, by their columns.
     open: Vec<f64>,
 }
 
-/// Columns of a trial that are there beside any change, through the filter.
+/// Columns of a trial that are present with any change, after the filter.
 struct KeptColumns {
     place: usize,
     /// Residual and columns by readings, by part.
@@ -43,7 +44,7 @@ struct KeptColumns {
     gram: Gram,
 }
 
-/// A window of a source, with what it makes of the trial.
+/// A window of a source, with its evidence on a trial.
 struct WeighedChange<'s> {
     source: &'s ChangeSource,
     window: Window,
@@ -59,6 +60,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     ) -> Self {
         let size = search.nuisance.len();
         let moved: usize = best.candidates.iter().map(|candidate| candidate.at.len()).sum();
+        // The smallest positive number keeps the prior of a determined parameter valid.
         let deviation = |i: usize| best.covariance[(i, i)].max(f64::MIN_POSITIVE).sqrt();
         let share = |candidate: &EffectCandidate| {
             let share = of_shape(candidate);
@@ -78,11 +80,12 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         }
     }
 
-    /// The most evident change of each effect that explains all that remains of a trial, of those
-    /// that are asked for.
+    /// Returns the most evident change of each effect that explains all that remains of a trial, of
+    /// those that are requested.
     ///
     /// # Errors
-    /// Names a channel of which no noise is known, or says that the information is not positive.
+    /// Returns an error if the noise of a channel is unknown, or if the information is not
+    /// positive.
     pub fn of_trial(
         &self,
         place: usize,
@@ -96,6 +99,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
             .collect::<Result<_, _>>()?;
         let mut found: Vec<Change> = each.into_iter().flatten().collect();
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        // Sorted by evidence: the first form of each effect is its most evident one.
         let mut effects = BTreeSet::new();
         found.retain(|change| effects.insert(change.effect.clone()));
         Ok(found)
@@ -109,16 +113,19 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         least_evidence: f64,
     ) -> Result<Option<Change>, RefineError> {
         let Some(stretches) = self.stretches(trial.place, source) else { return Ok(None) };
+        // Windows at the segments' ends first; the time of the best one is then refined.
         let coarse = self.by_stretches(trial, source, stretches)?;
         let taken = simplest(&coarse, least_evidence);
         let Some(taken) = taken.filter(|taken| taken.evidence > least_evidence) else {
             return Ok(None);
         };
+        // A change without a time has nothing to refine.
         let fine = match taken.window.is_timed() {
             true => self.at_times(trial, source, stretches, taken.window)?,
             false => Vec::new(),
         };
         let taken = most_evident(&fine).unwrap_or(taken);
+        // Accepted only if the trial has no remainder with it.
         let is_right = self.left(trial, stretches, taken)?.is_empty();
         Ok(is_right.then(|| self.told((trial.place, stretches), taken, (&coarse, &fine))))
     }
@@ -132,7 +139,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         (last > first).then(|| Stretches::new([*first, *last], length_s, parameters))
     }
 
-    /// Every window of a source that begins and ends where stretches do.
+    /// All windows of a source that begin and end at the limits of segments.
     fn by_stretches<'w>(
         &self,
         trial: &KeptColumns,
@@ -160,6 +167,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
             |t_s: f64| windows.iter().map(|window| window.share(t_s, stretches.span_s)).collect();
         let cut = self.information(trial, source, &shares)?;
         let parameters = source.columns.len();
+        // Columns are ordered by parameter, then by window.
         let of = |(at, window): (usize, &Window)| {
             let own = (0..parameters).map(|parameter| parameter * windows.len() + at);
             weighed(source, *window, cut.of_columns(&own.collect::<Vec<_>>()), stretches)
@@ -167,8 +175,8 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         Ok(windows.iter().enumerate().filter_map(of).collect())
     }
 
-    /// What a trial says of the columns of a source, each once for every weight that a time has,
-    /// with coefficients and the effects taken integrated out.
+    /// Information of a trial on the columns of a source, each once for every weight of a time,
+    /// with coefficients and the accepted effects integrated out.
     fn information(
         &self,
         trial: &KeptColumns,
@@ -185,7 +193,8 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         all.given(&taken, &self.taken, &own).ok_or_else(not_positive)
     }
 
-    /// A trial with some columns as they are, and the columns of a source cut.
+    /// Parts of a trial with some columns as they are, and the columns of a source multiplied by
+    /// weights.
     fn cut(
         &self,
         (place, kept): (usize, &[usize]),
@@ -196,7 +205,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         parts.map(|part| part.cut(kept, &source.columns, weights)).collect()
     }
 
-    /// Those of coefficients and of the effects taken, which stay the same whatever changes.
+    /// Columns of coefficients and of the accepted effects, which are the same for every change.
     fn kept_columns(&self, place: usize) -> Result<KeptColumns, RefineError> {
         let width = 1 + self.kept.len();
         let mut gram = Gram::empty(width);
@@ -228,9 +237,12 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let parts = self.cut((trial.place, &[]), source, weights);
         let (known, own) =
             (trial.gram.products.nrows(), parts.first().map_or(0, |part| part.sizes.columns));
+        // The products of the kept columns are computed once per trial; only the rows and columns
+        // of the source are added.
         let mut gram = Gram { products: DMatrix::zeros(known + own, known + own), ..trial.gram };
         gram.products.view_mut((0, 0), (known, known)).copy_from(&trial.gram.products);
         for (part, rows) in parts.iter().zip(&trial.rows) {
+            // Cross products with the kept columns, and products of the source's own columns.
             let of_source = self.whitened(part)?.0.rows(1, own).transpose();
             let (cross, square) = (rows * &of_source, of_source.tr_mul(&of_source));
             gram.products.view_mut((0, known), (known, own)).add_assign(&cross);
@@ -240,7 +252,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         Ok(gram)
     }
 
-    /// What remains unexplained of a trial with a change.
+    /// Unexplained remainder of a trial with a change.
     fn left(
         &self,
         trial: &KeptColumns,
@@ -251,6 +263,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let weight = |t_s: f64| vec![window.share(t_s, stretches.span_s)];
         let gram = self.gram(trial, source, &weight)?;
         let parameters = self.fitted(&gram, &self.search.fixed, source)?;
+        // The error of the change's own law is allowed for as well.
         let changed = parameters.iter().skip(self.kept.len()).map(|size| source.misfit * size);
         let open: Vec<f64> = self.open.iter().copied().chain(changed).collect();
         let place = trial.place;
@@ -260,7 +273,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean)
     }
 
-    /// Coefficients, effects taken and the change, fitted together on the trial.
+    /// Coefficients, accepted effects and the change, fitted together on the trial.
     fn fitted(
         &self,
         gram: &Gram,
@@ -271,11 +284,12 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let priors: Vec<NormalPrior> = self.taken.iter().chain(&source.priors).copied().collect();
         let places: Vec<usize> = (0..priors.len()).collect();
         let estimate = reduced.estimate(&places, &priors).ok_or_else(not_positive)?;
+        // Coefficients follow from the estimate: they were integrated out before.
         let shift = &reduced.shift - &reduced.answers * &estimate.mean;
         Ok(shift.iter().chain(estimate.mean.iter()).copied().collect())
     }
 
-    /// The change as it is told; the others are all windows of its source.
+    /// Result for a change; `coarse` and `fine` are all windows of its source.
     fn told(
         &self,
         (place, stretches): (usize, Stretches),
@@ -284,6 +298,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     ) -> Change {
         let WeighedChange { source, window, evidence, estimate } = taken;
         let mut candidate = source.candidate.clone();
+        // The estimate is a distance from the absence of the effect.
         candidate.at.iter_mut().zip(estimate.mean.iter()).for_each(|(at, mean)| *at += mean);
         let is_timed = window.is_timed();
         Change {
@@ -301,7 +316,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     }
 }
 
-/// A window of a source by what a trial says of it.
+/// Evidence of a window of a source by the information of a trial.
 fn weighed(
     source: &ChangeSource,
     window: Window,
@@ -318,13 +333,14 @@ fn most_evident<'w, 's>(windows: &'w [WeighedChange<'s>]) -> Option<&'w WeighedC
     windows.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
 }
 
-/// The window of a source that is taken: what is there throughout or drifts needs no time, and
-/// another author's form of it may seem to begin or end.
+/// Selected window of a source. A change throughout the trial or a drift needs no time, and where
+/// the form is another author's, it may seem to begin or end.
 fn simplest<'w, 's>(
     windows: &'w [WeighedChange<'s>],
     least_evidence: f64,
 ) -> Option<&'w WeighedChange<'s>> {
     let best = most_evident(windows)?;
+    // Part of the evidence that may come from the difference between published forms.
     let may_be = shadow_share(&best.source.candidate) * best.evidence.max(0.0);
     let enough = best.evidence - least_evidence - may_be;
     let of = |course: ChangeCourse| {
@@ -333,7 +349,7 @@ fn simplest<'w, 's>(
     Some(of(ChangeCourse::Throughout).or_else(|| of(ChangeCourse::Drifts)).unwrap_or(best))
 }
 
-/// The interval of a change's time, by the finer times where there are some.
+/// Interval of a change's time, by the finer times where there are some.
 fn between(
     stretches: Stretches,
     coarse: &[WeighedChange<'_>],
@@ -345,6 +361,7 @@ fn between(
         one.window.course == first.window.course
             && !(first.window.at_s..=last.window.at_s).contains(&one.window.at_s)
     };
+    // Coarse windows inside the refined interval are replaced by the refined ones.
     let outside = coarse.iter().filter(is_outside);
     let outside = outside.map(|one| (one.window.at_s, one.evidence, stretches.width_s()));
     let inside = fine.iter().map(|one| (one.window.at_s, one.evidence, step_s));

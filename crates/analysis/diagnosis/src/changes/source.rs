@@ -1,5 +1,5 @@
-//! What may change within a trial: the effects of the library, those that are there and those that
-//! are not, and what acts as a change only.
+//! Possible changes within a trial: the effects of the library, present or absent, and those that
+//! act as a change only.
 
 use super::super::evidence::NormalPrior;
 use super::super::hypothesis::priors;
@@ -9,20 +9,20 @@ use sistership_filtering::{Columns, EffectCandidate};
 
 /// Columns whose size may change.
 pub(super) struct ChangeSource {
-    /// The effect at its absence: where its size is that of the change.
+    /// The effect at its absence: its size is that of the change.
     pub candidate: EffectCandidate,
-    /// Places of its columns in the workspace.
+    /// Indices of its columns in the workspace.
     pub columns: Vec<usize>,
-    /// Priors of the change, about none.
+    /// Priors of the change, with mean zero.
     pub priors: Vec<NormalPrior>,
     pub log_prior: f64,
-    /// What the information on it is divided by.
+    /// Divisor of the information on it.
     pub discount: f64,
-    /// What its own law may leave of its response.
+    /// Relative error of the response of its own law.
     pub misfit: f64,
 }
 
-/// All of them, by the columns of a workspace.
+/// All possible changes, by the columns of a workspace.
 pub(super) fn sources(search: &HypothesisSearch<'_>, columns: &Columns) -> Vec<ChangeSource> {
     let all = columns.candidates.iter().enumerate();
     let changing = all.filter(|(_, candidate)| is_seen_at_its_absence(candidate));
@@ -37,8 +37,8 @@ pub(super) fn sources(search: &HypothesisSearch<'_>, columns: &Columns) -> Vec<C
     changing.map(one).collect()
 }
 
-/// Lags and plays have no slope where they are absent, and those that are there have a memory,
-/// which has no part of a trial for itself.
+/// Returns true if an effect has a slope at its absence. Lags and plays have none, and where they
+/// are present they have a memory, so that no part of a trial can be separated.
 fn is_seen_at_its_absence(candidate: &EffectCandidate) -> bool {
     candidate.form.lags.is_empty() && candidate.form.bands.is_empty()
 }

@@ -1,25 +1,25 @@
-//! When a change is there: windows of time, and the stretches by which they are first weighed.
+//! Times of a change: windows of time, and the segments by which they are evaluated first.
 
 use nalgebra::DMatrix;
 
 use super::super::outcome::ChangeCourse;
 use super::super::thresholds::THRESHOLDS;
 
-/// A window of time in which a change is there.
+/// A window of time in which a change is present.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Window {
     pub course: ChangeCourse,
-    /// When it begins or ends, s of the trial; nothing where it does neither.
+    /// Time at which it begins or ends, s of the trial; unused where it does neither.
     pub at_s: f64,
 }
 
 impl Window {
-    /// Whether it has a beginning or an end within the trial.
+    /// Returns true if the window begins or ends within the trial.
     pub fn is_timed(self) -> bool {
         matches!(self.course, ChangeCourse::Begins | ChangeCourse::Ends)
     }
 
-    /// How much of the change is there at a time of a trial of this span.
+    /// Share of the change that is present at a time of a trial of this span.
     pub fn share(self, t_s: f64, [begin_s, end_s]: [f64; 2]) -> f64 {
         match self.course {
             ChangeCourse::Throughout => 1.0,
@@ -30,38 +30,39 @@ impl Window {
     }
 }
 
-/// The stretches of a trial, alike in length.
+/// Segments of a trial, of equal length.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretches {
     pub span_s: [f64; 2],
     pub count: usize,
 }
 
-/// How many ways there are in which a change may go.
+/// Number of courses that a change may have.
 const COURSES: f64 = 4.0;
 
 impl Stretches {
-    /// Of a trial from its first to its last sample; `length_s` is the time in which the ship sails
-    /// its length. Each stretch is a column for each of `parameters`.
+    /// Divides a trial from its first to its last sample; `length_s` is the time in which the ship
+    /// covers its length. Each segment is a column for each of `parameters`.
     pub fn new(span_s: [f64; 2], length_s: f64, parameters: usize) -> Self {
         let limits = THRESHOLDS.changes;
+        // About one segment per ship length, within limits of their number and of the columns.
         let wanted = ((span_s[1] - span_s[0]) / (limits.stretch * length_s)).round() as usize;
         let most = (limits.columns / parameters.max(1)).clamp(limits.fewest, limits.most);
         Self { span_s, count: wanted.clamp(limits.fewest, most) }
     }
 
-    /// How long each is, s.
+    /// Length of a segment, s.
     pub fn width_s(self) -> f64 {
         (self.span_s[1] - self.span_s[0]) / self.count as f64
     }
 
-    /// For each, whether a time is in it.
+    /// Membership of a time: 1 for its segment, 0 for the others.
     pub fn hold(self, t_s: f64) -> Vec<f64> {
         let own = (((t_s - self.span_s[0]) / self.width_s()) as usize).min(self.count - 1);
         (0..self.count).map(|place| f64::from(u8::from(place == own))).collect()
     }
 
-    /// All windows that begin and end where stretches do.
+    /// All windows that begin and end at the limits of segments.
     pub fn windows(self) -> Vec<Window> {
         let timed = |course| {
             let times = (1..self.count).map(|k| self.span_s[0] + self.width_s() * k as f64);
@@ -81,21 +82,22 @@ impl Stretches {
         (1 - half..half).map(at).collect()
     }
 
-    /// How far the times of these are apart, s.
+    /// Distance between refined times, s.
     pub fn finer_s(self) -> f64 {
         self.width_s() / f64::from(THRESHOLDS.changes.finer)
     }
 
-    /// Logarithm of the probability of a window that begins or ends where stretches do: each course
-    /// is as probable as another, and each time of a course.
+    /// Logarithm of the prior probability of a window that begins or ends at the limits of
+    /// segments: all courses are equally probable, and all times of a course.
     pub fn log_prior(self, window: Window) -> f64 {
         let times = if window.is_timed() { self.count - 1 } else { 1 };
         -(COURSES * times as f64).ln()
     }
 
-    /// From the size of each of `parameters` in a window to that in every stretch: stretches of the
-    /// first parameter, then those of the next.
+    /// Matrix from the size of each of `parameters` in a window to that in every segment: segments
+    /// of the first parameter, then those of the next.
     pub fn spread(self, window: Window, parameters: usize) -> DMatrix<f64> {
+        // A drift has the share of each segment's middle.
         let middle = |stretch: usize| self.span_s[0] + self.width_s() * (stretch as f64 + 0.5);
         DMatrix::from_fn(parameters * self.count, parameters, |row, column| {
             let share = window.share(middle(row % self.count), self.span_s);
@@ -104,10 +106,11 @@ impl Stretches {
     }
 }
 
-/// Between which times is the middle of the probability, by times with the evidence of each and how
-/// much time it stands for.
+/// Central interval of a change's time, by times with the evidence of each and the duration that it
+/// represents, s.
 pub(super) fn interval(mut all: Vec<(f64, f64, f64)>) -> [f64; 2] {
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The largest evidence is subtracted before the exponential, so that it cannot overflow.
     let most = all.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
     let mass = |one: &(f64, f64, f64)| (one.1 - most).exp() * one.2;
     let tail = THRESHOLDS.changes.tail * all.iter().map(mass).sum::<f64>();
@@ -117,6 +120,7 @@ pub(super) fn interval(mut all: Vec<(f64, f64, f64)>) -> [f64; 2] {
             sum += mass(one);
             sum >= tail
         });
+        // From the middle of a time's interval to its edge.
         reached.map_or((f64::NAN, 0.0), |one| (one.0, 0.5 * one.2))
     };
     let (first, before) = reached(&all);

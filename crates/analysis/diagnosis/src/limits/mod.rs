@@ -1,10 +1,11 @@
-//! How small an effect these trials and this model would still have shown.
+//! Detection limits: the smallest size of an effect that these trials and this model would still
+//! have shown.
 //!
-//! An effect of a size moves the evidence for it, and for every other that resembles it, by what
-//! its columns say; chance adds a spread that is known. The limit is the smallest size at which the
-//! evidence is enough, and ahead of every other's, with a probability of 90 %: the minimum
-//! detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593).
-//! The model alone is a rival, too, with any other level of the random accelerations.
+//! An effect of a given size changes the evidence for it, and for every other that resembles it, by
+//! the information on its columns; chance adds a known spread. The limit is the smallest size at
+//! which the evidence is sufficient, and above every other's, with a probability of 90 %: the
+//! minimum detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40,
+//! 586-593). The model alone competes, too, with any other level of the random accelerations.
 
 mod weighed;
 
@@ -24,11 +25,11 @@ use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 use weighed::{View, WeighedCandidate};
 
-/// Of every listed effect and of each of its parameters whose absence is zero, from a base without
-/// effects at one of its levels.
+/// Returns the limits of every listed effect and of each of its parameters whose absence is zero,
+/// from a base without effects at one of its levels.
 ///
 /// # Errors
-/// Says that the information is not positive.
+/// Returns an error if the information is not positive.
 pub(super) fn limits(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
@@ -40,17 +41,17 @@ pub(super) fn limits(
     Ok(listed.flat_map_iter(|place| all.of_candidate(place)).collect())
 }
 
-/// Everything that may be found on these trials, with the coefficients integrated out.
+/// All candidates on these trials, with the coefficients integrated out.
 struct Detection<'a> {
     search: &'a HypothesisSearch<'a>,
     candidates: Vec<&'a EffectCandidate>,
-    /// Places of each in the information.
+    /// Indices of the columns of each in the information.
     places: Vec<Vec<usize>>,
-    /// Divided by false-alarm levels.
+    /// Information divided by false-alarm levels.
     discounted: View,
-    /// As the trials say it.
+    /// Information of the trials.
     plain: View,
-    /// As they would say it of coefficients that are known.
+    /// Information if the coefficients were known.
     of_known: View,
     /// The model alone at each level of the discrepancy.
     alone: Vec<AloneLevel>,
@@ -62,7 +63,8 @@ struct Detection<'a> {
 struct AloneLevel {
     /// Logarithm of its probability on these trials.
     log_evidence: f64,
-    /// What an effect that is there takes of it: half the square of its size by this.
+    /// Information by which an effect that is present reduces it: half the square of its size by
+    /// this.
     information: DMatrix<f64>,
 }
 
@@ -81,12 +83,14 @@ impl<'a> Detection<'a> {
         let size = search.nuisance.len();
         let select: Vec<usize> = (0..size).chain(columns.iter().flatten().copied()).collect();
         let mut first = 0;
+        // Columns are consecutive in the reduced information.
         let place = |columns: &Vec<usize>| {
             first += columns.len();
             (first - columns.len()..first).collect()
         };
         let places: Vec<Vec<usize>> = columns.iter().map(place).collect();
         let total = base.total(level).select(&select);
+        // Without integration: the products of the effects' columns themselves.
         let of_known = total.products.view_range(1 + size.., 1 + size..).into_owned();
         let at = |level: usize| {
             let total = base.total(level).select(&select);
@@ -117,7 +121,7 @@ impl<'a> Detection<'a> {
         place < self.search.listed.len()
     }
 
-    /// The limits of a candidate's parameters.
+    /// Limits of a candidate's parameters.
     fn of_candidate(&self, place: usize) -> Vec<DetectionLimit> {
         let candidate = self.candidates[place];
         let parameters = candidate.form.parameters.iter().enumerate();
@@ -141,12 +145,13 @@ impl<'a> Detection<'a> {
         parameters.filter_map(one).collect()
     }
 
-    /// What would have to be better for an effect of a usual size to be shown; none where it is.
+    /// Cause that prevents an effect of a usual size from being shown; none where it is shown.
     fn cause(&self, place: usize, own: usize, usual: f64, size: Option<f64>) -> Option<LimitedBy> {
         let shows = |size: Option<f64>| size.is_some_and(|size| size <= usual);
         if shows(size) {
             return None;
         }
+        // Causes are excluded in turn: without the discount, then with known coefficients.
         if shows(self.limit(&self.plain, (place, own))) {
             return Some(LimitedBy::Model);
         }
@@ -155,8 +160,8 @@ impl<'a> Detection<'a> {
         Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
     }
 
-    /// The smallest size of one parameter that is shown, from a grid of equal ratios below the
-    /// largest that is believed at all; none where no size is.
+    /// Smallest size of one parameter that is shown, from a grid of equal ratios below the largest
+    /// plausible one; none where no size is.
     fn limit(&self, view: &View, (place, own): (usize, usize)) -> Option<f64> {
         let given = THRESHOLDS.limits;
         let [least, most] = self.candidates[place].form.parameters[own].bounds;
@@ -168,7 +173,7 @@ impl<'a> Detection<'a> {
             self.is_shown((view, place), *size, &seen, &rivals)
                 && self.beats_alone((place, own), *size)
         };
-        // The largest may be beyond belief: the prior speaks against them.
+        // The largest sizes may be implausible: their prior probability is too low.
         sizes.skip_while(|size| !is_shown(size)).take_while(is_shown).last()
     }
 
@@ -181,6 +186,7 @@ impl<'a> Detection<'a> {
     ) -> bool {
         let Some(own) = &view.weighed[place] else { return false };
         let expected = own.expected(&(seen * size));
+        // Evidence that is exceeded with the probability of the quantile.
         let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
         let is_behind = |(rival, seen): &(&WeighedCandidate, DVector<f64>)| {
             rival.expected(&(seen * size)).mean < sure
@@ -188,9 +194,10 @@ impl<'a> Detection<'a> {
         sure > self.least_evidence && rivals.iter().all(is_behind)
     }
 
-    /// Whether the model alone is less probable at every level of the discrepancy.
+    /// Returns true if the model alone is less probable at every level of the discrepancy.
     fn beats_alone(&self, (place, own): (usize, usize), size: f64) -> bool {
         let column = self.places[place][own];
+        // The evidence of the model alone falls with the square of the effect's size.
         let alone = |level: &AloneLevel| {
             level.log_evidence - 0.5 * size.powi(2) * level.information[(column, column)]
         };
@@ -204,14 +211,14 @@ impl<'a> Detection<'a> {
         })
     }
 
-    /// How a candidate sees a unit of a parameter.
+    /// Response of a candidate's columns to a unit of a parameter.
     fn seen(&self, view: &View, by: usize, (place, own): (usize, usize)) -> DVector<f64> {
         let column = self.places[place][own];
         let rows = self.places[by].iter().map(|&row| view.information[(row, column)]);
         DVector::from_iterator(self.places[by].len(), rows)
     }
 
-    /// The others that answer to a parameter, with how they see a unit of it.
+    /// Other candidates that respond to a parameter, with their response to a unit of it.
     fn rivals<'v>(
         &self,
         view: &'v View,
@@ -227,16 +234,17 @@ impl<'a> Detection<'a> {
     }
 }
 
-/// The parameters of an effect that was found are not asked for again: those of all others are.
+/// Removes the limits of effects that were found.
 pub(super) fn but(limits: Vec<DetectionLimit>, found: &[String]) -> Vec<DetectionLimit> {
     limits.into_iter().filter(|limit| !found.contains(&limit.effect)).collect()
 }
 
 /// Names of the effects of which a usual size would not have been shown in any of their forms, with
-/// what stands in the way.
+/// the cause.
 pub(super) fn cannot_tell(limits: &[DetectionLimit]) -> BTreeMap<String, LimitedBy> {
     let mut open = BTreeMap::new();
     for limit in limits {
+        // An effect is reported only if none of its forms would be shown.
         let of_effect = || limits.iter().filter(|other| other.effect == limit.effect);
         if let Some(cause) =
             limit.limited_by.filter(|_| of_effect().all(|l| l.limited_by.is_some()))

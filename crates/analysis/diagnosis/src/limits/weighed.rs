@@ -1,4 +1,4 @@
-//! The evidence that is expected for a candidate where an effect of some size is there.
+//! Expected evidence for a candidate where an effect of some size is present.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -6,21 +6,21 @@ use super::super::hypothesis::priors;
 use super::super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
 
-/// What is expected of the evidence for an effect: mean and standard deviation.
+/// Expected evidence for an effect: mean and standard deviation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ExpectedEvidence {
     pub mean: f64,
     pub deviation: f64,
 }
 
-/// Information on all candidates, and what the evidence for each of them needs of it.
+/// Information on all candidates, with the terms of the evidence for each of them.
 pub(super) struct View {
     pub information: DMatrix<f64>,
     pub weighed: Vec<Option<WeighedCandidate>>,
 }
 
 impl View {
-    /// Of candidates with their places in the information, each divided by a discount.
+    /// Creates a view from candidates and the indices of their columns, each divided by a discount.
     pub fn new(
         search: &HypothesisSearch<'_>,
         information: DMatrix<f64>,
@@ -36,26 +36,26 @@ impl View {
     }
 }
 
-/// What the evidence for a candidate needs whatever the size is that is there. With `A` the
-/// information and `P` the prior's, the gain is `g' S g/2` and a constant, `g = A t + P m` and `S =
-/// (A + P)^-1`; chance adds `tr(S A)/2` to its mean.
+/// Terms of the evidence for a candidate that do not depend on the size that is present. With `A`
+/// the information and `P` the prior's, the gain is `g' S g/2` and a constant, `g = A t + P m` and
+/// `S = (A + P)^-1`; chance adds `tr(S A)/2` to its mean.
 pub(super) struct WeighedCandidate {
     discount: f64,
-    /// `A`.
+    /// Information `A`.
     information: DMatrix<f64>,
-    /// Of `A + P`.
+    /// Cholesky factor of `A + P`.
     factor: Cholesky<f64, Dyn>,
-    /// `P m`.
+    /// Product `P m`.
     pulled: DVector<f64>,
     /// Twice the part of the mean that is the same for all sizes, without the odds.
     constant: f64,
     log_prior: f64,
-    /// Of the square of `S A`.
+    /// Trace of the square of `S A`.
     trace_of_square: f64,
 }
 
 impl WeighedCandidate {
-    /// None where the information is not positive.
+    /// Returns none where the information is not positive.
     fn new(
         search: &HypothesisSearch<'_>,
         candidate: &EffectCandidate,
@@ -76,6 +76,7 @@ impl WeighedCandidate {
             .iter()
             .map(|prior| (prior.mean / prior.deviation).powi(2) + 2.0 * prior.deviation.ln())
             .sum();
+        // The product S A, whose trace is the expected gain by chance.
         let spread = factor.solve(&information);
         Some(Self {
             discount,
@@ -88,12 +89,13 @@ impl WeighedCandidate {
         })
     }
 
-    /// The evidence where the candidate sees so much, as the search would judge it: its information
-    /// divided by its false-alarm level, its parameters integrated out, and the logarithm of its
-    /// prior odds.
+    /// Expected evidence for a given response of the candidate, as the search would judge it: its
+    /// information divided by its false-alarm level, its parameters integrated out, and the
+    /// logarithm of its prior odds added.
     pub fn expected(&self, seen: &DVector<f64>) -> ExpectedEvidence {
         let right = seen / self.discount + &self.pulled;
         let mean = self.factor.solve(&right);
+        // Variance of a quadratic form in a normal variable: g' S A S g + tr((S A)^2) / 2.
         let variance = mean.dot(&(&self.information * &mean)) + 0.5 * self.trace_of_square;
         ExpectedEvidence {
             mean: 0.5 * (right.dot(&mean) + self.constant) + self.log_prior,

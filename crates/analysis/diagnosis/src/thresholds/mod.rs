@@ -1,9 +1,9 @@
-//! Every constant by which a diagnosis decides, with its symbol, meaning, unit and source.
+//! Constants by which a diagnosis decides, each with its symbol, meaning, unit and source.
 //!
-//! `L/U` is the time in which the ship sails its length at the approach speed of its trials. A
-//! source that begins with "chosen" has no measurement of how results move at half and at double
-//! the value: the reason that can be given is the one of the mathematics. "The benchmark" is that
-//! of `docs/evidence/diagnosis.md` (`cargo run --release -p sistership-tests --example
+//! `L/U` is the time in which the ship covers its length at the approach speed of its trials. A
+//! source that begins with "chosen" has no measurement of the results at half and at double the
+//! value: only the mathematical reason is given. "The benchmark" is that of
+//! `docs/evidence/diagnosis.md` (`cargo run --release -p sistership-tests --example
 //! hidden_effects`).
 
 mod calibration;
@@ -28,42 +28,42 @@ use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, 
 
 pub(crate) use trials::PlannedHelm;
 
-/// All of them, by what they decide.
+/// All thresholds, by the decision that they belong to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Thresholds {
     /// Calibration on a model's own trials.
     pub calibration: CalibrationThresholds,
     /// The random accelerations that no coefficient explains.
     pub discrepancy: DiscrepancyThresholds,
-    /// How hypotheses are searched.
+    /// Search among hypotheses.
     pub search: SearchThresholds,
-    /// How far effects and their laws are trusted.
+    /// Accuracy of effects and of their laws.
     pub effect: EffectThresholds,
-    /// Whether an effect is the same at all times.
+    /// Constancy of an effect in time.
     pub constancy: ConstancyThresholds,
-    /// When two effects count as different.
+    /// Distinction of two effects.
     pub confounding: ConfoundingThresholds,
-    /// How small an effect would have been shown.
+    /// Detection limits.
     pub limits: LimitThresholds,
-    /// When something remains unexplained.
+    /// Detection of an unexplained remainder.
     pub remainder: RemainderThresholds,
-    /// What changes within a trial.
+    /// Changes within a trial.
     pub changes: ChangeThresholds,
-    /// Where it comes from.
+    /// Origin of a remainder.
     pub origin: OriginThresholds,
-    /// On what it depends.
+    /// Dependence of a remainder on variables.
     pub dependence: DependenceThresholds,
-    /// The fit of the model that is given.
+    /// Final fit of coefficients and effects.
     pub refit: RefitThresholds,
-    /// How trials are read and replayed.
+    /// Reading and simulation of trials.
     pub trials: TrialThresholds,
-    /// The trial that is proposed.
+    /// Proposed trial.
     pub next_trial: NextTrialThresholds,
     /// Series for plots.
     pub series: SeriesThresholds,
 }
 
-/// The values.
+/// Values in use.
 pub(crate) const THRESHOLDS: Thresholds = Thresholds {
     calibration: CALIBRATION,
     discrepancy: DISCREPANCY,

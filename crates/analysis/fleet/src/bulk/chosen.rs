@@ -1,10 +1,10 @@
-//! Which strength of the prior an axis takes.
+//! Selection of the strength of the prior of an axis.
 
-/// The strongest prior whose errors on trials left out exceed those of the best by no more, in the
-/// mean, than one standard error of that difference over the trials (after Breiman et al. 1984,
-/// Classification and regression trees, section 3.4.3): one-step errors alone would always take the
-/// weakest prior. `errors[fold][k]` at the k-th strength, from the weakest on; `untold` is taken
-/// where nothing can be left out.
+/// Index of the strongest prior whose error on held-out trials exceeds that of the best by no more,
+/// in the mean, than one standard error of that difference over the trials (after Breiman et al.
+/// 1984, Classification and regression trees, section 3.4.3): one-step errors alone would always
+/// select the weakest prior. `errors[fold][k]` is the error at the k-th strength, from the weakest
+/// on; `untold` is returned if there are fewer than two folds.
 pub(super) fn strongest_within_one_error(
     errors: &[&[f64]],
     strengths: usize,
@@ -20,8 +20,10 @@ pub(super) fn strongest_within_one_error(
     let as_good = |k: usize| {
         let more = means[k] - means[least];
         let spread: f64 = errors.iter().map(|fold| (fold[k] - fold[least] - more).powi(2)).sum();
+        // Standard error of the mean difference over the folds.
         more <= (spread / ((folds - 1.0) * folds)).sqrt()
     };
+    // From the strongest prior downwards; the best itself always qualifies.
     (least..strengths).rev().find(|k| as_good(*k)).unwrap_or(least)
 }
 

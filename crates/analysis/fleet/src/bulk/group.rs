@@ -1,4 +1,5 @@
-//! Axes that share regressors and the shape of their prior: one path of solutions for all of them.
+//! Groups of axes with common regressors and a common shape of their prior: one path of solutions
+//! for all of them.
 
 use nalgebra::DMatrix;
 use sistership_model::coefficient::Axis;
@@ -8,26 +9,27 @@ use crate::statistics::{Regression, TrialStatistics};
 use sistership_identification::refine::{Fitted, RefineError};
 use sistership_numerics::{Moments, Whitened};
 
-/// The coefficients of some axes in coordinates where their prior is white, about its mean.
+/// Coefficients of some axes, in coordinates in which their prior is white, about its mean.
 pub(super) struct AxisGroup {
     pub axes: Vec<Axis>,
-    /// Names by axis.
+    /// Names of the coefficients, by axis.
     pub names: Vec<Vec<String>>,
-    /// The prior's mean by axis.
+    /// Mean of the prior, by axis.
     pub means: Vec<Vec<f64>>,
-    /// A root of the prior's covariance by the strength of the prior.
+    /// Root of the prior's covariance at strength 1.
     pub root: DMatrix<f64>,
-    /// The statistics by trial in those coordinates.
+    /// Statistics of each trial in these coordinates.
     pub parts: Vec<Moments>,
-    /// All trials decomposed.
+    /// Decomposed statistics of all trials.
     pub whole: Whitened,
-    /// Each trial's others.
+    /// For each trial, the statistics of all others.
     pub without: Vec<Moments>,
 }
 
 impl AxisGroup {
-    /// The lambda at which the prior is taken at its word: of a family's, where it is the residual
-    /// variance by the number of samples; a source has no word but its lambda.
+    /// Lambda of strength 1. For a family's prior it is the residual variance divided by the number
+    /// of samples, times the design effect, at which the prior has the covariance that was learned;
+    /// for a source it is 1.
     pub fn unit(&self, prior: Prior<'_>) -> f64 {
         let all = &self.whole;
         match prior {
@@ -38,8 +40,8 @@ impl AxisGroup {
         }
     }
 
-    /// Errors on each trial by the solutions of the others, by fold, axis, strength; a single trial
-    /// is judged on itself.
+    /// Errors on each trial by the solutions of the others, by fold, axis and strength; a single
+    /// trial is evaluated on itself.
     pub fn errors(&self, lambdas: &[f64]) -> Vec<Vec<Vec<f64>>> {
         if self.parts.len() == 1 {
             return vec![self.whole.errors(lambdas, &self.parts[0])];
@@ -48,7 +50,7 @@ impl AxisGroup {
         others.zip(&self.parts).map(|(others, part)| others.errors(lambdas, part)).collect()
     }
 
-    /// The coefficients of an axis at a lambda; the prior's where there is none.
+    /// Coefficients of an axis at a lambda; those of the prior if it is `None`.
     pub fn fitted(
         &self,
         axis: usize,
@@ -58,11 +60,15 @@ impl AxisGroup {
     ) -> Vec<Fitted> {
         let at = lambda.unwrap_or(strongest);
         let scatter = self.whole.residual_variance(axis, at);
+        // Without a lambda the coefficients stay at the prior's mean, and the strongest prior gives
+        // the errors.
         let step = lambda.map(|lambda| directions * self.whole.solution(axis, lambda));
         let variances = self.whole.variances(at);
+        // Standard deviation of the prior in its white coordinates.
         let held = (scatter / (self.whole.count() * at)).sqrt();
         let one = |(j, mean): (usize, &f64)| {
             let posterior: f64 =
+                // Diagonal of directions diag(variances) directions'.
                 directions.row(j).iter().zip(variances.iter()).map(|(v, w)| v * v * w).sum();
             Fitted {
                 value: mean + step.as_ref().map_or(0.0, |step| step[j]),
@@ -74,12 +80,13 @@ impl AxisGroup {
     }
 }
 
-/// The groups of a ship: those of its regressions where one root serves all axes, else one for each
-/// axis.
+/// Groups of a ship: one for each regression under a source's prior, where one root serves all
+/// axes, otherwise one for each axis.
 pub(super) fn groups(
     trials: &[TrialStatistics],
     prior: Prior<'_>,
 ) -> Result<Vec<AxisGroup>, RefineError> {
+    // All trials must be of one frame, or their statistics could not be added.
     let first =
         trials.first().ok_or_else(|| RefineError::Data("there is no trial to fit on".into()))?;
     if let Some(other) = trials.iter().find(|trial| !first.goes_with(trial)) {
@@ -97,6 +104,8 @@ pub(super) fn groups(
                 groups.push(group(regression, 0..regression.axes.len(), &parts, prior)?)
             }
             Prior::Family { .. } => {
+                // A family's covariance differs between the axes, so each needs coordinates of its
+                // own.
                 for axis in 0..regression.axes.len() {
                     groups.push(group(regression, axis..axis + 1, &parts, prior)?);
                 }
@@ -106,6 +115,7 @@ pub(super) fn groups(
     Ok(groups)
 }
 
+/// Group of some axes of a regression, in the coordinates of the prior.
 fn group(
     regression: &Regression,
     axes: std::ops::Range<usize>,
@@ -129,8 +139,8 @@ fn group(
     let mut parts: Vec<Moments> =
         parts.iter().map(|part| part.mapped(&map, root.ncols())).collect();
     if matches!(prior, Prior::Family { .. }) {
-        // As it was learned: a model has no intercept, and what is nearly constant must not be told
-        // by its small changes alone.
+        // The same as in learning the family: a model has no intercept, and a nearly constant
+        // regressor must not be determined by its small changes alone.
         parts.iter_mut().for_each(|part| *part = part.about_origin());
     }
     let (without, all) = Moments::leave_one_out(&parts).ok_or_else(unknown)?;
@@ -145,8 +155,8 @@ fn group(
     })
 }
 
-/// What makes regressors and targets of what was kept: regressors times the root; targets of each
-/// axis less what the mean gives.
+/// Map from stored regressors and targets to those of the group: regressors times the root; targets
+/// of each axis less the prediction of the prior's mean.
 fn map(
     root: &DMatrix<f64>,
     means: &[Vec<f64>],
@@ -157,14 +167,15 @@ fn map(
     let mut map = DMatrix::zeros(p + kept, p + means.len());
     map.view_mut((0, 0), (p, p)).copy_from(root);
     for (axis, mean) in means.iter().enumerate() {
+        // Target less the prediction of the mean: t_axis = unmixing targets - mean' regressors.
         (0..p).for_each(|j| map[(j, p + axis)] = -mean[j]);
         (0..kept).for_each(|target| map[(p + target, p + axis)] = unmixing[(first + axis, target)]);
     }
     map
 }
 
-/// By how much a coefficient may move: the inverse of its regressor's deviation, by the root of its
-/// shrinkage; not at all where the regressor does not vary.
+/// Prior deviation of each coefficient at strength 1: the inverse of its regressor's standard
+/// deviation, divided by the root of its shrinkage; zero if the regressor does not vary.
 fn inverse_deviations(
     regression: &Regression,
     parts: &[&Moments],
@@ -173,6 +184,7 @@ fn inverse_deviations(
     let all = all.ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
     let one = |(j, shrinkage): (usize, &f64)| {
         let deviation = all.variance(j).sqrt();
+        // Relative to the mean: rounding leaves a small deviation to a constant.
         let varies = deviation / all.mean(j).abs().max(1e-300) > 1e-10;
         if varies { 1.0 / (deviation * shrinkage.sqrt()) } else { 0.0 }
     };

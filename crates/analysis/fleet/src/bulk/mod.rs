@@ -1,6 +1,6 @@
 //! Refinement from the stored statistics of trials, for whole fleets: the published ridge about a
-//! prior over the full path of strengths, chosen by the errors on trials left out, without a sample
-//! read.
+//! prior over the full path of strengths, selected by the errors on held-out trials, without
+//! reading samples.
 
 mod chosen;
 mod group;

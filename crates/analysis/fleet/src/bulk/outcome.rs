@@ -1,64 +1,64 @@
-//! What a refinement from statistics gives.
+//! Result of a refinement from statistics.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::coefficient::Axis;
 
 use super::sails::SailedFigures;
 
-/// A refinement from statistics, with what speaks for and against it.
+/// Result of a refinement from statistics, with the errors before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BulkRefinement {
-    /// Every coefficient.
+    /// All coefficients.
     pub coefficients: Vec<Coefficient>,
-    /// Every axis.
+    /// All axes.
     pub axes: Vec<AxisOutcome>,
-    /// How many decades stronger than chosen the prior had to be for the model to sail what the one
-    /// before sails.
+    /// Number of decades by which the prior had to be stronger than selected until the model
+    /// simulated every manoeuvre that the model before does.
     pub pulled: usize,
     /// Manoeuvres of the model before.
     pub before: SailedFigures,
     /// Manoeuvres of the refined model.
     pub after: SailedFigures,
-    /// How many trials it is made of.
+    /// Number of trials.
     pub trials: usize,
 }
 
-/// A coefficient before and after.
+/// Coefficient before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
-    /// Its name.
+    /// Name of the coefficient.
     pub name: String,
-    /// Of the model before.
+    /// Value of the model before.
     pub before: f64,
-    /// The prior's mean.
+    /// Mean of the prior.
     pub prior: f64,
-    /// The prior's standard deviation, at the strength that was taken.
+    /// Standard deviation of the prior, at the selected strength.
     pub prior_deviation: f64,
-    /// Refined.
+    /// Refined value.
     pub refined: f64,
     /// Posterior standard error.
     pub standard_error: f64,
 }
 
-/// The errors of an axis: root mean squares of what is left of its target, by that of the target.
+/// Errors of an axis: root mean squared residual of its target, relative to that of the target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AxisOutcome {
-    /// The axis.
+    /// Axis of the errors.
     pub axis: Axis,
-    /// Strength of the prior: lambda for a source; for a family's prior how many times tighter than
-    /// learned.
+    /// Strength of the prior: lambda for a source; for a family's prior, the factor by which it is
+    /// tighter than learned.
     pub strength: f64,
-    /// Of the model before, on all trials.
+    /// Error of the model before, on all trials.
     pub before: f64,
-    /// Of the prior's mean, on all trials.
+    /// Error of the prior's mean, on all trials.
     pub prior: f64,
-    /// Of the refined coefficients, each trial left out in turn; of a single trial, on itself.
+    /// Error of the refined coefficients, each trial held out in turn; a single trial is evaluated
+    /// on itself.
     pub after: f64,
 }
 
 impl BulkRefinement {
-    /// By how much the worst axis is worse than before, by its error before; below zero where every
-    /// axis is better.
+    /// Relative change of the error of the worst axis; negative if every axis is better.
     pub fn worst_change(&self) -> f64 {
         let change = |axis: &AxisOutcome| axis.after / axis.before.max(f64::MIN_POSITIVE) - 1.0;
         self.axes.iter().map(change).fold(f64::NEG_INFINITY, f64::max)

@@ -1,4 +1,4 @@
-//! What holds the coefficients of a refinement.
+//! Priors of the coefficients of a refinement.
 
 use std::collections::BTreeMap;
 
@@ -6,44 +6,45 @@ use nalgebra::DMatrix;
 
 use super::settings::BulkSettings;
 
-/// A prior of every axis.
+/// Prior of all axes.
 #[derive(Debug, Clone, Copy)]
 pub enum Prior<'a> {
-    /// One source's coefficients, each held in standard deviations of its regressor (Kanazawa 2023,
-    /// Eq. 5.11).
+    /// Coefficients of one source, measured in standard deviations of their regressors (Kanazawa
+    /// 2023, Eq. 5.11).
     Source(&'a BTreeMap<String, f64>),
-    /// A mean and a covariance for each axis, as learned over a family.
+    /// Mean and covariance of each axis, learned over a family.
     Family {
-        /// By axis.
+        /// Priors of the axes.
         axes: &'a [AxisPrior],
-        /// How many samples count as one.
+        /// Number of samples that count as one.
         design_effect: f64,
     },
 }
 
-/// The prior of one axis: normal in the values of the coefficients.
+/// Prior of one axis: normal in the values of the coefficients.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisPrior {
-    /// The coefficients, in order.
+    /// Names of the coefficients, in order.
     pub names: Vec<String>,
-    /// Their mean.
+    /// Mean of the coefficients.
     pub mean: Vec<f64>,
-    /// A root of their covariance: `root root'`.
+    /// Root of their covariance: `root root'`.
     pub root: DMatrix<f64>,
 }
 
 impl Prior<'_> {
-    /// Means of an axis' coefficients.
+    /// Means of an axis' coefficients. Returns `None` if the family has no such axis.
     pub(super) fn means(&self, names: &[String]) -> Option<Vec<f64>> {
         match self {
             Self::Source(source) => {
+                // A coefficient that the source lacks has a prior mean of zero.
                 Some(names.iter().map(|name| source.get(name).copied().unwrap_or(0.0)).collect())
             }
             Self::Family { .. } => self.of_axis(names).map(|axis| axis.mean.clone()),
         }
     }
 
-    /// The learned prior of an axis with these coefficients.
+    /// Returns the learned prior of the axis with these coefficients.
     pub(super) fn of_axis(&self, names: &[String]) -> Option<&AxisPrior> {
         match self {
             Self::Source(_) => None,
@@ -51,12 +52,15 @@ impl Prior<'_> {
         }
     }
 
-    /// A learned covariance is an upper limit: trials that resemble each other would always take a
-    /// weaker prior, since leaving one out asks nothing that the others do not tell.
+    /// Limits the strengths to those that the prior allows. A learned covariance is an upper limit:
+    /// trials that resemble each other would always select a weaker prior, since each is predicted
+    /// well by the others.
     pub(super) fn allows(&self, settings: &BulkSettings) -> BulkSettings {
         match self {
             Self::Source(_) => *settings,
             Self::Family { .. } => BulkSettings {
+                // Strength 1 is the learned covariance; the minimum stays below the maximum of the
+                // path.
                 lambda_min: settings.lambda_min.max(1.0).min(0.1 * settings.lambda_max),
                 ..*settings
             },

@@ -1,4 +1,4 @@
-//! One ship refined from the statistics of its trials.
+//! Refinement of one ship from the statistics of its trials.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +14,12 @@ use super::solved::solve;
 use sistership_identification::refine::{Fitted, RefineError};
 use sistership_propulsion::{Evidence, balance, needs_balance};
 
-/// Refines, and pulls the model towards the prior, a decade at a time, until it sails what the
-/// model before sails.
+/// Refines a ship, and strengthens the prior by one decade at a time until the model simulates
+/// every manoeuvre that the model before does.
 ///
 /// # Errors
-/// As [`solve`]; and where not even the prior's mean sails, which is then no prior for this ship.
+/// Returns the errors of the solution; and an error if even the prior's mean cannot be simulated,
+/// which is then no prior for this ship.
 pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> {
     let BulkRequest { model, law, trials, prior, settings } = *request;
     let solved = solve(trials, prior, settings)?;
@@ -26,15 +27,17 @@ pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> 
     for pulled in 0.. {
         let (coefficients, moved) = solved.coefficients(pulled);
         let refined = refined_model(model, &coefficients, "bulk");
-        // The model before sails beside the first attempt, which costs next to nothing.
+        // The model before is simulated with the first attempt, at almost no additional cost.
         let asked = [&refined, model];
         let mut sailed = sail(&asked[..if before.is_none() { 2 } else { 1 }], law).into_iter();
         let Some(after) = sailed.next() else { break };
+        // The model before does not change, so it is simulated once.
         let before = before.get_or_insert_with(|| sailed.next().unwrap_or_default());
         if after.as_well_as(before) {
             let before = before.clone();
             return outcome(&solved, request, pulled, &coefficients, (before, after));
         }
+        // The prior alone is left, and it fails.
         if !moved {
             let failure = after
                 .failures
@@ -49,9 +52,9 @@ pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> 
     Err(RefineError::Cancelled)
 }
 
-/// The model with a surge balance where its law lets coefficients say what the propeller does, or
-/// takes no revolutions. Statistics do not tell the range of the trials: the law alone counts at
-/// the approach.
+/// Returns the model with a surge balance if the propeller thrust is in its law's coefficients, or
+/// if the law has no revolutions. Statistics do not contain the range of the trials, so the balance
+/// follows from the law at the approach speed alone.
 pub fn with_balance(model: Model, law: &Law) -> Model {
     if model.propulsion.is_some() || !needs_balance(law) {
         return model;
@@ -60,7 +63,7 @@ pub fn with_balance(model: Model, law: &Law) -> Model {
     Model { propulsion: balance(&evidence), ..model }
 }
 
-/// The model with these coefficients and no others.
+/// Returns the model with exactly these coefficients.
 pub fn refined_model(
     model: &Model,
     coefficients: &BTreeMap<String, Fitted>,
@@ -72,5 +75,6 @@ pub fn refined_model(
     };
     let coefficients =
         coefficients.iter().map(|(name, fitted)| (name.clone(), quantity(fitted))).collect();
+    // The uncertainty belongs to the coefficients before and is removed.
     Model { status: Status::Refined, coefficients, uncertainty: None, ..model.clone() }
 }

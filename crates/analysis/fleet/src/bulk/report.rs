@@ -1,4 +1,4 @@
-//! What a refinement from statistics says for itself.
+//! Errors and coefficients of a refinement from statistics.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use super::solved::SolvedPath;
 use crate::statistics::TrialStatistics;
 use sistership_identification::refine::{Fitted, RefineError};
 
-/// The outcome of a ship by what its path gives, pulled so many decades towards the prior.
+/// Result of a ship from its path, with the prior `pulled` decades stronger than selected.
 ///
 /// # Errors
-/// The statistics mix axes that cannot be told apart.
+/// Returns an error if the statistics mix axes that cannot be distinguished.
 pub(super) fn outcome(
     solved: &SolvedPath,
     request: &BulkRequest<'_>,
@@ -48,6 +48,7 @@ pub(super) fn outcome(
     Ok(BulkRefinement { coefficients, axes, pulled, before, after, trials: request.trials.len() })
 }
 
+/// Errors of all axes, before, of the prior and after.
 fn axes(
     solved: &SolvedPath,
     trials: &[TrialStatistics],
@@ -56,6 +57,7 @@ fn axes(
     priors: &BTreeMap<String, f64>,
 ) -> Result<Vec<AxisOutcome>, RefineError> {
     let (before, prior) = (left(trials, before)?, left(trials, priors)?);
+    // Order of the axes in the residuals: group by group.
     let places = solved
         .groups
         .iter()
@@ -74,8 +76,7 @@ fn axes(
     Ok(places.enumerate().map(one).collect())
 }
 
-/// Mean squares of what coefficients leave and of the targets, by axis, in the mean over the
-/// trials.
+/// Mean squared residuals and targets by axis, averaged over the trials.
 fn left(
     trials: &[TrialStatistics],
     coefficients: &BTreeMap<String, f64>,
@@ -83,6 +84,7 @@ fn left(
     let mut all: Vec<(f64, f64)> = Vec::new();
     for trial in trials {
         let left = trial.left_by(coefficients)?;
+        // The number of axes is known from the first trial only.
         all.resize(left.len(), (0.0, 0.0));
         let share = 1.0 / trials.len() as f64;
         all.iter_mut().zip(left).for_each(|(sum, left)| {
@@ -91,6 +93,7 @@ fn left(
     }
     Ok(all
         .into_iter()
+        // The target is a divisor.
         .map(|(residual, target)| (residual, target.max(f64::MIN_POSITIVE)))
         .collect())
 }

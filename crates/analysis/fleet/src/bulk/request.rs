@@ -1,4 +1,4 @@
-//! What is asked of a refinement from statistics.
+//! Input of a refinement from statistics.
 
 use sistership_model::{Law, Model};
 
@@ -6,17 +6,17 @@ use super::prior::Prior;
 use super::settings::BulkSettings;
 use crate::statistics::TrialStatistics;
 
-/// A ship to be refined from statistics.
+/// Ship to be refined from statistics.
 #[derive(Debug, Clone, Copy)]
 pub struct BulkRequest<'a> {
-    /// Its model; it gives everything but the coefficients.
+    /// Model before; it gives everything except the coefficients.
     pub model: &'a Model,
-    /// Its law.
+    /// Law of the model.
     pub law: &'a Law,
-    /// The statistics of its trials, in the model's frame.
+    /// Statistics of the trials, in the model's frame.
     pub trials: &'a [TrialStatistics],
-    /// What holds the coefficients.
+    /// Prior of the coefficients.
     pub prior: Prior<'a>,
-    /// Settings.
+    /// Settings of the refinement.
     pub settings: &'a BulkSettings,
 }

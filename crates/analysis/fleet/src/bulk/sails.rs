@@ -1,5 +1,6 @@
-//! Whether a model sails, at little cost: one hard turn and one zigzag in coarse steps. What
-//! diverges in the standard manoeuvres diverges in these, and thousands of ships can be asked.
+//! Check of a model by simulation at low cost: one hard turn and one zigzag in coarse steps. A
+//! model that diverges in the standard manoeuvres also diverges in these, and thousands of ships
+//! can be checked.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::{Law, Model};
@@ -8,10 +9,10 @@ use sistership_simulation::manoeuvre::{
 };
 use sistership_simulation::{PlantError, Ship, Stopped};
 
-/// Steps in which a ship sails its length.
+/// Number of time steps per ship length at the approach speed.
 const STEPS_A_LENGTH: f64 = 30.0;
 
-/// What a model makes of a turn at 35 deg and a 20/20 zigzag, both to starboard.
+/// Figures of a turn at 35 deg and a 20/20 zigzag, both to starboard.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SailedFigures {
     /// Tactical diameter, in lengths.
@@ -22,16 +23,17 @@ pub struct SailedFigures {
     pub first_overshoot_deg: Option<f64>,
     /// Second overshoot, deg.
     pub second_overshoot_deg: Option<f64>,
-    /// What left the physical range, with the reason.
+    /// Manoeuvres that left the physical range, with the reason.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
 }
 
 impl SailedFigures {
-    /// Whether it does everything that `before` does: nothing more leaves the physical range, and a
-    /// turn that came round, or a zigzag that answered, still does.
+    /// True if the model performs at least as well as `before`: no more failures, and every turn or
+    /// zigzag that was completed still is.
     pub fn as_well_as(&self, before: &Self) -> bool {
         let kept = |was: Option<f64>, is: Option<f64>| was.is_none() || is.is_some();
+        // A figure that existed before must still exist; its value may change.
         let metrics = [
             (before.tactical_diameter_l, self.tactical_diameter_l),
             (before.advance_l, self.advance_l),
@@ -42,12 +44,12 @@ impl SailedFigures {
     }
 }
 
-/// What is sailed: rudder and switching angle, deg.
+/// Simulated manoeuvres: rudder and switching angle, deg.
 const SAILED: [Manoeuvre; 2] =
     [Manoeuvre::Turn { rudder: 35.0 }, Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 }];
 
-/// Sails both manoeuvres with each model of a ship; those that differ in the values of their
-/// coefficients alone sail in lockstep.
+/// Simulates both manoeuvres with each model of a ship; models that differ in the values of their
+/// coefficients alone are simulated in lockstep.
 pub fn sail(models: &[&Model], law: &Law) -> Vec<SailedFigures> {
     let alone = || {
         models
@@ -55,6 +57,7 @@ pub fn sail(models: &[&Model], law: &Law) -> Vec<SailedFigures> {
             .map(|model| together(Ship::new(model, law), &[Vec::new()]).remove(0))
             .collect()
     };
+    // Lockstep needs models of one structure; otherwise each is simulated by itself.
     let Some(Ok(ship)) = models.first().map(|model| Ship::sisters(model, law)) else {
         return alone();
     };
@@ -62,12 +65,14 @@ pub fn sail(models: &[&Model], law: &Law) -> Vec<SailedFigures> {
     sisters.map_or_else(alone, |sisters| together(Ok(ship), &sisters))
 }
 
+/// Simulates both manoeuvres for several sets of coefficients of one ship.
 fn together(ship: Result<Ship, PlantError>, sisters: &[Vec<f64>]) -> Vec<SailedFigures> {
     let ship = match ship {
         Ok(ship) => ship,
         Err(error) => {
             return vec![
                 SailedFigures {
+                    // A model that cannot be set up fails for all sets of coefficients.
                     failures: vec![error.to_string()],
                     ..SailedFigures::default()
                 };
@@ -86,9 +91,11 @@ fn together(ship: Result<Ship, PlantError>, sisters: &[Vec<f64>]) -> Vec<SailedF
 }
 
 impl SailedFigures {
+    /// Collects the figures of the manoeuvres, or their failures.
     fn of(ship: &Ship, sailed: impl Iterator<Item = Result<Track, Stopped>>) -> Self {
         let mut own = Self::default();
         for (manoeuvre, sailed) in SAILED.into_iter().zip(sailed) {
+            // A manoeuvre that stops early, or cannot be evaluated, is recorded as a failure.
             let noted = match manoeuvre {
                 Manoeuvre::Turn { rudder } => {
                     sailed.and_then(|track| Turn::of(track, rudder)).map(|turn| {

@@ -8,17 +8,17 @@ use sistership_identification::refine::RefineError;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BulkSettings {
-    /// Strengths of the prior on the path.
+    /// Number of strengths of the prior on the path.
     #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
-    /// The weakest prior; for a family's prior, how many times tighter than it was learned.
+    /// Weakest prior; for a family's prior, the factor by which it is tighter than learned.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_min: f64,
-    /// The strongest.
+    /// Strongest prior, in the same measure.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_max: f64,
-    /// Time over which accelerations are differenced, s. Where absent, a tenth of the time in which
-    /// the ship sails its length.
+    /// Time over which accelerations are differenced, s. Default: a tenth of the time in which the
+    /// ship travels its length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,
@@ -34,7 +34,7 @@ impl BulkSettings {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// Names the field and what it may be.
+    /// Returns an error that names the field and its valid values.
     pub fn check(&self) -> Result<(), RefineError> {
         let refuse = |field: &str, message: &str| {
             Err(RefineError::Setting { field: field.into(), message: message.into() })
@@ -54,14 +54,15 @@ impl BulkSettings {
         Ok(())
     }
 
-    /// The strengths, evenly spaced in their logarithm.
+    /// Strengths of the path, evenly spaced in their logarithm.
     pub(super) fn strengths(&self) -> Vec<f64> {
         let (low, high) = (self.lambda_min.ln(), self.lambda_max.ln());
+        // Linear in the logarithm, from the minimum to the maximum.
         let at = |k: usize| (low + (high - low) * k as f64 / (self.lambda_count - 1) as f64).exp();
         (0..self.lambda_count).map(at).collect()
     }
 
-    /// Strengths in a factor of ten.
+    /// Number of strengths per factor of ten.
     pub(super) fn decade(&self) -> f64 {
         (self.lambda_count - 1) as f64 / (self.lambda_max / self.lambda_min).log10()
     }

@@ -1,4 +1,4 @@
-//! The path of a ship: solutions for every strength of the prior, judged on trials left out.
+//! Ridge path of a ship: solutions for every strength of the prior, evaluated on held-out trials.
 
 use std::collections::BTreeMap;
 
@@ -9,21 +9,21 @@ use super::settings::BulkSettings;
 use crate::statistics::TrialStatistics;
 use sistership_identification::refine::{Fitted, RefineError};
 
-/// The whole path of a ship, and where on it each axis stands.
+/// Full path of a ship, with the selected strength of each axis.
 pub struct SolvedPath {
     pub(super) groups: Vec<AxisGroup>,
     settings: BulkSettings,
-    /// Strengths by group and axis; lambda by group and axis and strength.
+    /// Lambda by group and strength.
     lambdas: Vec<Vec<f64>>,
-    /// Mean square errors on trials left out, by group, axis, strength.
+    /// Mean squared errors on held-out trials, by group, axis, strength.
     errors: Vec<Vec<Vec<f64>>>,
     chosen: Vec<Vec<usize>>,
 }
 
-/// Solves the full path and chooses a strength for each axis, by trials left out.
+/// Solves the full path, and selects a strength for each axis by held-out trials.
 ///
 /// # Errors
-/// The settings, or statistics that do not go together or have no sample.
+/// Returns an error for invalid settings, and for statistics that do not match or have no sample.
 pub fn solve(
     trials: &[TrialStatistics],
     prior: Prior<'_>,
@@ -32,7 +32,9 @@ pub fn solve(
     settings.check()?;
     let groups = groups(trials, prior)?;
     let (mut lambdas, mut errors, mut chosen) = (Vec::new(), Vec::new(), Vec::new());
+    // Limited by the prior first: all strengths below refer to these settings.
     let settings = &prior.allows(settings);
+    // Index of strength 1, used if no trial can be held out.
     let untold = (settings.decade() * (1.0 / settings.lambda_min).log10()).round() as usize;
     for group in &groups {
         let path: Vec<f64> =
@@ -41,6 +43,7 @@ pub fn solve(
         let of_axis =
             |axis: usize| folds.iter().map(|fold| fold[axis].as_slice()).collect::<Vec<&[f64]>>();
         let choose = |axis| {
+            // Each axis selects its own strength.
             strongest_within_one_error(&of_axis(axis), path.len(), untold.min(path.len() - 1))
         };
         chosen.push((0..group.axes.len()).map(choose).collect());
@@ -50,7 +53,7 @@ pub fn solve(
     Ok(SolvedPath { groups, settings: *settings, lambdas, errors, chosen })
 }
 
-/// The mean over folds, by strength.
+/// Mean over the folds, by strength.
 fn mean(folds: &[&[f64]]) -> Vec<f64> {
     let strengths = folds.first().map_or(0, |fold| fold.len());
     (0..strengths)
@@ -59,20 +62,22 @@ fn mean(folds: &[&[f64]]) -> Vec<f64> {
 }
 
 impl SolvedPath {
-    /// Where an axis stands when the prior is so many decades stronger than chosen; none where
-    /// nothing but the prior is left.
+    /// Index of an axis on the path with the prior `pulled` decades stronger than selected; `None`
+    /// beyond the strongest, where the prior alone remains.
     fn at(&self, group: usize, axis: usize, pulled: usize) -> Option<usize> {
         let index =
             self.chosen[group][axis] + (pulled as f64 * self.settings.decade()).round() as usize;
+        // The selected strength itself is always on the path.
         (pulled == 0 || index < self.settings.lambda_count).then_some(index)
     }
 
-    /// The coefficients with a prior so many decades stronger than chosen, and whether anything but
-    /// the prior is left.
+    /// Coefficients with the prior `pulled` decades stronger than selected, and true if any axis
+    /// still uses its trials.
     pub fn coefficients(&self, pulled: usize) -> (BTreeMap<String, Fitted>, bool) {
         let mut all = BTreeMap::new();
         let mut moved = false;
         for (index, group) in self.groups.iter().enumerate() {
+            // From the eigenbasis to the values of the coefficients.
             let directions = &group.root * group.whole.basis();
             for axis in 0..group.axes.len() {
                 let at = self.at(index, axis, pulled);
@@ -90,7 +95,7 @@ impl SolvedPath {
         (all, moved)
     }
 
-    /// Lambda by which strengths of a group are measured, from the weakest.
+    /// Strength of the prior of an axis with the prior `pulled` decades stronger than selected.
     pub(super) fn strength(&self, group: usize, axis: usize, pulled: usize) -> f64 {
         let strengths = self.settings.strengths();
         self.at(group, axis, pulled)
@@ -98,11 +103,12 @@ impl SolvedPath {
             .unwrap_or(self.settings.lambda_max)
     }
 
-    /// Mean square errors of an axis on trials left out.
+    /// Mean squared error of an axis on held-out trials, likewise.
     pub(super) fn error(&self, group: usize, axis: usize, pulled: usize) -> f64 {
         let errors = &self.errors[group][axis];
         self.at(group, axis, pulled)
             .and_then(|at| errors.get(at))
+            // Beyond the path, the error of the strongest prior.
             .or(errors.last())
             .copied()
             .unwrap_or(f64::NAN)

@@ -1,5 +1,5 @@
-//! What a member's trials say of the coefficients of an axis: a precision and what it is about, in
-//! units in which coefficients are alike in size.
+//! Evidence of a member's trials on the coefficients of an axis: a precision and an information
+//! vector, in units in which coefficients have similar sizes.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,17 +8,17 @@ use crate::statistics::TrialStatistics;
 use sistership_identification::refine::RefineError;
 use sistership_numerics::{Moments, Whitened};
 
-/// What trials say: a likelihood proportional to `exp(-z' precision z/2 + information' z)`.
+/// Likelihood of trials, proportional to `exp(-z' precision z/2 + information' z)`.
 #[derive(Debug, Clone)]
 pub(super) struct MemberEvidence {
     pub precision: DMatrix<f64>,
     pub information: DVector<f64>,
-    /// How much more the trials of the member scatter than their samples would if each spoke for
-    /// itself; none of one trial.
+    /// Ratio of the scatter between the member's trials to that expected of independent samples;
+    /// `None` for one trial.
     pub design_effect: Option<f64>,
 }
 
-/// An axis of a family: where its coefficients stand among the statistics, and their units.
+/// Axis of a family: index of its coefficients in the statistics, and their units.
 #[derive(Debug, Clone)]
 pub(super) struct AxisPlace {
     pub regression: usize,
@@ -27,7 +27,7 @@ pub(super) struct AxisPlace {
 }
 
 impl AxisPlace {
-    /// Regressors in units of the coefficients, and the axis' own target.
+    /// Statistics of each trial: regressors in units of the coefficients, and the axis' own target.
     fn moments(&self, trials: &[TrialStatistics]) -> Result<Vec<Moments>, RefineError> {
         let Some(first) = trials.first() else { return Ok(Vec::new()) };
         let regression = &first.regressions[self.regression];
@@ -37,15 +37,16 @@ impl AxisPlace {
         (0..p).for_each(|j| map[(j, j)] = self.units[j]);
         (0..q).for_each(|target| map[(p + target, p)] = unmixing[(self.axis, target)]);
         let own = |trial: &TrialStatistics| {
+            // About the origin, as the model has no intercept.
             trial.regressions[self.regression].moments.mapped(&map, p).about_origin()
         };
         Ok(trials.iter().map(own).collect())
     }
 
-    /// What a member's trials say; none where they have no sample.
+    /// Evidence of a member's trials; `None` if they have no sample.
     ///
     /// # Errors
-    /// Says that their axes cannot be told apart.
+    /// Returns an error if their axes cannot be distinguished.
     pub fn evidence(
         &self,
         trials: &[TrialStatistics],
@@ -58,7 +59,10 @@ impl AxisPlace {
         let lambda = whitened.least_lambda();
         let variance = whitened.residual_variance(0, lambda).max(f64::MIN_POSITIVE);
         let (covariance, cross) = all.covariances();
+        // The precision of n samples with this residual variance is n / variance times their
+        // covariance.
         let share = all.count / variance;
+        // Least squares solution, except in directions that the samples do not determine.
         let least = whitened.basis() * whitened.solution(0, lambda);
         let design_effect =
             (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
@@ -70,12 +74,13 @@ impl AxisPlace {
     }
 }
 
-/// The variance of a residual by which the trials' scores scatter (a sandwich estimate with whole
-/// trials as its units: Liang and Zeger 1986, Biometrika 73, 13-22, Eq. 8), in the mean over the
-/// directions that the trials tell.
+/// Residual variance implied by the scatter of the trials' scores (a sandwich estimate with whole
+/// trials as its units: Liang and Zeger 1986, Biometrika 73, 13-22, Eq. 8), averaged over the
+/// directions that the trials determine.
 fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVector<f64>) -> f64 {
     let variances = whitened.variances(0.0);
     let best = variances.min();
+    // Directions that the trials do not determine would only add rounding errors.
     let told: Vec<usize> =
         (0..variances.len()).filter(|&k| best / variances[k] > FAMILY.telling).collect();
     let of_trial = |part: &Moments| -> f64 {
@@ -83,5 +88,6 @@ fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVecto
         told.iter().map(|&k| score[k].powi(2) * variances[k]).sum()
     };
     let trials = parts.len() as f64;
+    // Mean over directions, with the correction n / (n - 1) for the number of trials.
     parts.iter().map(of_trial).sum::<f64>() / (told.len().max(1) as f64 * (1.0 - 1.0 / trials))
 }

@@ -1,4 +1,4 @@
-//! Learning a family's mean and covariance.
+//! Estimation of a family's mean and covariance.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
@@ -10,46 +10,48 @@ use crate::statistics::TrialStatistics;
 use sistership_identification::refine::RefineError;
 use sistership_numerics::Moments;
 
-/// Why nothing can be learned of a family.
+/// Error of learning a family.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyError {
-    /// Too few.
+    /// There are too few members with trials.
     #[error("{0} members have trials; a family's prior needs at least {least}", least = FAMILY.least_members)]
     Few(usize),
-    /// One that does not belong.
+    /// The coefficients of a member differ.
     #[error("`{member}` has other coefficients than `{first}`, so that they share no prior")]
     Other {
-        /// The member.
+        /// Name of the member.
         member: String,
-        /// Another one.
+        /// Name of another member.
         first: String,
     },
-    /// The statistics of one cannot be used.
+    /// The statistics of a member cannot be used.
     #[error("the statistics of `{member}` cannot be used: {reason}")]
     Statistics {
-        /// The member.
+        /// Name of the member.
         member: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// The numbers broke down.
+    /// The estimation broke down numerically.
     #[error("the covariance over the members cannot be learned: {0}")]
     Numbers(String),
 }
 
-/// A member with the statistics of its trials.
+/// Member with the statistics of its trials.
 #[derive(Debug, Clone, Copy)]
 pub struct Member<'a> {
-    /// Its name.
+    /// Name of the member.
     pub name: &'a str,
-    /// Its trials.
+    /// Statistics of its trials.
     pub trials: &'a [TrialStatistics],
 }
 
-/// Learns mean and covariance of every axis over the members; those without trials say nothing.
+/// Estimates the mean and covariance of every axis over the members; those without trials are
+/// ignored.
 ///
 /// # Errors
-/// As [`FamilyError`] says.
+/// Returns a [`FamilyError`] if there are too few members, or if their statistics do not match or
+/// cannot be used.
 pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     let members: Vec<&Member<'_>> =
         members.iter().filter(|member| !member.trials.is_empty()).collect();
@@ -61,6 +63,7 @@ pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     let evidence: Vec<Vec<MemberEvidence>> =
         places.iter().map(|place| said(place, &members)).collect::<Result<_, _>>()?;
     let design_effect = design_effect(&evidence);
+    // Share of the correlations that is kept; smaller with fewer members per coefficient.
     let kept = |p: usize| members.len() as f64 / (members.len() + p + 1) as f64;
     let first = &members[0].trials[0];
     let mut prior = FamilyPrior {
@@ -86,6 +89,7 @@ pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     Ok(prior)
 }
 
+/// Checks that all members have the same coefficients.
 fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
     let names = |member: &Member<'_>| -> Vec<Vec<Vec<String>>> {
         member.trials[0].regressions.iter().map(|regression| regression.names.clone()).collect()
@@ -100,10 +104,11 @@ fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
     }
 }
 
-/// The axes with units in which a coefficient of 1 explains all of its target, over all members.
+/// Axes of the family, with units in which a coefficient of 1 explains all of its target, over all
+/// members.
 ///
 /// # Errors
-/// Names a member whose statistics cannot be used.
+/// Returns an error that names a member whose statistics cannot be used.
 fn places(members: &[&Member<'_>]) -> Result<Vec<AxisPlace>, FamilyError> {
     let regressions = &members[0].trials[0].regressions;
     let axes = regressions
@@ -116,8 +121,8 @@ fn places(members: &[&Member<'_>]) -> Result<Vec<AxisPlace>, FamilyError> {
     axes.map(place).collect()
 }
 
-/// Medians over the members of target deviation by regressor deviation, which a few odd ships do
-/// not move.
+/// Units of the coefficients of an axis: medians over the members of target deviation divided by
+/// regressor deviation, which are robust to a few unusual ships.
 fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Result<Vec<f64>, FamilyError> {
     let p = members[0].trials[0].regressions[regression].moments.regressors();
     let of_member = |member: &&Member<'_>| -> Result<Option<Vec<f64>>, FamilyError> {
@@ -131,12 +136,13 @@ fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Result<Vec<
             .map(|t| unmixing[(axis, t)].powi(2) * all.target_variance(t))
             .sum::<f64>()
             .sqrt();
+        // A lower bound relative to the mean, as rounding leaves a constant with a small deviation.
         let moves = |j: usize| all.variance(j).sqrt().max(1e-12 * all.mean(j).abs());
         Ok(Some((0..p).map(|j| target / moves(j).max(f64::MIN_POSITIVE)).collect()))
     };
     let all: Vec<Option<Vec<f64>>> = members.iter().map(of_member).collect::<Result<_, _>>()?;
     let unit = |j: usize| median(all.iter().flatten().map(|units| units[j]));
-    // What moves in no member has any unit.
+    // A regressor that varies in no member can have any unit.
     Ok((0..p).map(|j| unit(j).unwrap_or(1.0)).collect())
 }
 
@@ -144,12 +150,14 @@ fn unusable(member: &Member<'_>, reason: &RefineError) -> FamilyError {
     FamilyError::Statistics { member: member.name.to_owned(), reason: reason.to_string() }
 }
 
+/// Upper median of the positive finite values.
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
 
+/// Evidence of all members on an axis.
 fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Result<Vec<MemberEvidence>, FamilyError> {
     let of_member = |member: &&Member<'_>| {
         place.evidence(member.trials).map_err(|reason| unusable(member, &reason))
@@ -159,13 +167,15 @@ fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Result<Vec<MemberEvidence
     Ok(all.into_iter().flatten().collect())
 }
 
-/// The median over members and axes; samples never say more than they would alone.
+/// Median design effect over members and axes, at least 1: samples never count for more than
+/// independent ones.
 fn design_effect(evidence: &[Vec<MemberEvidence>]) -> f64 {
     median(evidence.iter().flatten().filter_map(|evidence| evidence.design_effect))
         .unwrap_or(1.0)
         .max(1.0)
 }
 
+/// Evidence with its weight divided by the design effect.
 fn discounted(mut evidence: Vec<MemberEvidence>, design_effect: f64) -> Vec<MemberEvidence> {
     for one in &mut evidence {
         one.precision /= design_effect;
@@ -174,7 +184,7 @@ fn discounted(mut evidence: Vec<MemberEvidence>, design_effect: f64) -> Vec<Memb
     evidence
 }
 
-/// What a family has learned of an axis, in units of the coefficients.
+/// Estimate of an axis over a family, in units of the coefficients.
 struct FamilyEstimate {
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
@@ -184,6 +194,7 @@ struct FamilyEstimate {
 }
 
 impl FamilyEstimate {
+    /// Iterates expectation and maximisation until the deviations settle.
     fn from(evidence: Vec<MemberEvidence>) -> Result<Self, FamilyError> {
         let p = evidence.first().map_or(0, |one| one.information.len());
         let mut learned = Self {
@@ -197,6 +208,7 @@ impl FamilyEstimate {
             let before = learned.covariance.diagonal();
             learned.step(&evidence)?;
             learned.steps = step;
+            // Largest relative change of a deviation.
             let changed = before.zip_map(&learned.covariance.diagonal(), |a, b| {
                 (a.sqrt() / b.sqrt().max(FAMILY.least) - 1.0).abs()
             });
@@ -207,16 +219,21 @@ impl FamilyEstimate {
         Ok(learned)
     }
 
-    /// Members given the family, then the family given the members.
+    /// One step of expectation and maximisation: the members given the family, then the family
+    /// given the members.
     fn step(&mut self, evidence: &[MemberEvidence]) -> Result<(), FamilyError> {
+        // The prior of every member, in information form.
         let precision = inverse(&self.covariance)?;
+        // Expectation: posterior of each member, with the family as its prior.
         let pull = &precision * &self.mean;
         let member = |one: &MemberEvidence| -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
             let covariance = inverse(&(&precision + &one.precision))?;
             Ok((&covariance * (&pull + &one.information), covariance))
         };
-        // Collected in order, so that the sums do not depend on the machine's cores.
+        // Collected in order, so that the sums do not depend on the number of cores.
         let members: Vec<_> = evidence.par_iter().map(member).collect::<Result<_, _>>()?;
+        // Maximisation: the covariance is the scatter of the members' means plus their mean
+        // posterior covariance.
         let mut mean = DVector::zeros(self.mean.len());
         members.iter().for_each(|(own, _)| mean += own / self.members);
         let mut covariance = DMatrix::zeros(mean.len(), mean.len());
@@ -227,8 +244,10 @@ impl FamilyEstimate {
             covariance.ger(1.0 / self.members, &apart, &apart, 1.0);
             open += left.diagonal() / self.members;
         }
+        // A variance of zero would fix the coefficient for good.
         (0..mean.len())
             .for_each(|j| covariance[(j, j)] = covariance[(j, j)].max(FAMILY.least.powi(2)));
+        // Share of a coefficient's variance that the trials resolve.
         self.told = open
             .zip_map(&self.covariance.diagonal(), |open, all| (1.0 - open / all).clamp(0.0, 1.0));
         self.covariance = covariance;
@@ -236,8 +255,8 @@ impl FamilyEstimate {
         Ok(())
     }
 
-    /// In the law's units, for a ship that was not among the members: their mean is known no better
-    /// than from so many, which also makes the greatest likelihood's variances too small.
+    /// Prior in the law's units, for a ship that is not a member. The deviations are widened
+    /// because the mean is uncertain, and because maximum likelihood underestimates variances.
     fn axis(
         &self,
         axis: sistership_model::coefficient::Axis,
@@ -246,12 +265,14 @@ impl FamilyEstimate {
         kept: f64,
     ) -> FamilyAxis {
         let p = names.len();
+        // N / (N - 1) corrects the variance, and 1 + 1/N adds that of the mean.
         let wider = self.members / (self.members - 1.0) * (1.0 + 1.0 / self.members);
         let deviation: Vec<f64> =
             (0..p).map(|j| (self.covariance[(j, j)] * wider).sqrt()).collect();
         let correlation = |i: usize, j: usize| {
             let full = self.covariance[(i, j)]
                 / (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt();
+            // Correlations are reduced towards zero; the deviations stay.
             if i == j { 1.0 } else { kept * full }
         };
         FamilyAxis {

@@ -1,4 +1,4 @@
-//! What a family teaches, as a document.
+//! Prior from a family as a document.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use sistership_model::coefficient::Axis;
 
 use crate::bulk::AxisPrior;
 
-/// The format of [`FamilyPrior`].
+/// Format of [`FamilyPrior`].
 pub const FORMAT: &str = "sistership-family-prior/1";
 
 /// Mean and covariance of the coefficients of a family.
@@ -15,69 +15,72 @@ pub const FORMAT: &str = "sistership-family-prior/1";
 pub struct FamilyPrior {
     /// Always [`FORMAT`].
     pub format: String,
-    /// The members whose trials it was learned from, in order.
+    /// Members whose trials it was learned from, in order.
     pub members: Vec<String>,
-    /// How many samples count as one, since neighbours say the same: from the scatter between the
-    /// trials of a ship.
+    /// Number of samples that count as one, since neighbouring samples are correlated: from the
+    /// scatter between the trials of a ship.
     pub design_effect: f64,
-    /// How much of the correlations between coefficients is kept: few members cannot tell them.
+    /// Share of the correlations between coefficients that is kept: few members cannot determine
+    /// them.
     pub correlations_kept: f64,
-    /// Steps of expectation and maximisation.
+    /// Number of steps of expectation and maximisation.
     pub steps: usize,
-    /// Every axis.
+    /// All axes.
     pub axes: Vec<FamilyAxis>,
 }
 
-/// The coefficients of one axis over a family.
+/// Coefficients of one axis over a family.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamilyAxis {
-    /// The axis.
+    /// Axis of the coefficients.
     pub axis: Axis,
-    /// Its coefficients, in order.
+    /// Names of the coefficients, in order.
     pub names: Vec<String>,
-    /// Their means.
+    /// Means of the coefficients.
     pub mean: Vec<f64>,
-    /// By how much members differ: standard deviations.
+    /// Standard deviations over the members.
     pub deviation: Vec<f64>,
-    /// How the differences of two coefficients go together, by row.
+    /// Correlations of the coefficients over the members, by row.
     pub correlation: Vec<Vec<f64>>,
-    /// How much of a member's own difference its trials tell, in the mean over the members: 0 where
-    /// the family decides alone, 1 where its trials do.
+    /// Share of a member's own deviation that its trials determine, averaged over the members: 0 if
+    /// the family decides alone, 1 if the trials do.
     pub told_by_trials: Vec<f64>,
 }
 
-/// Why a document is no prior.
+/// Error of a document that is not a valid prior.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyPriorError {
-    /// The lists of an axis do not go together.
+    /// The lists of an axis differ in length.
     #[error("axis {0}: names, means, deviations and correlations are not equally many")]
     Lengths(Axis),
-    /// What an axis has for correlations is no correlation matrix.
+    /// The correlations of an axis are not a correlation matrix.
     #[error("axis {0}: the correlations are none")]
     Correlations(Axis),
 }
 
 impl FamilyPrior {
-    /// The priors of the axes, for [`crate::bulk::Prior::Family`].
+    /// Priors of the axes, for a refinement in bulk.
     ///
     /// # Errors
-    /// Names the axis whose correlations are none.
+    /// Returns an error that names the axis whose lists or correlations are invalid.
     pub fn axes(&self) -> Result<Vec<AxisPrior>, FamilyPriorError> {
         self.axes.iter().map(FamilyAxis::prior).collect()
     }
 }
 
 impl FamilyAxis {
+    /// Prior of this axis.
     fn prior(&self) -> Result<AxisPrior, FamilyPriorError> {
         let p = self.names.len();
         let long = |length: usize| length == p;
+        // Lists from a document may have any length.
         let whole =
             long(self.mean.len()) && long(self.deviation.len()) && long(self.correlation.len());
         if !whole || !self.correlation.iter().all(|row| long(row.len())) {
             return Err(FamilyPriorError::Lengths(self.axis));
         }
-        // In units of the deviations, which differ by orders of magnitude.
+        // Decomposed in units of the deviations, which differ by orders of magnitude.
         let correlation = DMatrix::from_fn(p, p, |i, j| self.correlation[i][j]);
         let root =
             correlation.cholesky().ok_or(FamilyPriorError::Correlations(self.axis))?.unpack();

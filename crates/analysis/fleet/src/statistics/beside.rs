@@ -1,4 +1,4 @@
-//! What was learned beside a law, as accelerations along a trial that its regressions need not
+//! Accelerations of a learned correction along a trial, which the regressions of the law need not
 //! explain.
 
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use sistership_simulation::branch::{LearnedBranch, attached};
 use sistership_simulation::recorded::instants_along;
 use sistership_simulation::{PlantError, Ship};
 
-/// A learned correction with the law that it stands beside.
+/// Learned correction with the foundation that it is added to.
 #[derive(Debug, Clone)]
 pub(super) struct BesideLaw {
     learned: Arc<dyn LearnedBranch>,
@@ -19,20 +19,20 @@ pub(super) struct BesideLaw {
 }
 
 impl BesideLaw {
-    /// Of a model; none where it has no correction.
+    /// Creates it from a model; `None` if the model has no correction.
     ///
     /// # Errors
-    /// Its weights are not attached, or its law cannot be simulated.
+    /// Returns an error if the weights are not attached, or the law cannot be simulated.
     pub fn new(model: &Model, law: &Law) -> Result<Option<Self>, PlantError> {
         let Some(learned) = attached(model)? else { return Ok(None) };
         let foundation = Arc::new(Ship::new(&model.foundation(), law)?);
         Ok(Some(Self { learned, foundation }))
     }
 
-    /// What it adds to the accelerations at each sample of a trial, m/s2 (rad/s2).
+    /// Accelerations that the correction adds at each sample of a trial, m/s2 (rad/s2).
     ///
     /// # Errors
-    /// Names the channel that the trial lacks.
+    /// Returns an error that names the missing channel.
     pub fn along(&self, trial: &Trial) -> Result<AddedAccelerations, RefineError> {
         let instants = instants_along(&self.foundation, trial)
             .map_err(|lacks| RefineError::Channel { trial: lacks.trial, channel: lacks.channel })?;
@@ -40,13 +40,14 @@ impl BesideLaw {
     }
 }
 
-/// Accelerations at samples: of u, v, r.
+/// Accelerations of u, v, r at each sample.
 pub(super) struct AddedAccelerations(Vec<[f64; 3]>);
 
 impl AddedAccelerations {
-    /// That of an axis at a sample.
+    /// Acceleration of an axis at a sample; zero for an axis without correction.
     pub fn at(&self, axis: Axis, sample: usize) -> f64 {
         let place = [Axis::X, Axis::Y, Axis::N].iter().position(|known| *known == axis);
+        // Corrections have no roll.
         place.map_or(0.0, |place| self.0[sample][place])
     }
 }

@@ -1,4 +1,4 @@
-//! What shapes the rows of a ship's regressions.
+//! Frame of the statistics of a ship: everything that determines the rows of its regressions.
 
 use std::collections::BTreeMap;
 
@@ -9,28 +9,29 @@ use sistership_model::{Law, Model};
 
 use super::beside::BesideLaw;
 
-/// The format of [`TrialStatistics`](super::TrialStatistics).
+/// Format of [`TrialStatistics`](super::TrialStatistics).
 pub const FORMAT: &str = "sistership-statistics/1";
 
-/// The regressions of a model with its effects, without the values of its coefficients: two models
-/// that differ in those only have one frame, unless they have a learned correction.
+/// Regressions of a model with its effects, without the values of its coefficients: two models that
+/// differ only in these have the same frame, unless they have a learned correction.
 #[derive(Debug, Clone)]
 pub struct Frame {
     /// Time over which accelerations are differenced, s.
     pub difference_s: f64,
     pub(super) blocks: Blocks,
-    /// What was learned beside the law.
+    /// Learned correction, if the model has one.
     pub(super) beside: Option<BesideLaw>,
-    /// Everything that shapes a row, as text.
+    /// Everything that determines a row, as text.
     shape: String,
 }
 
 impl Frame {
-    /// Of a model by the law whose file has the hash `law_sha256`. Without `difference_s`, a tenth
-    /// of the time in which the ship sails its length.
+    /// Creates the frame of a model under the law whose file has the hash `law_sha256`. The default
+    /// of `difference_s` is a tenth of the time in which the ship travels its length.
     ///
     /// # Errors
-    /// Names what the model does not give: the weights of a learned correction among it.
+    /// Returns an error that names the missing part of the model, such as the weights of a learned
+    /// correction.
     pub fn new(
         model: &Model,
         law: &Law,
@@ -40,6 +41,7 @@ impl Frame {
         let dressed = law
             .with_effects(model)
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
+        // The default is part of the frame, so that the key contains its value.
         let difference_s = difference_s.or_else(|| tenth_of_a_length(model)).ok_or_else(|| {
             let message = format!("`{}` has no length or speed from which to take it", model.name);
             RefineError::Setting { field: "difference_s".into(), message }
@@ -52,7 +54,7 @@ impl Frame {
         })
     }
 
-    /// What the statistics of a trial, named by the hash of its samples, are kept under.
+    /// Key of the statistics of a trial, which is named by the hash of its samples.
     pub fn key(&self, trial_sha256: &str) -> String {
         sha256(format!("{trial_sha256}\n{}", self.shape).as_bytes())
     }
@@ -63,7 +65,8 @@ fn tenth_of_a_length(model: &Model) -> Option<f64> {
     model.speed_m_s.filter(|speed| *speed > 0.0).map(|speed| 0.1 * length / speed)
 }
 
-/// The debug form of a double is the shortest text that reads back as the same one.
+/// Text of everything that determines a row. The debug form of a double is the shortest text that
+/// reads back as the same one.
 fn shape(model: &Model, law_sha256: &str, difference_s: f64) -> String {
     let mut text = format!("{FORMAT}\n{law_sha256}\npublished {difference_s:?}\n");
     let mut write = |title: &str, values: &BTreeMap<String, Quantity>| {
@@ -79,8 +82,10 @@ fn shape(model: &Model, law_sha256: &str, difference_s: f64) -> String {
         let form = format!("effect {}/{}", effect.name, effect.form.name);
         write(&form, &effect.parameters);
     }
+    // The weights are named by their hash.
     if let Some(branch) = &model.branch {
-        // What a correction is told of the law depends on the coefficients, too.
+        // The inputs of a correction may include the law's accelerations, which depend on the
+        // coefficients.
         write(&format!("correction {}", branch.weights_sha256), &model.coefficients);
     }
     text.push_str(&model.coefficients.keys().map(String::as_str).collect::<Vec<_>>().join(" "));

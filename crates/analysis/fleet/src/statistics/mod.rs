@@ -1,9 +1,9 @@
-//! Sufficient statistics of a trial as a document: what a regression needs of its samples, so that
-//! a ship is refined again, with another prior or another trial, without reading samples.
+//! Sufficient statistics of a trial as a document: all that a regression needs of its samples, so
+//! that a ship is refined again, with another prior or another trial, without reading samples.
 //!
-//! They depend on the trial and on everything that shapes the rows: law, particulars, parameters,
-//! names of the coefficients and the time over which accelerations are differenced. [`Frame::key`]
-//! is a hash over all of it.
+//! They depend on the trial and on everything that determines the rows: law, particulars,
+//! parameters, names of the coefficients and the time over which accelerations are differenced. The
+//! key of a frame is a hash over all of it.
 
 mod beside;
 mod frame;

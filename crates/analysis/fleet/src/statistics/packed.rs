@@ -1,4 +1,4 @@
-//! Statistics in a document: their shape in words, their numbers as the base64 of their bytes, so
+//! Statistics in a document: their sizes as numbers, their values as the base64 of their bytes, so
 //! that none is rounded.
 
 use base64::Engine as _;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use sistership_numerics::Moments;
 
-/// As it is written.
+/// Serialised form.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PackedMoments {
@@ -16,7 +16,7 @@ struct PackedMoments {
     regressors: usize,
     /// Number of targets.
     targets: usize,
-    /// [`Moments::numbers`], little-endian doubles.
+    /// Values of the moments, as little-endian doubles.
     numbers: String,
 }
 
@@ -36,6 +36,7 @@ pub(super) fn serialize<S: Serializer>(
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Moments, D::Error> {
     let PackedMoments { regressors, targets, numbers } = PackedMoments::deserialize(deserializer)?;
     let bytes = STANDARD.decode(numbers).map_err(D::Error::custom)?;
+    // A remainder of bytes means a damaged document.
     let (doubles, rest) = bytes.as_chunks::<8>();
     let numbers: Vec<f64> = doubles.iter().map(|double| f64::from_le_bytes(*double)).collect();
     let moments = Moments::from_numbers(&numbers, regressors, targets).filter(|_| rest.is_empty());

@@ -1,4 +1,4 @@
-//! The statistics of a trial, and what coefficients leave of it.
+//! Statistics of a trial, and residuals of coefficients on it.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::packed;
 use sistership_identification::refine::{Block, RefineError, trial_moments, trial_tables};
 use sistership_numerics::Moments;
 
-/// The statistics of one trial.
+/// Statistics of one trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrialStatistics {
@@ -20,47 +20,48 @@ pub struct TrialStatistics {
     pub format: String,
     /// Time from the first to the last sample, s.
     pub duration_s: f64,
-    /// One set for each regression of the law.
+    /// Statistics of each regression of the law.
     pub regressions: Vec<Regression>,
 }
 
-/// The statistics of one regression over a trial.
+/// Statistics of one regression over a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Regression {
-    /// The axes that share its regressors.
+    /// Axes that have these regressors in common.
     pub axes: Vec<Axis>,
-    /// Names of the coefficients by axis; the same place in each is the same regressor.
+    /// Names of the coefficients by axis; the same index in each is the same regressor.
     pub names: Vec<Vec<String>>,
-    /// How many times the precision of each one's prior is the common one.
+    /// Precision of each coefficient's prior, relative to the common one.
     pub shrinkage: Vec<f64>,
-    /// What the targets are of the coefficients, by target and axis.
+    /// Mixing matrix from the coefficients' axes to the targets, by target and axis.
     pub mixing: Vec<Vec<f64>>,
     /// Counts, means and products.
     #[serde(with = "packed")]
     pub moments: Moments,
 }
 
-/// What the coefficients of an axis leave of a trial.
+/// Residual of an axis on a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisResidual {
-    /// The axis.
+    /// Axis of the residual.
     pub axis: Axis,
-    /// Mean square of what they leave, in the units of the axis' targets.
+    /// Mean squared residual, in the units of the axis' targets.
     pub residual: f64,
     /// Mean square of the target itself.
     pub target: f64,
 }
 
 impl TrialStatistics {
-    /// Of a trial, in a frame.
+    /// Computes the statistics of a trial in a frame.
     ///
     /// # Errors
-    /// Names the channel that the trial lacks.
+    /// Returns an error that names the missing channel.
     pub fn of(frame: &Frame, trial: &Trial) -> Result<Self, RefineError> {
         let (blocks, difference_s) = (&frame.blocks, Some(frame.difference_s));
         let moments = match &frame.beside {
             None => trial_moments(blocks, trial, difference_s)?,
+            // The law's regressions are for the acceleration that the correction does not add.
             Some(beside) => {
                 let added = beside.along(trial)?;
                 let known = |axis: Axis, sample: usize| added.at(axis, sample);
@@ -82,10 +83,10 @@ impl TrialStatistics {
         })
     }
 
-    /// Checks that lists and statistics go together.
+    /// Checks that the lists match the statistics.
     ///
     /// # Errors
-    /// Says what is wrong.
+    /// Returns an error with the fault.
     pub fn check(&self) -> Result<(), RefineError> {
         let refuse = |what: &str| Err(RefineError::Data(format!("statistics: {what}")));
         if self.format != FORMAT {
@@ -98,7 +99,7 @@ impl TrialStatistics {
         }
     }
 
-    /// Whether two trials were regressed in the same frame, so that their statistics may be added.
+    /// True if two trials were regressed in the same frame, so that their statistics may be added.
     pub fn goes_with(&self, other: &Self) -> bool {
         let same = |(a, b): (&Regression, &Regression)| {
             (&a.axes, &a.names, &a.mixing) == (&b.axes, &b.names, &b.mixing)
@@ -107,10 +108,11 @@ impl TrialStatistics {
             && self.regressions.iter().zip(&other.regressions).all(same)
     }
 
-    /// What coefficients leave of each axis; those that are not named count as zero.
+    /// Residuals of given coefficients for each axis; coefficients that are not named count as
+    /// zero.
     ///
     /// # Errors
-    /// The statistics mix axes that cannot be told apart.
+    /// Returns an error if the statistics mix axes that cannot be distinguished.
     pub fn left_by(
         &self,
         coefficients: &BTreeMap<String, f64>,
@@ -124,10 +126,10 @@ impl TrialStatistics {
 }
 
 impl Regression {
-    /// From targets to axes: the inverse of the mixing.
+    /// Matrix from targets to axes: the inverse of the mixing matrix.
     ///
     /// # Errors
-    /// It has none.
+    /// Returns an error if the mixing matrix is singular.
     pub fn unmixing(&self) -> Result<DMatrix<f64>, RefineError> {
         let q = self.axes.len();
         let mixing = DMatrix::from_fn(q, q, |target, axis| self.mixing[target][axis]);
@@ -136,14 +138,16 @@ impl Regression {
         })
     }
 
-    /// Whether its lists are as long as its statistics need.
+    /// True if the lists have the lengths that the statistics need.
     fn is_whole(&self) -> bool {
         let (p, q) = (self.moments.regressors(), self.moments.targets());
+        // The mixing matrix is square, with one row for each target.
         let rows = self.mixing.len() == q && self.mixing.iter().all(|row| row.len() == q);
         let names = self.names.len() == q && self.names.iter().all(|names| names.len() == p);
         rows && names && self.axes.len() == q && self.shrinkage.len() == p
     }
 
+    /// Statistics of a block of the regression.
     fn of(block: &Block, moments: Moments) -> Self {
         let row = |target: usize| block.mixing.row(target).iter().copied().collect();
         Self {
@@ -151,6 +155,7 @@ impl Regression {
             names: block.names.clone(),
             shrinkage: block.shrinkage.clone(),
             mixing: (0..block.axes.len()).map(row).collect(),
+            // Exactly symmetric, so that the document gives the same numbers when it is read back.
             moments: moments.symmetric(),
         }
     }
@@ -159,12 +164,15 @@ impl Regression {
         &self,
         coefficients: &BTreeMap<String, f64>,
     ) -> Result<Vec<AxisResidual>, RefineError> {
+        // With weights (-b, unmixing row) over regressors and targets, the mean squared residual is
+        // w' E[z z'] w.
         let (raw, unmixing) = (self.moments.raw_products(), self.unmixing()?);
         let p = self.moments.regressors();
         let mean_square = |weights: &DVector<f64>| weights.dot(&(&raw * weights)).max(0.0);
         let one = |(index, &axis): (usize, &Axis)| {
             let mut weights = DVector::zeros(raw.nrows());
             (0..self.axes.len()).for_each(|target| weights[p + target] = unmixing[(index, target)]);
+            // First with the target alone, then with the regressors.
             let target = mean_square(&weights);
             let values =
                 self.names[index].iter().map(|name| coefficients.get(name).copied().unwrap_or(0.0));

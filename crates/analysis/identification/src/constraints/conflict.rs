@@ -1,12 +1,12 @@
-//! Which limits cannot be kept together.
+//! Search for limits that cannot be kept together.
 
 use super::limit::Limit;
 use super::programme::{NearestPointProblem, Overstepping};
 use super::thresholds::CONSTRAINTS;
 
-/// A set of limits that cannot be kept together, none of which can be left out of it (the deletion
-/// filter of Chinneck and Dravnieks 1991, ORSA Journal on Computing 3, 157-168), by name; none
-/// where all can be kept.
+/// Names of an irreducible set of limits that cannot be kept together: without any one of them the
+/// others can (the deletion filter of Chinneck and Dravnieks 1991, ORSA Journal on Computing 3,
+/// 157-168). `None` if all limits can be kept together.
 pub(super) fn conflict(
     nearest: &NearestPointProblem<'_>,
     limits: &[&Limit],
@@ -14,6 +14,8 @@ pub(super) fn conflict(
     if possible(nearest, limits) {
         return None;
     }
+    // Deletion filter: a limit without which the others still conflict is not part of the conflict.
+    // The order of the limits decides which of several irreducible sets is found.
     let mut kept: Vec<&Limit> = limits.to_vec();
     for limit in limits {
         let without: Vec<&Limit> =
@@ -25,12 +27,15 @@ pub(super) fn conflict(
     Some(kept.into_iter().map(|limit| limit.name.clone()).collect())
 }
 
-/// Whether limits can be kept together: whether the least overstepping is none.
+/// True if limits can be kept together: if the least violation in the elastic programme is zero but
+/// for the solver's error.
 fn possible(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> bool {
     if limits.is_empty() {
         return true;
     }
     nearest
+        // The elastic programme always has a solution; a failure of the solver counts as
+        // infeasible.
         .within(limits, Overstepping::Elastic)
         .is_ok_and(|point| point.overstepped.iter().all(|by| *by < CONSTRAINTS.solver_error))
 }

@@ -1,17 +1,17 @@
-//! Why limits cannot be kept.
+//! Errors of limits that cannot be set up or kept.
 
 use clarabel::solver::SolverStatus;
 use sistership_simulation::PlantError;
 
 use super::settings::StraightLine;
 
-/// Why limits of the coefficients cannot be made, or are not kept.
+/// The error type for limits of the coefficients that cannot be set up, or are not kept.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LimitError {
     /// Bounds of a coefficient that the model does not have.
     #[error("bounds.{0}: the model has no such coefficient")]
     Unknown(String),
-    /// The model cannot be made ready.
+    /// The model cannot be set up for simulation.
     #[error(transparent)]
     Model(#[from] PlantError),
     /// A coefficient of the limits is not one of the solution.
@@ -26,7 +26,7 @@ pub enum LimitError {
     /// A model breaks the limit of that name.
     #[error("it breaks the constraint `{0}`")]
     Broken(String),
-    /// A model is not what was declared.
+    /// A model does not have the declared straight-line stability.
     #[error("it is not {} on a straight course", if *.0 == StraightLine::Stable { "stable" } else { "unstable" })]
     StraightLine(StraightLine),
 }

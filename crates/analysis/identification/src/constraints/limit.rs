@@ -1,6 +1,6 @@
-//! One limit: a half space or a cone of the coefficients.
+//! One limit: a half space or a second-order cone of the coefficients.
 
-/// An affine function of the coefficients: normal and constant.
+/// An affine function of the coefficients: `normal . c + constant`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AffineFunction {
     pub normal: Vec<f64>,
@@ -8,25 +8,26 @@ pub(super) struct AffineFunction {
 }
 
 impl AffineFunction {
+    /// Value of the function at coefficients.
     pub fn at(&self, coefficients: &[f64]) -> f64 {
         self.constant + self.normal.iter().zip(coefficients).map(|(n, c)| n * c).sum::<f64>()
     }
 
-    /// `sign (c_k - bound)`.
+    /// The function `sign (c_k - bound)` of `size` coefficients, `k` being `place`.
     pub fn of_one(size: usize, place: usize, sign: f64, bound: f64) -> Self {
         let mut normal = vec![0.0; size];
         normal[place] = sign;
         Self { normal, constant: -sign * bound }
     }
 
-    /// `a self + b other`.
+    /// The linear combination `a self + b other`.
     pub fn with(&self, a: f64, other: &Self, b: f64) -> Self {
         let normal = self.normal.iter().zip(&other.normal).map(|(x, y)| a * x + b * y).collect();
         Self { normal, constant: a * self.constant + b * other.constant }
     }
 }
 
-/// A limit with the name by which it is explained.
+/// A limit, with the name by which messages refer to it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Limit {
     pub name: String,
@@ -36,14 +37,17 @@ pub(super) struct Limit {
 }
 
 impl Limit {
+    /// The limit that a function is at least 0.
     pub fn least(name: String, function: AffineFunction) -> Self {
         Self { name, cone: vec![function] }
     }
 
-    /// A symmetric matrix of two rows without negative eigenvalues: `a + c >= |(a - c, 2 b)|`
-    /// (Alizadeh and Goldfarb 2003, Mathematical Programming 95, 3-51, section 2.3: such a matrix
-    /// is a cone of second order in three dimensions).
+    /// The limit that a symmetric matrix of two rows, with the diagonal `a`, `c` and the other
+    /// element `b`, has no negative eigenvalue: `a + c >= |(a - c, 2 b)|` (Alizadeh and Goldfarb
+    /// 2003, Mathematical Programming 95, 3-51, section 2.3: such a matrix is a cone of second
+    /// order in three dimensions).
     pub fn matrix(name: String, [a, b, c]: [&AffineFunction; 3]) -> Self {
+        // `2 b` as `2 b + 0 b`, a linear combination of two functions.
         Self { name, cone: vec![a.with(1.0, c, 1.0), a.with(1.0, c, -1.0), b.with(2.0, b, 0.0)] }
     }
 }

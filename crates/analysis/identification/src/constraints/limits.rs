@@ -1,4 +1,4 @@
-//! The limits of one variant of a refinement, and coefficients within them.
+//! The limits of one variant of a refinement, and the nearest coefficients within them.
 
 use std::collections::BTreeMap;
 
@@ -15,27 +15,29 @@ use super::settings::{Constraints, StraightLine};
 use super::straight::{affine, fastest, holds, limit, surge, sway_and_yaw};
 use super::thresholds::CONSTRAINTS;
 
-/// Signs that physics fixes: 1 for what is at least 0, -1 for what is at most 0.
+/// Signs that physics determines: 1 for coefficients of at least 0, -1 for coefficients of at most
+/// 0.
 const SIGNS: [(&str, f64); 4] = [("Y_v", -1.0), ("N_r", -1.0), ("Y_delta", -1.0), ("N_delta", 1.0)];
-/// Surge terms that brake in every published set.
+/// Surge terms that are resistance in every published set of coefficients.
 const BRAKES: [&str; 1] = ["X_deltadelta"];
 
 /// Limits of the coefficients of a model.
 pub struct CoefficientLimits {
     names: Vec<String>,
     source: Vec<f64>,
-    /// Those that do not depend on a solution.
+    /// Limits that do not depend on a solution.
     fixed: Vec<Limit>,
     trust_sd: Option<f64>,
     straight: Option<(StraightLine, [AffineFunction; 4])>,
 }
 
 impl CoefficientLimits {
-    /// For the coefficients that a model has; `speeds` are the least and the greatest that the
-    /// trials covered, m/s.
+    /// Creates the limits for the coefficients that a model has; `speeds` are the least and the
+    /// greatest speed that the trials covered, m/s.
     ///
     /// # Errors
-    /// Names the setting that asks for what the model does not have.
+    /// Returns an error that names the setting if it refers to a coefficient that the model does
+    /// not have.
     pub fn new(
         settings: &Constraints,
         model: &Model,
@@ -54,6 +56,7 @@ impl CoefficientLimits {
         for (name, bound) in &settings.bounds {
             let unknown = || LimitError::Unknown(name.clone());
             let place = names.iter().position(|own| own == name).ok_or_else(unknown)?;
+            // Both bounds become functions that are at least 0: `c - min` and `-(c - max)`.
             for (sign, bound, word) in [(1.0, bound.min, "least"), (-1.0, bound.max, "greatest")] {
                 let limit = |bound| {
                     Limit::least(
@@ -77,11 +80,13 @@ impl CoefficientLimits {
         })
     }
 
-    /// The coefficients within the limits that are nearest to a solution. `curvature` is over
-    /// `names`, `prior` how far the prior lets each be from the source.
+    /// Returns the coefficients within the limits that are nearest to a solution. `curvature` is
+    /// the curvature of the objective over `names`; `prior` gives the prior's standard deviation of
+    /// a coefficient.
     ///
     /// # Errors
-    /// Names the limits that cannot be kept together, or says why no solution was found.
+    /// Returns an error with the limits that cannot be kept together, or with the solver's status
+    /// if it found no solution.
     pub fn nearest(
         &self,
         solution: &BTreeMap<String, f64>,
@@ -89,16 +94,22 @@ impl CoefficientLimits {
         curvature: &DMatrix<f64>,
         prior: &dyn Fn(&str) -> f64,
     ) -> Result<BTreeMap<String, f64>, LimitError> {
+        // The regression orders coefficients by block, the limits by name: the curvature is brought
+        // into the limits' order.
         let place = |name: &String| names.iter().position(|own| own == name);
         let places: Option<Vec<usize>> = self.names.iter().map(place).collect();
         let places = places.ok_or(LimitError::NotFitted)?;
         let curvature = curvature.select_rows(&places).select_columns(&places);
+        // Distance is measured from the unconstrained solution.
         let centre: Vec<f64> =
             self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
         let nearest = NearestPointProblem { centre: &centre, curvature: &curvature };
         let mut common = self.fixed.clone();
         common.extend(self.trust(prior));
         let mut at = centre.clone();
+        // The limit of straight-line stability depends on a reference matrix and is only sufficient
+        // for it. Each round takes the last point as its reference, which makes the limit less
+        // conservative.
         for _ in 0..if self.straight.is_some() { CONSTRAINTS.references } else { 1 } {
             let own = self.straight_line(&at);
             let limits: Vec<&Limit> = common.iter().chain(&own).collect();
@@ -110,12 +121,13 @@ impl CoefficientLimits {
         Ok(self.names.iter().cloned().zip(at).collect())
     }
 
-    /// Whether coefficients keep the limits that do not depend on a prior.
+    /// Checks that the coefficients of a model keep the limits that do not depend on a prior.
     ///
     /// # Errors
-    /// Names the first limit that they do not keep.
+    /// Returns an error with the first limit that is not kept.
     pub fn check(&self, model: &Model) -> Result<(), LimitError> {
         let at: Vec<f64> = self.names.iter().map(|name| model.coefficient(name)).collect();
+        // All fixed limits are half spaces, so that each has a single function.
         let broken = self.fixed.iter().find(|limit| limit.cone[0].at(&at) < 0.0);
         if let Some(limit) = broken {
             return Err(LimitError::Broken(limit.name.clone()));
@@ -128,7 +140,8 @@ impl CoefficientLimits {
         }
     }
 
-    /// The trust region about the source.
+    /// Limits of the trust region about the source: `|c - source|` of at most `trust_sd` standard
+    /// deviations of the prior; none without a trust region.
     fn trust(&self, prior: &dyn Fn(&str) -> f64) -> Vec<Limit> {
         let Some(sd) = self.trust_sd else { return Vec::new() };
         let one = |(place, name): (usize, &String)| {
@@ -145,20 +158,23 @@ impl CoefficientLimits {
         self.names.iter().enumerate().flat_map(one).collect()
     }
 
-    /// The limit of the straight course by a reference that has what is declared: the solution, the
-    /// source, or the solution with all eigenvalues shifted.
+    /// The limit of straight-line stability by the first reference matrix that has the declared
+    /// stability: that of the solution, of the source, or of the solution with all eigenvalues
+    /// shifted.
     fn straight_line(&self, at: &[f64]) -> Option<Limit> {
         let (line, functions) = self.straight.as_ref()?;
         let (own, source) = (matrix(functions, at), matrix(functions, &self.source));
         let towards =
             if *line == StraightLine::Stable { -CONSTRAINTS.shift } else { CONSTRAINTS.shift };
+        // Adding a multiple of the identity shifts every eigenvalue by it: the largest real part
+        // becomes `towards`.
         let shifted = own + Matrix2::identity() * (towards - fastest(&own));
         let candidates = [own, source, shifted].into_iter().filter(|matrix| holds(*line, matrix));
         candidates.filter_map(|reference| limit(*line, functions, &reference)).next()
     }
 }
 
-/// The point within limits that is nearest.
+/// The nearest point within limits; where there is none, the error names the limits that conflict.
 fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f64>, LimitError> {
     match nearest.within(limits, Overstepping::Held) {
         Ok(point) => Ok(point.coefficients),
@@ -169,12 +185,13 @@ fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f6
     }
 }
 
+/// The matrix of sway and yaw from its four affine elements, row by row.
 fn matrix(functions: &[AffineFunction; 4], at: &[f64]) -> Matrix2<f64> {
     let [vv, vr, rv, rr] = [0, 1, 2, 3].map(|k: usize| functions[k].at(at));
     Matrix2::new(vv, vr, rv, rr)
 }
 
-/// Signs of those coefficients that there are.
+/// Limits of sign for those coefficients of `signs` that the model has.
 fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
     let one = |&(name, sign): &(&str, f64)| {
         let place = names.iter().position(|own| own == name)?;
@@ -187,18 +204,22 @@ fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
     signs.iter().filter_map(one).collect()
 }
 
-/// Surge acceleration that falls with speed, over the speeds ahead that the trials covered.
+/// Limits by which surge acceleration falls with speed, at several speeds ahead that the trials
+/// covered.
 fn damping(
     model: &Model,
     law: &Law,
     names: &[String],
     [low, high]: [f64; 2],
 ) -> Result<Vec<Limit>, PlantError> {
+    // Near rest the resistance and its slope vanish, so that the lowest speed is bounded from
+    // below.
     let ahead = low.max(CONSTRAINTS.least_speed * high);
     let speeds: Vec<f64> = (0..CONSTRAINTS.speeds)
         .map(|k| ahead + (high - ahead) * k as f64 / (CONSTRAINTS.speeds - 1) as f64)
         .filter(|u| *u > 0.0)
         .collect();
+    // `d(du/dt)/du <= 0` as a function that is at least 0.
     let one = |speed: f64| {
         let [slope] = affine(model, law, names, &|ship| [surge(ship, speed)])?;
         Ok(Limit::least(

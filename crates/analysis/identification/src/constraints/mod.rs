@@ -1,8 +1,8 @@
-//! What a refined model must keep to, whatever the trials say.
+//! Constraints on the coefficients of a refined model, which hold whatever the trials suggest.
 //!
-//! The ridge's solution is the least of a quadratic, so that the least of it within convex limits
-//! is the limits' point that is nearest to the solution by the quadratic's own curvature: a cone
-//! programme, which Clarabel solves.
+//! The ridge's solution is the minimum of a quadratic function. Its minimum within convex limits is
+//! therefore the point of the limits that is nearest to the solution in the metric of the
+//! quadratic's own curvature: a cone programme, which Clarabel solves.
 
 mod conflict;
 mod error;

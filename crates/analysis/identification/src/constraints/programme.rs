@@ -1,4 +1,4 @@
-//! The nearest point within limits, by Clarabel.
+//! The nearest point within limits: the cone programme as Clarabel takes it.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -10,38 +10,42 @@ use nalgebra::{DMatrix, DVector};
 use super::limit::Limit;
 use super::thresholds::CONSTRAINTS;
 
-/// What is nearest: coefficients, and the curvature by which distance is measured.
+/// A problem of the nearest point: the point from which distance is measured, and the curvature
+/// that measures it.
 pub(super) struct NearestPointProblem<'a> {
     pub centre: &'a [f64],
     pub curvature: &'a DMatrix<f64>,
 }
 
-/// How far each limit may be overstepped at a price, or not at all.
+/// Treatment of violated limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Overstepping {
-    /// Limits hold; the point is nearest.
+    /// Limits hold, and the distance is least.
     Held,
-    /// Each limit may be overstepped; the sum of that is least, and hardly anything else counts.
+    /// Each limit may be violated; the sum of the violations is least, and distance hardly counts.
     Elastic,
 }
 
-/// What came out, in coefficients.
+/// Solution of the problem.
 pub(super) struct NearestPoint {
     pub coefficients: Vec<f64>,
-    /// By how much each limit is overstepped, by its own scale; empty where limits hold.
+    /// Violation of each limit in units of its scale; empty where limits hold.
     pub overstepped: Vec<f64>,
 }
 
 impl NearestPointProblem<'_> {
-    /// The nearest point within limits.
+    /// Returns the nearest point within limits.
     ///
     /// # Errors
-    /// What the solver says, where it does not say `Solved`.
+    /// Returns the solver's status unless it is `Solved`.
     pub fn within(
         &self,
         limits: &[&Limit],
         steps: Overstepping,
     ) -> Result<NearestPoint, SolverStatus> {
+        // Variables are the scaled changes of the coefficients, in the elastic programme followed
+        // by one slack a limit. The objective is `1/2 x' P x + q' x` with `q` zero for coefficients
+        // and one for slacks.
         let (size, extra) =
             (self.centre.len(), if steps == Overstepping::Elastic { limits.len() } else { 0 });
         let scales = self.scales();
@@ -50,6 +54,7 @@ impl NearestPointProblem<'_> {
             true => weight * self.curvature[(i, j)] * scales[i] * scales[j],
             false => 0.0,
         };
+        // Clarabel takes the upper triangle of the quadratic part.
         let quadratic =
             sparse(size + extra, size + extra, &|i, j| if i <= j { entry(i, j) } else { 0.0 });
         let linear: Vec<f64> =
@@ -58,6 +63,7 @@ impl NearestPointProblem<'_> {
         let matrix = sparse(rows.len(), size + extra, &|i, j| rows[i][j]);
         let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
         let solver = DefaultSolver::new(&quadratic, &linear, &matrix, &bounds, &cones, settings);
+        // Construction fails only for inconsistent dimensions, which the caller cannot correct.
         let mut solver = solver.map_err(|_| SolverStatus::Unsolved)?;
         solver.solve();
         if solver.solution.status != SolverStatus::Solved {
@@ -68,12 +74,13 @@ impl NearestPointProblem<'_> {
         Ok(NearestPoint { coefficients, overstepped: x[size..].to_vec() })
     }
 
-    /// What changes each coefficient by one unit of curvature.
+    /// Scales of the variables: the change of each coefficient that has a curvature of one.
     fn scales(&self) -> DVector<f64> {
         self.curvature.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
     }
 
-    /// `A x + s = b` with `s` in the cones, every limit by the length of its normals.
+    /// The constraints `A x + s = b` with `s` in the cones: rows of `A`, `b` and the cones, every
+    /// limit divided by the length of its scaled normals.
     #[allow(clippy::type_complexity)]
     fn rows(
         &self,
@@ -92,8 +99,12 @@ impl NearestPointProblem<'_> {
             let length = scaled.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
             let by = if length > 0.0 { 1.0 / length } else { 1.0 };
             for (place, (normal, function)) in scaled.iter().zip(&limit.cone).enumerate() {
+                // `s = b - A x` is the limit's function at the point, so that `A` has the negative
+                // normals.
                 let mut row: Vec<f64> = normal.iter().map(|n| -n * by).collect();
                 row.resize(size + extra, 0.0);
+                // A slack relaxes the first function of a cone, the one that bounds the length of
+                // the others.
                 if extra > 0 && place == 0 {
                     row[size + k] = -1.0;
                 }
@@ -106,6 +117,7 @@ impl NearestPointProblem<'_> {
                 SecondOrderConeT(limit.cone.len())
             });
         }
+        // The slacks themselves are at least 0.
         for k in 0..extra {
             let mut row = vec![0.0; size + extra];
             row[size + k] = -1.0;
@@ -119,7 +131,7 @@ impl NearestPointProblem<'_> {
     }
 }
 
-/// A matrix by columns without its zeros.
+/// A matrix in compressed column form, zeros omitted.
 fn sparse(rows: usize, columns: usize, entry: &dyn Fn(usize, usize) -> f64) -> CscMatrix<f64> {
     let (mut starts, mut places, mut values) = (vec![0], Vec::new(), Vec::new());
     for column in 0..columns {

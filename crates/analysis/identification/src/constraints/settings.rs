@@ -1,4 +1,4 @@
-//! What a refined model may be asked to keep to.
+//! Constraints that can be requested of a refined model.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Constraints {
-    /// Signs that physics fixes, of those that the model has: drift and yaw are damped (`Y_v`,
-    /// `N_r` at most 0), the rudder turns the ship to its side and pushes the stern the other way
-    /// (`N_delta` at least, `Y_delta` at most 0).
+    /// Physical signs, for those of the coefficients that the model has: drift and yaw are damped
+    /// (`Y_v`, `N_r` at most 0), the rudder turns the ship to its side and pushes the stern the
+    /// other way (`N_delta` at least 0, `Y_delta` at most 0).
     pub physical_signs: bool,
-    /// Surge terms take energy from the motion: ahead, surge acceleration falls with speed over the
-    /// speeds that the trials covered, and the rudder brakes (`X_deltadelta` at most 0).
+    /// Surge terms dissipate energy: ahead, surge acceleration falls with speed over the speeds
+    /// that the trials covered, and the rudder causes resistance (`X_deltadelta` at most 0).
     pub dissipative: bool,
-    /// No coefficient is further from the source than so many standard deviations of its prior
+    /// Largest distance of a coefficient from the source, in standard deviations of its prior
     /// (`moved_sd`).
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -23,7 +23,7 @@ pub struct Constraints {
     /// Bounds by coefficient, in the law's units.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub bounds: BTreeMap<String, Bound>,
-    /// Whether it keeps a straight line with the rudder amidships at its approach speed.
+    /// Straight-line stability with the rudder amidships at the approach speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub straight_line: Option<StraightLine>,
 }
@@ -40,23 +40,23 @@ pub struct Bound {
     pub max: Option<f64>,
 }
 
-/// What a ship does after a small disturbance with the rudder amidships.
+/// Behaviour of a ship after a small disturbance with the rudder amidships.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StraightLine {
-    /// It settles on a new straight line.
+    /// The ship settles on a new straight course.
     Stable,
-    /// It starts to turn.
+    /// The ship starts to turn.
     Unstable,
 }
 
-/// Why constraints are refused.
+/// The error type for constraints that are refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ConstraintError {
-    /// The trust region has no size.
+    /// The size of the trust region is not above 0.
     #[error("trust_sd must be above 0")]
     TrustRegion,
-    /// The bounds of a coefficient are none.
+    /// The bounds of a coefficient are missing or not finite.
     #[error("bounds.{0}: give `min`, `max` or both, as finite numbers")]
     NoBound(String),
     /// The bounds of a coefficient exclude everything.
@@ -65,7 +65,7 @@ pub enum ConstraintError {
 }
 
 impl Constraints {
-    /// Whether nothing is asked for.
+    /// Returns true if no constraint is requested.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
@@ -73,7 +73,7 @@ impl Constraints {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// Names what is wrong.
+    /// Returns an error with the setting that is out of range.
     pub fn check(&self) -> Result<(), ConstraintError> {
         if self.trust_sd.is_some_and(|sd| !(sd > 0.0 && sd.is_finite())) {
             return Err(ConstraintError::TrustRegion);

@@ -1,4 +1,4 @@
-//! How a ship answers to small disturbances of a straight course, as an affine function of its
+//! Response of a ship to small disturbances of a straight course, as an affine function of its
 //! coefficients.
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
@@ -12,8 +12,8 @@ use super::limit::{AffineFunction, Limit};
 use super::settings::StraightLine;
 use super::thresholds::CONSTRAINTS;
 
-/// Rates of change of the velocities at a straight course disturbed in one of them, by central
-/// differences.
+/// Derivative of the rates of change of the state on a straight course by one element (`place`) of
+/// the state, by central differences of half width `size`.
 fn slope(ship: &Ship, speed_m_s: f64, place: usize, size: f64) -> StateVector {
     let rate = |by: f64| {
         let mut state = straight(speed_m_s);
@@ -23,10 +23,12 @@ fn slope(ship: &Ship, speed_m_s: f64, place: usize, size: f64) -> StateVector {
     (rate(size) - rate(-size)) / (2.0 * size)
 }
 
-/// The matrix of sway and yaw: rates of `v/U` and `r L/U` by themselves, time by `L/U`.
+/// The matrix of sway and yaw, row by row: derivatives of the rates of `v/U` and `r L/U` by
+/// themselves, with time in units of `L/U`.
 pub(super) fn sway_and_yaw(ship: &Ship) -> [f64; 4] {
     let (length, speed) = (ship.lpp_m(), ship.approach_speed_m_s());
     let time = length / speed;
+    // Both columns are derivatives in SI units; the factors below make them dimensionless.
     let by_sway = slope(ship, speed, at::V, CONSTRAINTS.disturbance * speed);
     let by_yaw = slope(ship, speed, at::R, CONSTRAINTS.disturbance * speed / length);
     [
@@ -37,12 +39,13 @@ pub(super) fn sway_and_yaw(ship: &Ship) -> [f64; 4] {
     ]
 }
 
-/// How surge acceleration changes with speed.
+/// Derivative of surge acceleration by the speed, 1/s, on a straight course at `speed_m_s`.
 pub(super) fn surge(ship: &Ship, speed_m_s: f64) -> f64 {
     slope(ship, speed_m_s, at::U, CONSTRAINTS.disturbance * speed_m_s)[at::U]
 }
 
-/// Functions of a model's coefficients that are affine in them, by differences.
+/// Functions of a ship that are affine in the coefficients of its model, as affine functions of the
+/// coefficients `names`, by differences.
 pub(super) fn affine<const N: usize>(
     model: &Model,
     law: &Law,
@@ -50,6 +53,8 @@ pub(super) fn affine<const N: usize>(
     of: &dyn Fn(&Ship) -> [f64; N],
 ) -> Result<[AffineFunction; N], PlantError> {
     let at = |model: &Model| Ship::new(model, law).map(|ship| of(&ship));
+    // The functions are affine in each coefficient, so that a difference of any size gives the
+    // exact normal.
     let here = at(model)?;
     let mut normals: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(names.len()));
     for name in names {
@@ -63,11 +68,12 @@ pub(super) fn affine<const N: usize>(
     let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
     Ok(std::array::from_fn(|k| {
         let linear = AffineFunction { normal: normals[k].clone(), constant: 0.0 };
+        // The constant follows from the value at the model's own coefficients.
         AffineFunction { constant: here[k] - linear.at(&values), ..linear }
     }))
 }
 
-/// Whether a matrix has what is declared.
+/// Returns true if a matrix of sway and yaw has the declared stability.
 pub(super) fn holds(line: StraightLine, matrix: &Matrix2<f64>) -> bool {
     match line {
         StraightLine::Stable => fastest(matrix) < 0.0,
@@ -75,15 +81,15 @@ pub(super) fn holds(line: StraightLine, matrix: &Matrix2<f64>) -> bool {
     }
 }
 
-/// Of the definite matrix that makes it so.
+/// Sign of the definite matrix of the Lyapunov inequality: -1 for a stable, 1 for an unstable ship.
 fn sign(line: StraightLine) -> f64 {
     if line == StraightLine::Stable { -1.0 } else { 1.0 }
 }
 
-/// What is declared as a limit: `P A + A' P` is definite for the `P` with which it is so at a
+/// The declared stability as a limit: `P A + A' P` is definite for the `P` with which it is so at a
 /// reference. By Lyapunov's theorems, negative definite with the `P` of a stable reference makes
 /// `A` stable, and positive definite with the `P` of an unstable one makes it unstable (Khalil
-/// 2002, Nonlinear systems, Theorems 4.3 and 4.6). None where the reference has no such `P`.
+/// 2002, Nonlinear systems, Theorems 4.3 and 4.6). `None` if the reference has no such `P`.
 pub(super) fn limit(
     line: StraightLine,
     functions: &[AffineFunction; 4],
@@ -91,9 +97,12 @@ pub(super) fn limit(
 ) -> Option<Limit> {
     let p = lyapunov(reference, sign(line))?;
     let [vv, vr, rv, rr] = functions;
+    // Elements of `sign (P A + A' P)`: the diagonal ones are `2 (p11 vv + p12 rv)` and `2 (p12 vr +
+    // p22 rr)`, the other one is `p11 vr + p12 vv + p12 rr + p22 rv`.
     let twice = |a: &AffineFunction, pa: f64, b: &AffineFunction, pb: f64| {
         a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line))
     };
+    // The margin keeps the solver's error from making the matrix indefinite.
     let margin = |mut function: AffineFunction| {
         function.constant -= CONSTRAINTS.margin;
         function
@@ -111,13 +120,15 @@ pub(super) fn limit(
     Some(Limit::matrix(name.to_owned(), [&first, &cross, &last]))
 }
 
-/// The largest real part of the eigenvalues.
+/// The largest real part of the eigenvalues (the spectral abscissa).
 pub(super) fn fastest(matrix: &Matrix2<f64>) -> f64 {
     matrix.complex_eigenvalues().iter().map(|value| value.re).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The symmetric `P` with `P A + A' P = sign I`.
+/// The symmetric `P` with `P A + A' P = sign I`; `None` if the equations are singular.
 fn lyapunov(a: &Matrix2<f64>, sign: f64) -> Option<Matrix2<f64>> {
+    // Three linear equations for `p11`, `p12` and `p22`; the second one is the element off the
+    // diagonal.
     let equations = Matrix3::new(
         2.0 * a[(0, 0)],
         2.0 * a[(1, 0)],

@@ -1,5 +1,4 @@
-//! All fits of a model's coefficients that are worth weighing, each with what it gives where a
-//! trial is left out.
+//! Alternative fits of a model's coefficients, each with the models fitted without one trial.
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -19,19 +18,19 @@ use sistership_assessment::uncertainty::Sampling;
 
 /// A fit by the weak form or by trajectories.
 pub struct Alternative {
-    /// What it is, for people.
+    /// Label for reports.
     pub label: String,
-    /// Fitted on all trials.
+    /// Model fitted on all trials.
     pub all: Model,
-    /// Fitted without each trial.
+    /// Models fitted without one trial each.
     pub without: Vec<Model>,
 }
 
-/// The fits of a model's coefficients, with its own as the source, whose simulations of trials left
-/// out do not stop.
+/// Returns the fits of a model's coefficients, with the model itself as the source, whose
+/// simulations of held-out trials run to their end.
 ///
 /// # Errors
-/// Says which trial or channel is at fault.
+/// Returns an error with the trial or channel at fault.
 pub fn alternatives(
     model: &Model,
     law: &Law,
@@ -42,8 +41,10 @@ pub fn alternatives(
         method: Method::Trajectory,
         families: vec![Family::Own],
         strengths: SELECTION.alternatives.to_vec(),
+        // One fold a trial, so that `without` has a model for each of them.
         folds: trials.len(),
         restart_s: Some(restart_s),
+        // No posterior is needed here.
         bands: Sampling { samples: 0, ..Sampling::default() },
         ..Settings::default()
     };
@@ -54,6 +55,7 @@ pub fn alternatives(
     let variants = variants(&problem, estimator.equations(&problem.settings))?;
     let mut candidates = vec![source_candidate(&problem, &variants)?];
     estimator.candidates(&problem, &variants, &mut candidates, &|_, _| true)?;
+    // The source itself has no fold models and is no alternative.
     let left_out =
         candidates.into_iter().filter(|one| one.option.error.is_some() && !one.left_out.is_empty());
     let one = |one: CandidateFit| {

@@ -1,5 +1,5 @@
-//! How a law becomes linear regressions: groups of axes that the mass matrix couples, and what each
-//! regression solves.
+//! Linear regressions of a law: groups of axes that the mass matrix couples, and the unknowns of
+//! each regression.
 //!
 //! As published, accelerations are regressed: `acceleration = M^-1 (scale sum(c_i phi_i) + rest)`.
 //! Axes that the mass matrix couples have their coefficients mixed by `M^-1`; where they have the
@@ -19,52 +19,56 @@ use sistership_simulation::tape::Tape;
 use super::outcome::RefineError;
 use sistership_numerics::{Metric, Moments};
 
-/// One regression: its axes, the coefficients of each, and where its pieces stand on the tape.
+/// One regression: its axes, the coefficients of each axis, and the outputs of the tape that hold
+/// its parts.
 #[derive(Debug, Clone)]
 pub struct Block {
     /// The axes it solves for.
     pub axes: Vec<Axis>,
     /// Names of the coefficients by axis; the same place in each is the same regressor.
     pub names: Vec<Vec<String>>,
-    /// Regressors without scale, in the order of the names.
+    /// Outputs of the tape with the regressors, without scale, in the order of the names.
     pub(crate) terms: Vec<usize>,
-    /// How many times the precision of each one's prior is the common one: more than 1 for
+    /// Precision of each regressor's prior as a multiple of the common one: more than 1 for
     /// deviations of submodels.
     pub shrinkage: Vec<f64>,
     /// Joint precision of the prior at strength 1, in the units of the regressors, where a source
-    /// has earned one.
+    /// determines one.
     pub(crate) precision: Option<DMatrix<f64>>,
-    /// Scale by axis.
+    /// Outputs with the scale, by axis.
     pub(crate) scales: Vec<usize>,
-    /// Rest by axis.
+    /// Outputs with the rest, by axis.
     pub(crate) rests: Vec<usize>,
-    /// Mass matrix rows of these axes, over all coupled axes.
+    /// Outputs with the rows of the mass matrix of these axes, over all coupled axes; none for
+    /// zeros.
     pub(crate) mass: Vec<Vec<Option<usize>>>,
     /// The axes of the mass matrix' columns.
     pub(crate) columns: Vec<Axis>,
-    /// What effects add to the accelerations of these, where they do.
+    /// Outputs with the accelerations that effects add to the axes of `columns`; none where they
+    /// add nothing.
     pub(crate) additions: Vec<Option<usize>>,
-    /// What the regression solves for is this matrix times the coefficients of its axes.
+    /// Matrix from the coefficients of the axes to the unknowns of the regression.
     pub mixing: DMatrix<f64>,
-    /// Its inverse: from what the regression solves for to the coefficients of the axes.
+    /// Inverse of `mixing`: from the unknowns of the regression to the coefficients of the axes.
     pub(crate) unmixing: DMatrix<f64>,
 }
 
-/// Every regression of a law, and the tape that evaluates their pieces.
+/// All regressions of a law, and the tape that evaluates their parts.
 #[derive(Debug, Clone)]
 pub struct Blocks {
     /// The regressions.
     pub blocks: Vec<Block>,
     pub(crate) tape: Tape,
-    /// What the tape takes after the states.
+    /// Inputs of the tape after the states, with their defaults.
     pub(crate) inputs: Vec<(String, Option<f64>)>,
 }
 
 impl Blocks {
-    /// For the coefficients that a source model has.
+    /// Creates the regressions for the coefficients that a source model has.
     ///
     /// # Errors
-    /// Names what the model does not give, or the coefficient the law does not have.
+    /// Returns an error with the quantity that the model lacks, or the coefficient that the law
+    /// does not have.
     pub fn new(model: &Model, law: &Law) -> Result<Self, RefineError> {
         let equations = EquationsOfMotion::of_law(model, Cow::Borrowed(law));
         if let Some(blocks) = Self::build(&equations, true)? {
@@ -76,6 +80,8 @@ impl Blocks {
         forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
     }
 
+    /// The regressions of some equations; axes are solved together only where `allow_common`.
+    /// `None` if the mixing matrix of a common regression is not constant.
     fn build(
         equations: &EquationsOfMotion<'_>,
         allow_common: bool,
@@ -89,6 +95,7 @@ impl Blocks {
             }
         }
         let tape = lowering.finish();
+        // The mixing matrices need the finished tape, on which mass and scales are evaluated.
         for block in &mut blocks {
             let Some(mixing) = mixing(block, &tape, names.len()) else { return Ok(None) };
             block.unmixing = inverse(&mixing).ok_or_else(|| singular(equations.law(), block))?;
@@ -107,6 +114,7 @@ fn coupled(law: &Law) -> Vec<Vec<Axis>> {
                 .iter()
                 .any(|&o| law.mass.contains_key(&(axis, o)) || law.mass.contains_key(&(o, axis)))
         };
+        // An axis joins all groups that it touches into one: connected components of the coupling.
         let (mut joined, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(touches);
         let mut group: Vec<Axis> = joined.drain(..).flatten().collect();
         group.push(axis);
@@ -121,16 +129,20 @@ fn suffix(name: &str) -> &str {
     name.split_once('_').map_or(name, |(_, suffix)| suffix)
 }
 
-/// A group whose axes have the same terms is solved together, else axis by axis.
+/// Splits a group into the sets of axes that are solved together: the whole group if its axes have
+/// the same terms, else single axes.
 fn split(equations: &EquationsOfMotion<'_>, group: &[Axis], allow_common: bool) -> Vec<Vec<Axis>> {
     let terms = |axis: Axis| -> Vec<_> {
         let term = |name: &String| (suffix(name).to_owned(), equations.term(name).ok());
         equations.coefficients(axis).map(term).collect()
     };
+    // Terms are the same if they have the same names after the axis and the same formulas.
     let same = allow_common && group.windows(2).all(|pair| terms(pair[0]) == terms(pair[1]));
     if same { vec![group.to_vec()] } else { group.iter().map(|&axis| vec![axis]).collect() }
 }
 
+/// The regression of some axes of a group; `None` if they have no coefficients. Mixing matrices are
+/// the identity here, since they can be evaluated only on the finished tape.
 fn block(
     equations: &EquationsOfMotion<'_>,
     lowering: &mut Lowering<'_>,
@@ -143,6 +155,7 @@ fn block(
     if names[0].is_empty() {
         return Ok(None);
     }
+    // Axes of a common regression have the same terms: those of the first axis serve all.
     let mut terms = Vec::new();
     for name in &names[0] {
         terms.push(lowering.output(&equations.term(name)?)?);
@@ -185,25 +198,27 @@ impl Block {
         self.terms.len()
     }
 
-    /// Columns of its table: regressors, then targets.
+    /// Number of columns of its table: regressors, then targets.
     pub(crate) fn width(&self) -> usize {
         self.regressors() + self.axes.len()
     }
 
-    /// How its prior measures coefficients.
+    /// Metric of its prior: the joint precision where a source determines one, else the sizes of
+    /// the regressors in `moments`.
     pub(crate) fn metric(&self, moments: &Moments) -> Metric {
         let earned = self.precision.as_ref().and_then(Metric::of_precision);
         earned.unwrap_or_else(|| Metric::of_regressors(moments, &self.shrinkage))
     }
 
-    /// The square by which each regressor moves, over an envelope or the trials where that is more,
-    /// with its shrinkage.
+    /// Variance of each regressor over an envelope, or over the trials where that is larger, times
+    /// its shrinkage.
     pub(super) fn sizes(&self, envelope: &Moments, trials: &Moments) -> DVector<f64> {
         let moves = |j: usize| envelope.variance(j).max(trials.variance(j));
         DVector::from_fn(self.regressors(), |j, _| self.shrinkage[j] * moves(j))
     }
 
-    /// Whether the force of one axis of a coupled group is regressed, and not accelerations.
+    /// Returns true if the force on one axis of a coupled group is regressed, not the
+    /// accelerations.
     pub(crate) fn is_force(&self) -> bool {
         self.axes.len() < self.columns.len()
     }
@@ -216,7 +231,7 @@ fn inverse(mixing: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     inverse.iter().all(|value| value.is_finite()).then_some(inverse)
 }
 
-/// The refusal of a mixing matrix that has no inverse.
+/// The error for a mixing matrix that has no inverse.
 fn singular(law: &Law, block: &Block) -> RefineError {
     let axes: Vec<String> = block.axes.iter().map(|axis| format!("{axis:?}")).collect();
     RefineError::Law(format!(
@@ -228,8 +243,8 @@ fn singular(law: &Law, block: &Block) -> RefineError {
     ))
 }
 
-/// `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the regressors. `None`
-/// where it is not constant.
+/// The mixing matrix `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the
+/// regressors. `None` if it is not constant.
 fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     let q = block.axes.len();
     if q == 1 {
@@ -241,6 +256,8 @@ fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     for (row, column) in (0..q).flat_map(|row| (0..q).map(move |column| (row, column))) {
         mass[(row, column)] = entry(block.mass[row][column])?;
     }
+    // Ratios of scales are compared at two arbitrary inputs without special values; scales that are
+    // proportional give the same ratios at both.
     let ratios = |at: f64| {
         let values = tape.values(&(0..inputs).map(|i| at + 0.1 * i as f64).collect::<Vec<f64>>());
         DVector::from_iterator(

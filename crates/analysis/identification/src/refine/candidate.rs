@@ -1,4 +1,4 @@
-//! A candidate: a fit with its errors on trials left out, and which of several is best.
+//! A candidate: a fit with its errors on held-out trials, and the choice of the best one.
 
 use sistership_model::Model;
 use sistership_simulation::error::SquaredError;
@@ -14,31 +14,31 @@ use super::thresholds::SELECTION;
 use super::variant::Variant;
 use sistership_numerics::RidgeChoice;
 
-/// What a candidate gives where it is taken: its fit on all trials.
+/// The fit of a candidate on all trials, evaluated where the candidate is chosen.
 pub(super) trait Solution: Sync {
-    /// The coefficients without their errors; `None` where the source stays as it is.
+    /// Returns the coefficients without their errors; `None` if the source stays as it is.
     ///
     /// # Errors
-    /// The trials have no sample, or the constraints cannot be kept.
+    /// Returns an error if the trials have no sample, or the constraints cannot be kept.
     fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError>;
 
-    /// Joint errors of the coefficients, where the estimator knows them.
+    /// Returns the joint errors of the coefficients, where the estimator has them.
     ///
     /// # Errors
-    /// A trial lacks a channel.
+    /// Returns an error if a trial lacks a channel.
     fn errors(
         &self,
         problem: &Problem<'_>,
         variants: &[Variant],
     ) -> Result<Option<CoefficientErrors>, RefineError>;
 
-    /// The ridge that it is: the place of its variant, and its choices.
+    /// Returns the place of its variant and its choices if the solution is a ridge.
     fn ridge(&self) -> Option<(usize, &Choices)> {
         None
     }
 }
 
-/// The source as it is.
+/// The solution that leaves the source as it is.
 pub(super) struct UnchangedSource;
 
 impl Solution for UnchangedSource {
@@ -55,7 +55,7 @@ impl Solution for UnchangedSource {
     }
 }
 
-/// A fit with what it takes to compare and to take it.
+/// A fit with the results by which it is compared with others.
 pub(super) struct CandidateFit {
     pub option: StepOption,
     pub solution: Box<dyn Solution>,
@@ -65,20 +65,20 @@ pub(super) struct CandidateFit {
     pub horizons: Vec<HorizonErrors>,
     /// Standardised errors by trial, over every restart interval.
     pub each: Vec<f64>,
-    /// Whether those are parts of so few trials that even the source gives way to what is clearly
-    /// better only.
+    /// True if these are errors of parts of so few trials that even the source is replaced only by
+    /// a clearly better fit.
     pub few: bool,
     /// Number of coefficients that are fitted.
     pub size: usize,
-    /// The model of each fold, which did not see it; none of the source.
+    /// Models of the folds, each fitted without the fold's trials; empty for the source.
     pub left_out: Vec<Model>,
-    /// What a search did.
+    /// Report of a search.
     pub search: Option<SearchReport>,
 }
 
 impl CandidateFit {
-    /// Of a solution whose trials left out were simulated; `size` is the number of its
-    /// coefficients.
+    /// Creates a candidate from a solution and the simulations of its held-out trials; `size` is
+    /// the number of its coefficients.
     pub fn new(
         problem: &Problem<'_>,
         (step, lambda_min): (String, Option<f64>),
@@ -88,7 +88,9 @@ impl CandidateFit {
     ) -> Self {
         let Simulated { total: errors, horizons, reason } = simulated;
         let (error, each) = combined(&horizons);
+        // A divergence at the shortest restart interval, or a refusal, excludes the candidate.
         let error = reason.is_none().then_some(error);
+        // One value an acceleration, in the order of the regressions and their targets.
         let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
             solution
                 .ridge()
@@ -112,7 +114,7 @@ impl CandidateFit {
         }
     }
 
-    /// Counts errors at further restart intervals, too.
+    /// Adds errors at further restart intervals and combines all of them anew.
     pub fn add_horizons(&mut self, horizons: Vec<HorizonErrors>) {
         self.horizons.extend(horizons);
         let (error, each) = combined(&self.horizons);
@@ -120,10 +122,10 @@ impl CandidateFit {
     }
 }
 
-/// The option with the least error; an earlier one wins unless a later one is better by more than
-/// one per cent, and against one with fewer coefficients by more than two standard errors of the
-/// difference over the trials (Breiman et al. 1984, Classification and regression trees, section
-/// 3.4.3).
+/// The place of the option with the least error. An earlier option is preferred unless a later one
+/// is better by more than one per cent, and an option with fewer coefficients unless the other is
+/// better by more than two standard errors of the difference over the trials (Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3). `None` if no option has a finite error.
 pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in
@@ -139,13 +141,14 @@ pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     best.map(|(index, _)| index)
 }
 
-/// Whether an option may replace one that has fewer coefficients; the source has none of its own to
-/// count, and gives way to any that is better where there are trials enough.
+/// Returns true if an option may replace one that has fewer coefficients. The source has no fitted
+/// coefficients and is replaced by any better option, unless there are few trials.
 fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
     let is_larger = old.size > 0 && new.size > old.size;
     if !(new.few || is_larger) || new.each.len() != old.each.len() || new.each.len() < 2 {
         return true;
     }
+    // Paired differences by trial: what a difficult trial adds to both errors cancels.
     let gains: Vec<f64> = old.each.iter().zip(&new.each).map(|(old, new)| old - new).collect();
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count;

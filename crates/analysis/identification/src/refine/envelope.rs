@@ -1,5 +1,5 @@
-//! Where a model will be used, and what its source says there: the states of the trials, and those
-//! of the source's own standard manoeuvres.
+//! Operating envelope of a model with the accelerations that its source predicts there: the states
+//! of the trials, and those of the source's own standard manoeuvres.
 
 use std::collections::BTreeMap;
 
@@ -19,11 +19,11 @@ use super::thresholds::SOURCE;
 use sistership_numerics::{Moments, merged};
 use sistership_priors::transfer::ready;
 
-/// What a model says at the states of an envelope: by group, the accelerations of each axis in the
-/// order of [`Axis`].
+/// Accelerations of a model at the states of an envelope: by group, those of each axis in the order
+/// of [`Axis`].
 pub(super) type Rates = Vec<[Vec<f64>; 4]>;
 
-/// What a ship of a population says there.
+/// Accelerations of a ship of a population at the states of an envelope.
 #[derive(Debug)]
 pub(super) struct MemberRates {
     /// Its model's name.
@@ -32,33 +32,33 @@ pub(super) struct MemberRates {
     pub rates: Rates,
 }
 
-/// What a source says where a model will be used.
+/// States in which a model will be used, with the accelerations that a source predicts there.
 #[derive(Debug, Clone)]
 pub(super) struct OperatingEnvelope {
-    /// The source, for people.
+    /// Name of the source.
     pub source: String,
-    /// Its law.
+    /// Name of the source's law.
     pub law: String,
-    /// Whether it knows of roll.
+    /// True if the source has roll.
     pub roll: bool,
-    /// Revolutions at which it approaches, 1/s; 0 where it states none.
+    /// Revolutions of the source at its approach, 1/s; 0 if it states none.
     pub n_rps: f64,
-    /// Whether its propeller turns at these because a trial records none.
+    /// True if its propeller turns at these revolutions because a trial records none.
     pub at_own_revolutions: bool,
-    /// How it was moved to what another model says, for people.
+    /// Description of the shift towards another model, for reports; none without one.
     pub mixed: Option<String>,
-    /// Samples that go together.
+    /// Groups of samples: one for each trial and each manoeuvre.
     pub groups: Vec<SampleGroup>,
 }
 
 /// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
 #[derive(Debug, Clone)]
 pub(super) struct SampleGroup {
-    /// States and inputs; time only counts them.
+    /// States and inputs; time is the sample's number.
     pub samples: Trial,
-    /// By axis, in the order of [`Axis`].
+    /// Accelerations by axis, in the order of [`Axis`].
     rates: [Vec<f64>; 4],
-    /// What each sample counts as.
+    /// Weight of each sample.
     pub weight: f64,
 }
 
@@ -68,18 +68,24 @@ impl SampleGroup {
         &self.rates[axis as usize]
     }
 
-    /// As [`OperatingEnvelope::moments_of`]. Targets are linear in accelerations: what each axis'
-    /// does to them is the same for every model.
+    /// Statistics of the accelerations of several models at these samples, one set for each
+    /// regression.
+    ///
+    /// Targets are linear in accelerations. Their response to each axis' acceleration is the same
+    /// for every model, so that it is evaluated once, with an acceleration of one.
     fn moments_of(
         &self,
         blocks: &Blocks,
         models: &[&[Vec<f64>; 4]],
     ) -> Result<Vec<Moments>, RefineError> {
+        // Targets at zero acceleration, and at an acceleration of one in each axis: the difference
+        // is the response to that axis.
         let (zero, one) = (vec![0.0; self.samples.len()], vec![1.0; self.samples.len()]);
         let mut at_rest = known_tables(blocks, &self.samples, &|_| &zero)?;
         let alone = |axis: Axis| {
             known_tables(blocks, &self.samples, &|of| if of == axis { &one } else { &zero })
         };
+        // Only the axes that are regressed have an acceleration that matters.
         let axes: Vec<Axis> = blocks.blocks.iter().flat_map(|block| block.axes.clone()).collect();
         let alone: Vec<(Axis, Vec<Table>)> = axes
             .into_iter()
@@ -117,11 +123,12 @@ impl SampleGroup {
 }
 
 impl OperatingEnvelope {
-    /// Of a source that is carried over to the ship, by its own law. The trials together weigh as
-    /// much as the manoeuvres.
+    /// Creates the envelope of a source that is transferred to the ship, by the source's own law.
+    /// The trials together have the same weight as the manoeuvres.
     ///
     /// # Errors
-    /// The source cannot sail, or the trials are nowhere that it knows.
+    /// Returns an error if the source cannot be simulated, or neither trials nor manoeuvres have a
+    /// state that it covers.
     pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
         let ship = ready(source, law, trials)?;
         let asked = SourceResponse::new(&ship, source, law);
@@ -144,6 +151,8 @@ impl OperatingEnvelope {
                 source.name
             )));
         }
+        // Trials and manoeuvres are weighted separately: each of the two counts as `SOURCE.samples`
+        // samples.
         let groups = [recorded, sailed].into_iter().flat_map(evened).collect();
         Ok(Self {
             source: source.name.clone(),
@@ -157,11 +166,11 @@ impl OperatingEnvelope {
         })
     }
 
-    /// The same states, where the accelerations of each axis are moved by a share of the way to
-    /// what another model says there, at as large a part of its own revolutions.
+    /// Returns the same states with the accelerations of each axis shifted by a share of the
+    /// difference to another model, which runs at the same fraction of its own revolutions.
     ///
     /// # Errors
-    /// The other model cannot be made ready, or does not know a state.
+    /// Returns an error if the other model cannot be set up or does not cover a state.
     pub fn moved_to(
         &self,
         (model, law): (&Model, &Law),
@@ -172,16 +181,19 @@ impl OperatingEnvelope {
         let mut moved = self.clone();
         for (group, rates) in moved.groups.iter_mut().zip(&said) {
             for ((own, other), share) in group.rates.iter_mut().zip(rates).zip(shares) {
+                // `own + share (other - own)`: a share of 0 keeps the source, a share of 1 gives
+                // the other model.
                 own.iter_mut().zip(other).for_each(|(own, other)| *own += share * (other - *own));
             }
         }
         Ok(moved)
     }
 
-    /// What another model says at the same states, at as large a part of its own revolutions.
+    /// Returns the accelerations of another model at the same states, at the same fraction of its
+    /// own revolutions.
     ///
     /// # Errors
-    /// As [`OperatingEnvelope::moved_to`].
+    /// Returns an error if the other model cannot be set up or does not cover a state.
     pub fn asked_of(
         &self,
         (model, law): (&Model, &Law),
@@ -191,6 +203,7 @@ impl OperatingEnvelope {
         let asked = SourceResponse::new(&ship, model, law);
         let of_group = |group: &SampleGroup| {
             let mut points = asked.recorded(&group.samples);
+            // Both propellers then work at the same fraction of their own self-propulsion point.
             for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
                 *n_rps *= asked.n_rps / self.n_rps;
             }
@@ -201,11 +214,12 @@ impl OperatingEnvelope {
         self.groups.iter().map(of_group).collect()
     }
 
-    /// The statistics of what several models say at these states, as a law's regressions see it:
-    /// each model's accelerations are targets of their own, one model after the other.
+    /// Returns the statistics of the accelerations of several models at these states for the
+    /// regressions of a law: each model's accelerations are targets of their own, one model after
+    /// the other.
     ///
     /// # Errors
-    /// The law takes something that the states do not have.
+    /// Returns an error if the law has an input that the states do not have.
     pub fn moments_of(
         &self,
         blocks: &Blocks,
@@ -220,11 +234,11 @@ impl OperatingEnvelope {
         Ok(merged(&groups, |_| true).unwrap_or_default())
     }
 
-    /// The statistics of what the source says, as a law's regressions see it: by group and
-    /// regression.
+    /// Returns the statistics of the source's accelerations for the regressions of a law, by group
+    /// and regression.
     ///
     /// # Errors
-    /// The law takes something that the trials do not record.
+    /// Returns an error if the law has an input that the trials do not record.
     pub fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
         self.groups.iter().map(|group| group.moments(blocks)).collect()
     }
@@ -232,7 +246,7 @@ impl OperatingEnvelope {
 
 #[cfg(test)]
 impl OperatingEnvelope {
-    /// Sum of the squares by which accelerations of an axis differ at the same states.
+    /// Sum of the squared differences of the accelerations of an axis at the same states.
     pub fn distance(&self, other: &Self, axis: Axis) -> f64 {
         let pairs = self.groups.iter().zip(&other.groups);
         let values = pairs.flat_map(|(one, other)| one.rate(axis).iter().zip(other.rate(axis)));
@@ -240,28 +254,29 @@ impl OperatingEnvelope {
     }
 }
 
-/// Groups that together count as much as [`SOURCE`]'s samples.
+/// Groups with the weights by which together they count as much as [`SOURCE`]'s samples.
 fn evened(mut groups: Vec<SampleGroup>) -> Vec<SampleGroup> {
     let all: usize = groups.iter().map(|group| group.samples.len()).sum();
     groups.iter_mut().for_each(|group| group.weight = SOURCE.samples as f64 / all as f64);
     groups
 }
 
-/// A state with its revolutions.
+/// A state with its revolutions, 1/s.
 type OperatingPoint = (StateVector, f64);
 
-/// A source that is asked.
+/// A source whose accelerations are evaluated.
 struct SourceResponse<'a> {
     ship: &'a Ship,
-    /// Whether its law knows what revolutions do; else it holds for those of the approach.
+    /// True if its law has a propeller; else it holds for the revolutions of the approach.
     propeller: bool,
     n_rps: f64,
-    /// Slower motion than this it does not know.
+    /// Lowest speed that it covers, m/s.
     least_m_s: f64,
 }
 
 impl<'a> SourceResponse<'a> {
     fn new(ship: &'a Ship, source: &Model, law: &Law) -> Self {
+        // A law that is an expansion about the approach speed does not hold far below it.
         let expanded = law.approach_speed_parameter().is_some();
         let least_m_s = if expanded { SOURCE.least_speed * ship.approach_speed_m_s() } else { 0.0 };
         Self {
@@ -272,12 +287,13 @@ impl<'a> SourceResponse<'a> {
         }
     }
 
-    /// The states that a trial recorded; nothing where it lacks velocities or the rudder.
+    /// The states that a trial recorded; empty if it lacks a velocity or the rudder.
     fn recorded(&self, trial: &Trial) -> Vec<OperatingPoint> {
         let need = [Channel::U, Channel::V, Channel::R, Channel::Delta];
         if need.iter().any(|channel| trial.channel(*channel).is_none()) {
             return Vec::new();
         }
+        // Channels that are not recorded stay zero.
         let columns: Vec<(usize, &[f64])> = RECORDED
             .iter()
             .chain(&[(Channel::Delta, at::DELTA)])
@@ -291,35 +307,44 @@ impl<'a> SourceResponse<'a> {
         spread(trial.len()).map(one).collect()
     }
 
+    /// The states of a simulated track.
     fn sailed(&self, track: &Trajectory) -> Vec<OperatingPoint> {
         spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
     }
 
+    /// Returns true if the source covers a state: fast enough, and not with the propeller stopped
+    /// or reversed.
     fn knows(&self, (state, n_rps): &OperatingPoint) -> bool {
         state[at::U] > self.least_m_s && (!self.propeller || *n_rps > 0.0)
     }
 
-    /// What the source says at the points that it knows, heading north; none where there is none.
+    /// The group of the points that the source covers, turned to heading north; `None` if there are
+    /// none or an acceleration is not finite.
     fn group(&self, depth_m: Option<f64>, mut points: Vec<OperatingPoint>) -> Option<SampleGroup> {
         points.retain(|point| self.knows(point));
+        // The heading matters only relative to the wind, which `calm` gives for a heading of north.
         points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
         let rates = self.rates(&points, depth_m).filter(|_| !points.is_empty())?;
         Some(SampleGroup { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
     }
 
-    /// Its accelerations by axis; none where one is not finite.
+    /// Its accelerations by axis; `None` if one is not finite.
     fn rates(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Option<[Vec<f64>; 4]> {
         let mut work = Work::default();
         let rate = |point: &OperatingPoint| {
             self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work)
         };
+        // Rates of the state vector; the rates of the velocities are the accelerations.
         let rates: Vec<StateVector> = points.iter().map(rate).collect();
         let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
         let rates = [at::U, at::V, at::P, at::R].map(of);
         rates.iter().flatten().all(|rate| rate.is_finite()).then_some(rates)
     }
 
+    /// The inputs of the source's law at a point.
     fn inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> Inputs {
+        // The apparent wind is zero, so that the accelerations are those of the hull, rudder and
+        // propeller alone.
         let (wind_m_s, wind_from) = calm(state);
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, (name, default)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
@@ -335,6 +360,7 @@ impl<'a> SourceResponse<'a> {
         inputs
     }
 
+    /// The points as a trial that a law's regressions can read.
     fn samples(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Trial {
         let states = [
             (Channel::U, at::U),
@@ -348,6 +374,7 @@ impl<'a> SourceResponse<'a> {
         let columns = states.into_iter().chain([(Channel::Delta, at::DELTA)]);
         let mut channels: BTreeMap<Channel, Vec<f64>> =
             columns.map(|(channel, place)| (channel, column(place))).collect();
+        // Without a propeller the source holds for its approach revolutions, whatever was recorded.
         let n = points.iter().map(|(_, n_rps)| if self.propeller { *n_rps } else { self.n_rps });
         channels.insert(Channel::N, n.collect());
         let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm(state)).unzip();
@@ -361,19 +388,20 @@ impl<'a> SourceResponse<'a> {
     }
 }
 
-/// Speed and direction of a wind that the ship does not feel: of the air's forces the source is not
-/// asked. Heading is north.
+/// Speed and direction of the wind that makes the apparent wind zero. The source's aerodynamic
+/// forces do not enter the prior. The heading is north.
 fn calm(state: &StateVector) -> (f64, f64) {
     let (u, v) = (state[at::U], state[at::V]);
     (u.hypot(v), (-v).atan2(-u))
 }
 
-/// At most as many places as samples are asked of a group, evenly spread.
+/// Places of at most [`SOURCE`]`.samples` samples of a group, evenly spread.
 fn spread(count: usize) -> impl Iterator<Item = usize> {
     (0..count).step_by(count.div_ceil(SOURCE.samples).max(1))
 }
 
-/// Regressors that are nothing but rounding become zero: the source says nothing of them.
+/// Sets regressors that are nothing but rounding error to zero: the source gives no information on
+/// them.
 fn silence(regressors: &mut [Vec<f64>]) {
     let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let least = SOURCE.rounding * regressors.iter().map(size).fold(0.0, f64::max);

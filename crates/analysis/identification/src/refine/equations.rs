@@ -1,4 +1,4 @@
-//! How the equations of motion become rows of a regression.
+//! Rows of a regression from the equations of motion.
 
 use sistership_model::trial::Trial;
 
@@ -9,17 +9,17 @@ use super::thresholds::SELECTION;
 use super::weak::{Windows, weak_moments, weak_tables};
 use sistership_numerics::Moments;
 
-/// How the equations of motion become rows of a regression.
+/// Methods by which the equations of motion become rows of a regression.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Equations {
-    /// Accelerations by differences over a time, s; over one sampling interval where none is given.
+    /// Accelerations by differences over a time, s; over one sampling interval if none is given.
     Differences(Option<f64>),
-    /// Integrals over windows.
+    /// Integrals over windows (the weak form).
     Windows(Windows),
 }
 
 impl Equations {
-    /// Statistics of a trial, one set for each regression.
+    /// Returns the statistics of a trial, one set for each regression.
     pub fn moments(self, blocks: &Blocks, trial: &Trial) -> Result<Vec<Moments>, RefineError> {
         match self {
             Self::Windows(windows) => weak_moments(blocks, trial, windows),
@@ -27,7 +27,7 @@ impl Equations {
         }
     }
 
-    /// The rows behind the statistics.
+    /// Returns the rows behind the statistics, one table for each regression.
     pub fn tables(self, blocks: &Blocks, part: &Trial) -> Result<Vec<Table>, RefineError> {
         match self {
             Self::Windows(windows) => weak_tables(blocks, part, windows),
@@ -37,7 +37,7 @@ impl Equations {
         }
     }
 
-    /// What its rows are, for people.
+    /// Description of its rows for messages.
     pub fn rows(self) -> String {
         match self {
             Self::Differences(None) => "differences of samples".to_owned(),
@@ -48,13 +48,14 @@ impl Equations {
         }
     }
 
-    /// Whether a row is a difference of samples; then the mean of all rows says nothing of the
-    /// coefficients.
+    /// Returns true if a row is a difference of samples; the mean of all rows then has no
+    /// information on the coefficients.
     pub fn are_differences(self) -> bool {
         matches!(self, Self::Differences(_))
     }
 
-    /// How many neighbouring rows share most of what they say.
+    /// Number of neighbouring rows that share most of their information, at a sampling interval of
+    /// `interval_s`.
     pub fn dependent_rows(self, interval_s: f64) -> usize {
         match self {
             Self::Differences(Some(difference_s)) => (difference_s / interval_s).round() as usize,
@@ -62,8 +63,8 @@ impl Equations {
         }
     }
 
-    /// The fewest samples for so many coefficients an axis. Windows are far less dependent than
-    /// differences a sample.
+    /// Smallest number of samples for `widest` coefficients an axis. Windows depend on each other
+    /// far less than differences.
     pub fn least_samples(self, widest: f64) -> f64 {
         if self.are_differences() { SELECTION.samples_a_coefficient * widest } else { widest }
     }

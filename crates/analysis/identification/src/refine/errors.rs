@@ -11,14 +11,14 @@ pub(super) struct CoefficientErrors {
     pub names: Vec<String>,
     /// Covariance of the estimates.
     pub covariance: DMatrix<f64>,
-    /// Covariance of the source about the truth.
+    /// Covariance of the source's coefficients about the true ones.
     pub source: DMatrix<f64>,
     /// Covariance of the estimates' errors with the source's.
     pub cross: DMatrix<f64>,
 }
 
 impl CoefficientErrors {
-    /// The same for coefficients in another order; none where one is missing.
+    /// Returns the errors of the coefficients `names`, in that order; `None` if one is missing.
     pub fn ordered(&self, names: &[String]) -> Option<Self> {
         let place = |name: &String| self.names.iter().position(|own| own == name);
         let places: Vec<usize> = names.iter().map(place).collect::<Option<_>>()?;
@@ -27,11 +27,12 @@ impl CoefficientErrors {
         Some(Self { names: names.to_vec(), covariance, source, cross })
     }
 
-    /// As a model keeps them; none where the covariance has no root.
+    /// Returns the errors as a posterior of a model; `None` if the covariance has no Cholesky root.
     pub fn posterior(&self, model: &Model) -> Option<Posterior> {
         let deviations = self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
         let inverse = deviations.map(reciprocal);
         let size = self.names.len();
+        // A coefficient without variance is uncorrelated with all others.
         let entry = |i: usize, j: usize| {
             if i == j { 1.0 } else { self.covariance[(i, j)] * inverse[i] * inverse[j] }
         };
@@ -39,6 +40,8 @@ impl CoefficientErrors {
         let rooted = |slack: &f64| {
             (&correlation * (1.0 - slack) + DMatrix::identity(size, size) * *slack).cholesky()
         };
+        // Rounding makes the matrix of almost collinear coefficients indefinite; a small multiple
+        // of the identity makes it positive definite.
         let root = SLACK.iter().find_map(rooted)?.unpack();
         let names = self.names.clone();
         let values = names.iter().map(|name| model.coefficient(name)).collect();
@@ -52,10 +55,10 @@ impl CoefficientErrors {
     }
 }
 
-/// Shares of independence that are tried until a correlation matrix has a root.
+/// Weights of the identity that are tried in turn until the correlation matrix has a Cholesky root.
 const SLACK: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
 
-/// One over a scale; 0 for what does not vary.
+/// Reciprocal of a scale; 0 for a scale of 0.
 fn reciprocal(scale: f64) -> f64 {
     if scale > 0.0 { 1.0 / scale } else { 0.0 }
 }

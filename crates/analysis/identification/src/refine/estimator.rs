@@ -1,4 +1,4 @@
-//! What an estimator is: a way from trials to candidates.
+//! The interface of estimators.
 
 use super::candidate::CandidateFit;
 use super::equations::Equations;
@@ -9,19 +9,21 @@ use super::settings::Settings;
 use super::variant::Variant;
 use sistership_model::law::Law;
 
-/// A way from trials to candidates, each a fit with its errors on trials left out.
+/// An estimator: a method that gives candidates from trials, each a fit with its errors on held-out
+/// trials.
 pub(super) trait Estimator: Sync {
-    /// Fills in what the settings leave open, so that a version records what was used. `length_s`
-    /// is the time in which the ship sails its length, s.
+    /// Fills in settings without a value, so that a version records those that were used.
+    /// `length_s` is the time in which the ship travels its own length, s.
     fn resolve(&self, settings: &mut Settings, law: &Law, length_s: Option<f64>);
 
-    /// How it makes rows of the equations of motion.
+    /// Returns the method by which it makes rows of the equations of motion.
     fn equations(&self, settings: &Settings) -> Equations;
 
     /// Adds its candidates to `candidates`, the first of which is the source.
     ///
     /// # Errors
-    /// Says which setting, trial or channel is at fault, or that it was cancelled.
+    /// Returns an error with the setting, trial or channel at fault, or if the refinement was
+    /// cancelled.
     fn candidates(
         &self,
         problem: &Problem<'_>,

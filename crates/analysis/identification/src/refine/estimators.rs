@@ -1,4 +1,4 @@
-//! Every estimator, by its name in the settings.
+//! All estimators, by their names in the settings.
 
 use super::cma_es::CovarianceMatrixAdaptation;
 use super::estimator::Estimator;
@@ -7,7 +7,8 @@ use super::settings::Method;
 use super::trajectory::TrajectoryForm;
 use super::weak::WeakForm;
 
-/// The estimator of a method. Another one is a folder, its name in [`Method`] and a line here.
+/// The estimator of a method. A new one needs a folder, a name among the methods of the settings,
+/// and a line here.
 pub(super) fn estimator(method: Method) -> &'static dyn Estimator {
     match method {
         Method::Published => &Published,

@@ -1,4 +1,4 @@
-//! Which terms a law has while it is fitted: the source's own, or as many as its factors can spell.
+//! Families of terms that are fitted: the source's own terms, or all that the law's factors allow.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::Model;
@@ -12,25 +12,25 @@ use sistership_model::quantity::Quantity;
 #[derive(schemars::JsonSchema)]
 #[schemars(rename = "TermFamily")]
 pub enum Family {
-    /// The source's own.
+    /// The source's own terms.
     Own,
-    /// The source's own without those that break the symmetry of port and starboard, such as `Y_0`
-    /// or `N_uu`.
+    /// The source's own terms without those that break the symmetry of port and starboard, such as
+    /// `Y_0` or `N_uu`.
     Symmetric,
-    /// Symmetric, and every product of up to three of `u`, `v`, `r`, `phi` and `delta` that the
-    /// law's factors can spell and that has the symmetry of its axis; roll rate and the moment of
-    /// heel linearly.
+    /// The symmetric terms, and every product of up to three of `u`, `v`, `r`, `phi` and `delta`
+    /// that the law's factors allow and that has the symmetry of its axis; roll rate and the moment
+    /// of heel enter linearly.
     ThirdOrder,
-    /// Those, the source's own, and terms that break the symmetry of port and starboard, up to
-    /// second order: forces of a propeller to one side, a rudder that is not amidships, a hull that
-    /// is not symmetric.
+    /// The third-order terms, the source's own, and terms up to second order that break the
+    /// symmetry of port and starboard: forces of a propeller to one side, a rudder that is not
+    /// amidships, a hull that is not symmetric.
     Asymmetric,
 }
 
 /// Factors that may enter powers and products on an axis.
 const PRODUCTS: [&str; 4] = ["v", "r", "phi", "delta"];
-/// Factors that enter linearly only, where the law has them: they say the same as `phi` does, or
-/// too little.
+/// Factors that enter linearly only, where the law has them: in products they are redundant with
+/// `phi`, or have too little effect.
 const LINEAR: [&str; 2] = ["p", "heel"];
 
 impl Family {
@@ -38,7 +38,7 @@ impl Family {
     pub(super) const ALL: [Self; 4] =
         [Self::Own, Self::Symmetric, Self::ThirdOrder, Self::Asymmetric];
 
-    /// Its name in tables.
+    /// Name for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Own => "own terms",
@@ -48,8 +48,7 @@ impl Family {
         }
     }
 
-    /// A model with these terms; what it did not have starts at zero. `None` where that changes
-    /// nothing.
+    /// Returns a model with these terms; added terms start at zero. `None` if that changes nothing.
     pub fn of(self, model: &Model, law: &Law) -> Option<Model> {
         let mut changed = model.clone();
         if matches!(self, Self::Symmetric | Self::ThirdOrder) {
@@ -63,11 +62,13 @@ impl Family {
         for name in terms {
             changed.coefficients.entry(name).or_insert_with(added);
         }
+        // Another family with the same terms would only repeat the candidates of `Own`.
         (self == Self::Own || changed != *model).then_some(changed)
     }
 }
 
-/// Every term of third order by which a law says what a ship does that stays upright.
+/// All third-order terms of a law that act on a ship that stays upright: none of roll, none with a
+/// factor of heel.
 pub(super) fn terms_without_heel(law: &Law) -> Vec<String> {
     let extra = law.extra_factors();
     let is_upright = |name: &String| {
@@ -80,21 +81,24 @@ pub(super) fn terms_without_heel(law: &Law) -> Vec<String> {
     third_order(law).into_iter().filter(is_upright).collect()
 }
 
+/// A coefficient that was not in the source.
 fn added() -> Quantity {
     Quantity::new(0.0, "term added")
 }
 
-/// Whether mirrored motion would not give mirrored forces: the count of odd factors does not fit
-/// the axis.
+/// Returns true if a coefficient breaks the symmetry of port and starboard: the number of its odd
+/// factors does not fit the axis, so that mirrored motion would not give mirrored forces.
 fn breaks_symmetry(name: &str, law: &Law) -> bool {
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return false };
+    // Factors are odd if they change sign when the motion is mirrored: all but these, unless their
+    // absolute value enters.
     let odd = |symbol: &str| !matches!(symbol, "u" | "n" | "cosdelta");
     let count =
         parsed.factors.iter().filter(|factor| !factor.absolute && odd(&factor.symbol)).count();
     (count % 2 == 1) != parsed.axis.is_odd()
 }
 
-/// Every term of third order that an open axis can have.
+/// All third-order terms of the open axes.
 fn third_order(law: &Law) -> Vec<String> {
     let known = |symbol: &&&str| law.factors.contains_key(**symbol);
     let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
@@ -105,8 +109,8 @@ fn third_order(law: &Law) -> Vec<String> {
     })
 }
 
-/// Terms that break the symmetry of port and starboard, which an open axis can have: of sway, roll
-/// and yaw a constant, with the speed, and the even products; of surge what is odd.
+/// Asymmetric terms of the open axes: for sway, roll and yaw a constant, its product with the
+/// speed, and the even products; for surge the odd factors.
 fn asymmetric(law: &Law) -> Vec<String> {
     let known = |symbol: &&&str| law.factors.contains_key(**symbol);
     let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
@@ -119,7 +123,7 @@ fn asymmetric(law: &Law) -> Vec<String> {
     })
 }
 
-/// The names, for each open axis, of the terms that the law can spell.
+/// Names of the given terms of each open axis that the law can evaluate.
 fn spelled(law: &Law, terms: impl Fn(Axis) -> Vec<String>) -> Vec<String> {
     let open = law.axes.iter().filter(|(_, axis)| axis.open).map(|(axis, _)| *axis);
     let of_axis = |axis: Axis| {
@@ -129,19 +133,23 @@ fn spelled(law: &Law, terms: impl Fn(Axis) -> Vec<String>) -> Vec<String> {
     open.flat_map(of_axis).collect()
 }
 
+/// Terms of an axis whose force changes sign with the mirrored motion: single factors, their
+/// products with `u` and `uu`, and third-order products.
 fn odd_terms(products: &[&str], linear: &[&str]) -> Vec<String> {
     let singles = products.iter().chain(linear).map(|s| (*s).to_owned());
     let with_u = products.iter().flat_map(|s| [format!("u{s}"), format!("uu{s}")]);
     singles.chain(with_u).chain(monomials(products, 3)).collect()
 }
 
+/// Terms of an axis whose force is the same for the mirrored motion: powers of `u`, second-order
+/// products, and these times `u`.
 fn even_terms(products: &[&str]) -> Vec<String> {
     let squares = monomials(products, 2);
     let with_u = squares.iter().map(|s| format!("u{s}")).collect::<Vec<_>>();
     ["0", "u", "uu", "uuu"].into_iter().map(str::to_owned).chain(squares).chain(with_u).collect()
 }
 
-/// Every product of so many factors, in their order.
+/// All products of `degree` factors, with repetition, in the order of the factors.
 fn monomials(factors: &[&str], degree: usize) -> Vec<String> {
     if degree == 0 {
         return vec![String::new()];

@@ -1,5 +1,5 @@
-//! The end of a refinement: the best candidate whose model also sails the standard manoeuvres is
-//! taken.
+//! The end of a refinement: the best candidate is chosen whose model also completes the standard
+//! manoeuvres.
 
 use sistership_model::Model;
 use sistership_model::posterior::Posterior;
@@ -22,7 +22,7 @@ use sistership_assessment::uncertainty::{FoldQuantile, bands, fold_factor};
 use sistership_numerics::RidgeChoice;
 use sistership_propulsion::{Context, PropulsionFault};
 
-/// Why a candidate may not be taken.
+/// The error type for a candidate that cannot be chosen.
 #[derive(Debug, thiserror::Error)]
 enum CandidateRefusal {
     #[error(transparent)]
@@ -31,28 +31,31 @@ enum CandidateRefusal {
     Manoeuvre(String),
 }
 
-/// Why trials alone make a model or none.
+/// Reason against the source where there is none: a law without coefficients.
 const NO_MODEL: &str = "a law without coefficients is no model";
 
-/// Whether a law's coefficients are all zero: what stands for the source where there is none.
+/// Returns true if a model has coefficients and all of them are zero: the placeholder for a source
+/// where there is none.
 pub(super) fn is_empty(model: &Model) -> bool {
     let mut values = model.coefficients.values().peekable();
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
 }
 
+/// A candidate fitted on all trials, with the standard manoeuvres of its model.
 struct FittedCandidate {
     fit: Option<Fit>,
     model: Model,
     manoeuvres: StandardManoeuvres,
 }
 
+/// A fitted candidate, or the reason why it cannot be chosen.
 type Accepted = Result<FittedCandidate, CandidateRefusal>;
 
-/// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres
-/// that the source sails.
+/// Returns the refinement by the best candidate whose model, fitted on all trials, also completes
+/// the standard manoeuvres that the source completes.
 ///
 /// # Errors
-/// No candidate's simulations go on to their end, or it was cancelled.
+/// Returns an error if no candidate's simulations run to their end, or if it was cancelled.
 pub(super) fn finish(
     problem: &Problem<'_>,
     mut candidates: Vec<CandidateFit>,
@@ -65,11 +68,14 @@ pub(super) fn finish(
     }
     step(progress, 0.9, "standard manoeuvres of the source, and of the best option")?;
     let first = |place: usize| sailed(problem, candidates[place].solution.as_ref(), variants);
+    // The manoeuvres of the source and of the first candidate are independent and run in parallel.
     let (before, mut first) = rayon::join(
         || standard_manoeuvres(&problem.transferred, problem.law),
         || best(&candidates).map(first),
     );
     loop {
+        // A refused candidate loses its error below, so that each round finds another one and the
+        // loop ends.
         let Some(best) = best(&candidates) else {
             let reasons = candidates.iter().filter_map(|one| one.option.reason.as_deref());
             return Err(RefineError::diverged(reasons));
@@ -95,10 +101,11 @@ pub(super) fn finish(
     }
 }
 
-/// The model of the best candidate, fitted on all trials.
+/// Returns the model of the best candidate, fitted on all trials.
 ///
 /// # Errors
-/// No candidate's simulations go on to their end, or the constraints cannot be kept.
+/// Returns an error if no candidate's simulations run to their end, or the constraints cannot be
+/// kept.
 pub(super) fn best_model(
     problem: &Problem<'_>,
     candidates: &[CandidateFit],
@@ -109,8 +116,8 @@ pub(super) fn best_model(
     Ok(model_of(problem, candidates[best].solution.fit(variants)?.as_ref()))
 }
 
-/// What a candidate gives on all trials with its standard manoeuvres, where it keeps the
-/// constraints; else the reason.
+/// Fits a candidate on all trials and simulates its standard manoeuvres; a refusal if it does not
+/// keep the constraints.
 fn sailed(
     problem: &Problem<'_>,
     solution: &dyn Solution,
@@ -122,15 +129,17 @@ fn sailed(
         }
         fitted => fitted?,
     };
+    // Propulsion comes before the manoeuvres, which it affects.
     let model = context(problem).with_propulsion(model_of(problem, fitted.as_ref()));
     let manoeuvres = standard_manoeuvres(&model, problem.law);
     Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
 }
 
-/// What a candidate gives, where it sails what the source sails.
+/// Refuses a candidate that fails a standard manoeuvre although the source completes all of them.
 fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
     let fitted = sailed?;
     let failures = &fitted.manoeuvres.failures;
+    // If the source itself fails a manoeuvre, nothing can be required of the fit.
     let worse = failures.iter().find(|one| before.failures.is_empty() && !one.is_empty());
     match worse {
         Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
@@ -138,18 +147,22 @@ fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
     }
 }
 
+/// The propulsion context of the law and the trials, with the estimate from particulars where there
+/// is one.
 fn context<'a>(problem: &'a Problem<'_>) -> Context<'a> {
+    // The estimate is optional: a ship whose particulars do not suffice has none.
     let of_ship = |target| mixture::estimated(target, problem.transferred.speed_m_s).ok();
     let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
     Context { law: problem.law, trials: &problem.whole, estimate }
 }
 
-/// The refined model; the source where nothing was fitted.
+/// The refined model; the transferred source if nothing was fitted.
 fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
     fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients))
 }
 
-/// The refinement by a candidate, with its errors.
+/// Builds the refinement from the chosen candidate: errors, posterior, propulsion and uncertainty
+/// bands.
 fn take(
     problem: &Problem<'_>,
     (mut candidates, best): (Vec<CandidateFit>, usize),
@@ -160,6 +173,7 @@ fn take(
     candidates[best].option.chosen = true;
     let errors = candidates[best].solution.errors(problem, variants)?;
     let mut fitted = taken.fit.map(|fit| fit.with_errors(errors));
+    // The coefficients are read again for their standard errors, which are known only now.
     let coefficients = model_of(problem, fitted.as_ref()).coefficients;
     let mut model = Model { coefficients, ..taken.model };
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
@@ -168,11 +182,13 @@ fn take(
             true => FoldQuantile::Normal,
             false => FoldQuantile::Student,
         };
+        // The fold models' scatter widens the posterior; it never narrows it.
         let how = (quantile, problem.settings.bands.figures_only);
         let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
         widen(&mut model, fitted.as_mut(), factor);
     }
     let propulsion = context(problem);
+    // The balance is weighted by the posterior, which is known only now.
     let model = propulsion.with_posterior(model);
     let fault = propulsion.fault(&model).filter(|fault| *fault != PropulsionFault::NoRevolutions);
     let measured = measured_manoeuvres(problem, &model);
@@ -185,7 +201,7 @@ fn take(
     refinement(problem, chosen, manoeuvres)
 }
 
-/// Makes every standard error so many times as large.
+/// Multiplies all standard errors of a model and its fit by a factor.
 fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
     let of_fit = fitted.into_iter().flat_map(|fit| fit.coefficients.values_mut());
     of_fit.for_each(|coefficient| coefficient.standard_error *= factor);
@@ -195,8 +211,8 @@ fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
     posterior.for_each(|deviation| *deviation *= factor);
 }
 
-/// How far the model's coefficients may be from the truth. Those of a source that is kept are as
-/// far as the trials say that they are.
+/// The posterior of the model's coefficients. If the source is kept, its errors are those that the
+/// trials indicate at a prior that holds it.
 fn posterior(
     problem: &Problem<'_>,
     model: &Model,
@@ -211,7 +227,7 @@ fn posterior(
     Ok(errors.and_then(|errors| errors.posterior(model)))
 }
 
-/// Choices that keep the source.
+/// Ridge choices so strong that the source is kept.
 fn held(blocks: &Blocks) -> Choices {
     blocks
         .blocks

@@ -1,8 +1,8 @@
-//! How much a candidate depends on single trials where none of them reaches.
+//! Sensitivity of a candidate to single trials, in manoeuvres that no trial covers.
 //!
-//! Errors on trials left out tell how a model does in manoeuvres like those that were sailed.
-//! Between and beyond them, what no trial holds is free: the models of folds, which each missed
-//! some of the trials and do as well on those, go apart there. Their scatter is the jackknife's
+//! Errors on held-out trials measure a model in manoeuvres like those of the trials. Between and
+//! beyond them the trials do not determine the model: the models of folds, which each missed some
+//! of the trials and fit the others as well, differ there. Their scatter is the jackknife's
 //! estimate of the variance of what the candidate simulates, `(g - 1) / g sum (x_i - mean x)^2`
 //! over `g` folds (Efron and Tibshirani 1993, An introduction to the bootstrap, Eq. 11.5).
 
@@ -18,10 +18,10 @@ use super::simulated::sisters;
 use super::thresholds::HELM;
 use sistership_priors::transfer::ready_for_sisters;
 
-/// The jackknife's variance of simulated states under rudders that no trial had ([`helms`]),
-/// standardised and summed over channels as errors on trials left out are. Infinite where a fold's
-/// model does not sail; none where fewer than two folds made models, or where a rudder does not
-/// tell all that the law takes.
+/// Jackknife variance of simulated states under rudder orders that no trial had, standardised and
+/// summed over channels as errors on held-out trials are. Infinite if a fold's model cannot be
+/// simulated to the end; `None` if fewer than two folds have models, or if the records lack an
+/// input of the law.
 pub(super) fn fold_variance(problem: &Problem<'_>, folds: &[Model]) -> Option<f64> {
     let first = folds.first().filter(|_| folds.len() > 1)?;
     let asked = Helm::random(HELM.records);
@@ -30,6 +30,7 @@ pub(super) fn fold_variance(problem: &Problem<'_>, folds: &[Model]) -> Option<f6
     let coefficients = sisters(&ship, folds).ok()?;
     let each = |trial| coefficients.iter().map(move |one| Recorded { trial, coefficients: one });
     let all: Vec<Recorded<'_>> = helms.iter().flat_map(each).collect();
+    // The same step as for held-out trials, so that both figures have the same integration error.
     let step_s = problem.replayed.step_s;
     let settings = ReplaySettings { step_s, ..ReplaySettings::default() };
     let runs = replay_all(&ship, &all, &settings).ok()?;
@@ -41,10 +42,11 @@ pub(super) fn fold_variance(problem: &Problem<'_>, folds: &[Model]) -> Option<f6
         let mean = mean_of(helm, runs);
         runs.iter().for_each(|run| about_mean.add(&SquaredError::of(&mean, run)));
     }
+    // The mean over the samples of all folds has the jackknife's `1/g` already.
     Some((folds.len() - 1) as f64 * standardised_mse(&about_mean, &problem.deviations))
 }
 
-/// A record of the mean of the folds' states.
+/// A record of the mean of the folds' states at each sample.
 fn mean_of(helm: &Trial, runs: &[Replay]) -> Trial {
     let mean = |sample: usize| {
         runs.iter().map(|run| run.track.states[sample]).sum::<StateVector>() / runs.len() as f64

@@ -1,4 +1,4 @@
-//! Everything of a refinement that its user must be able to defend.
+//! The result of a refinement, with everything that its user must be able to defend.
 
 use sistership_model::Model;
 use sistership_model::estimated_particulars::estimated_words;
@@ -14,20 +14,20 @@ use super::simulated::simulate_all;
 use super::thresholds::SELECTION;
 use sistership_priors::rolling::roll_words;
 
-/// The candidate that was taken among all, its model and its fit; none where the source was kept.
+/// The chosen candidate among all, its model and its fit; no fit if the source was kept.
 pub(super) struct ChosenCandidate {
     pub candidates: Vec<CandidateFit>,
     pub best: usize,
     pub model: Model,
     pub fitted: Option<Fit>,
-    /// What the model does wrong with the propeller stopped or reversed.
+    /// Fault of the model with the propeller stopped or reversed.
     pub propulsion_fault: Option<String>,
 }
 
-/// The refinement by what was taken.
+/// Builds the refinement from the chosen candidate.
 ///
 /// # Errors
-/// A trial lacks a channel.
+/// Returns an error if a trial lacks a channel.
 pub(super) fn refinement(
     problem: &Problem<'_>,
     taken: ChosenCandidate,
@@ -46,6 +46,7 @@ pub(super) fn refinement(
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }
+    // The report of a search is kept even if another candidate was chosen.
     let search = candidates[best]
         .search
         .clone()
@@ -68,8 +69,8 @@ pub(super) fn refinement(
     })
 }
 
-/// The settings that give the same again: a search that time has ended has its evaluations for a
-/// budget.
+/// The settings that reproduce the refinement: a search that ended by time gets the number of its
+/// evaluations as its budget, since elapsed time cannot be reproduced.
 fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
     let mut settings = settings.clone();
     if let (Some(given), Some(search)) = (&mut settings.cma_es, search) {
@@ -78,13 +79,16 @@ fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
     settings
 }
 
+/// Errors of source and refined model on held-out trials, and how these were held out.
 fn held_out(
     problem: &Problem<'_>,
     candidates: &[CandidateFit],
     best: usize,
     model: &Model,
 ) -> Result<HeldOut, RefineError> {
+    // Without trials that are kept out of the fit altogether, cross-validation has the errors.
     if problem.judged.is_empty() {
+        // The text must not claim a cross-validation that a single trial does not allow.
         let how = if problem.training.len() == 1 {
             "nothing could be left out of a single trial: these are errors on the trial that was \
              fitted"
@@ -118,11 +122,13 @@ fn held_out(
     })
 }
 
+/// Change of every coefficient from the transferred source to the model.
 fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<CoefficientChange> {
     let one = |(name, quantity): (&String, &Quantity)| {
         let source = problem.transferred.coefficient(name);
         let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
         let prior = fitted.map_or(0.0, |f| f.prior_deviation);
+        // The unit is for display only; a coefficient without a derivable dimension has none.
         let unit = problem
             .law
             .coefficient_dimension(name)
@@ -139,6 +145,7 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
     model.coefficients.iter().map(one).collect()
 }
 
+/// Remarks for the reader of the refinement.
 fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     let mut remarks = Vec::new();
     let strongest =
@@ -163,7 +170,7 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     remarks
 }
 
-/// What a search leaves out.
+/// Remark on a search.
 const SEARCHED: &str = "a search gives no standard errors and no confidence bands; its fits with \
      trials left out start at the optimum for all of them, so that errors on trials left out are \
      somewhat too small unless the budget is large";

@@ -1,5 +1,5 @@
-//! Records of a rudder that no trial had: what models that agree on the trials are asked beside
-//! them, and what a choice asks of a model before it is taken.
+//! Records of rudder orders that no trial had. The models of folds are compared under them, and a
+//! chosen model must complete them.
 
 use std::collections::BTreeMap;
 
@@ -10,21 +10,23 @@ use sistership_model::{Model, particulars};
 use super::thresholds::HELM;
 use sistership_priors::transfer::approach_of;
 
-/// What a rudder is ordered.
+/// Rudder orders of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Helm {
-    /// Angles at random within the gear's limit, each held for some lengths: a record of so many.
+    /// Random angles within the gear's limit, each held for some ship lengths; the number of the
+    /// record selects the sequence.
     Random(usize),
-    /// An angle throughout, by the gear's limit: a turn.
+    /// A constant angle as a share of the gear's limit: a turn.
     Held(f64),
 }
 
 impl Helm {
-    /// So many records at random.
+    /// Returns orders for `records` random records.
     pub fn random(records: usize) -> Vec<Self> {
         (0..records).map(Self::Random).collect()
     }
 
+    /// Name of the record.
     fn name(self, steering: &Steering) -> String {
         match self {
             Self::Random(record) => format!("rudder {} at random", record + 1),
@@ -34,7 +36,7 @@ impl Helm {
         }
     }
 
-    /// Angles, rad, of a rudder that follows its orders at its gear's rate.
+    /// Angles, rad, of a rudder that follows its orders at its gear's rate, from an angle at first.
     fn angles(
         self,
         steering: &Steering,
@@ -49,6 +51,7 @@ impl Helm {
         };
         let mut angle = first_rad;
         let moved = |order: &f64| {
+            // The gear moves by its rate towards the order, sample by sample.
             angle += (limit * order - angle).clamp(-step, step);
             angle
         };
@@ -56,18 +59,19 @@ impl Helm {
     }
 }
 
-/// Where a record begins: what is held throughout or at first, and the rudder's angle, rad.
+/// Initial conditions of a record: channels that are held throughout or at first, and the rudder's
+/// angle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beginning {
-    /// Speeds (m/s, rad/s), heel (rad) and revolutions (1/s) at first; what drives is held.
+    /// Speeds (m/s, rad/s), heel (rad) and revolutions (1/s) at first; inputs keep their value.
     pub channels: BTreeMap<Channel, f64>,
     /// The rudder's angle, rad.
     pub angle_rad: f64,
 }
 
-/// A record of so many lengths for each order, from straight ahead at the speed and revolutions of
-/// the trials' approach, in their depth and without wind; none where the approach or the length is
-/// not known.
+/// Returns a record for each order, `lengths` ship lengths long, from straight ahead at the speed
+/// and revolutions of the trials' approach, in their depth and without wind. `None` if the approach
+/// or the length is not known.
 pub fn helms(
     model: &Model,
     trials: &[&Trial],
@@ -85,8 +89,8 @@ pub fn helms(
     helms.iter().map(|helm| record(model, trials, (*helm, lengths), &ahead)).collect()
 }
 
-/// A record of an order from a beginning, so many lengths long, in the depth of the trials and
-/// without wind; none where the approach or the length is not known.
+/// Returns a record of an order from initial conditions, `lengths` ship lengths long, in the depth
+/// of the trials and without wind. `None` if the approach or the length is not known.
 pub fn record(
     model: &Model,
     trials: &[&Trial],
@@ -111,7 +115,8 @@ pub fn record(
     })
 }
 
-/// Orders by the gear's limit, sample by sample: those of a sequence from a place on.
+/// `count` samples of orders as shares of the gear's limit, from a place of a low-discrepancy
+/// sequence on.
 fn orders_at_random(count: usize, mut place: usize) -> Vec<f64> {
     let [shortest, longest] = HELM.held;
     let (mut order, mut until) = (0.0, 0.0);
@@ -119,6 +124,7 @@ fn orders_at_random(count: usize, mut place: usize) -> Vec<f64> {
         if sample as f64 >= until {
             place += 1;
             order = 2.0 * radical_inverse(place, 2) - 1.0;
+            // Bases 2 and 3 give angle and duration independent sequences (Halton).
             let lengths = shortest + (longest - shortest) * radical_inverse(place, 3);
             until += HELM.samples_a_length * lengths;
         }
@@ -127,7 +133,7 @@ fn orders_at_random(count: usize, mut place: usize) -> Vec<f64> {
     (0..count).map(sample).collect()
 }
 
-/// The digits of a number in a base, in reverse order behind the point: over many numbers in a row
+/// The digits of a number in a base, in reverse order behind the point: over consecutive numbers
 /// they fill the unit interval evenly (Halton 1960, Numerische Mathematik 2, 84, section 2).
 fn radical_inverse(mut number: usize, base: usize) -> f64 {
     let (mut value, mut digit) = (0.0, 1.0 / base as f64);

@@ -6,11 +6,12 @@ use super::problem::Problem;
 use super::simulated::simulate_longer;
 use super::thresholds::SELECTION;
 
-/// Simulates manoeuvres left out at the longer restart intervals of the settings, by the source and
-/// by the candidates whose error at the shortest is near the least; the others are out.
+/// Simulates held-out manoeuvres at the longer restart intervals of the settings, by the source and
+/// by the candidates whose error at the shortest interval is near the least; the others are
+/// excluded.
 ///
 /// # Errors
-/// A trial lacks a channel.
+/// Returns an error if a trial lacks a channel.
 pub(super) fn compare_longer(
     problem: &Problem<'_>,
     candidates: &mut [CandidateFit],
@@ -23,6 +24,8 @@ pub(super) fn compare_longer(
     for candidate in candidates {
         let Some(error) = candidate.option.error else { continue };
         let is_source = candidate.left_out.is_empty();
+        // A candidate with a much larger error at the shortest interval is excluded without further
+        // simulations. The source is always simulated.
         if !is_source && error > SELECTION.near_least * least {
             let times = error / least;
             let reason = format!("{times:.1} times the least error of short simulations");

@@ -1,4 +1,4 @@
-//! Standard manoeuvres by a model, and those among the trials.
+//! Standard manoeuvres of a model, and the manoeuvres among the trials.
 
 use sistership_model::Model;
 use sistership_model::law::Law;
@@ -12,12 +12,14 @@ use super::outcome::MeasuredManoeuvre;
 use super::problem::Problem;
 use sistership_priors::transfer::ready;
 
-/// The turning circles and zigzags among the trials, beside what both models make of the recorded
-/// rudder.
+/// Returns the turning circles and zigzags among the trials, as measured and as simulated by both
+/// models with the recorded rudder.
 pub(super) fn measured_manoeuvres(
     problem: &Problem<'_>,
     refined: &Model,
 ) -> Vec<MeasuredManoeuvre> {
+    // Whole trials, not the parts in which they may be held out: a manoeuvre is recognised from its
+    // beginning.
     let trials = problem
         .whole
         .iter()
@@ -46,7 +48,7 @@ pub(super) fn measured_manoeuvres(
     recognised.iter().enumerate().filter_map(one).collect()
 }
 
-/// Trials from beginning to end by a model; nothing where it cannot sail them.
+/// Simulations of trials from beginning to end by a model; empty if it cannot be set up.
 fn sailed(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<Replay> {
     let Ok(ship) = ready(model, law, trials) else { return Vec::new() };
     let recorded: Vec<Recorded<'_>> =
@@ -54,7 +56,8 @@ fn sailed(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<Replay> {
     replay_all(&ship, &recorded, &ReplaySettings::default()).unwrap_or_default()
 }
 
-/// The standard manoeuvres by a model, or why it cannot sail them.
+/// Returns the standard manoeuvres of a model; its only failure is the error if it cannot be set
+/// up.
 pub(super) fn standard_manoeuvres(model: &Model, law: &Law) -> StandardManoeuvres {
     match Ship::new(model, law) {
         Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),

@@ -1,4 +1,4 @@
-//! What a prior measures a change of coefficients by.
+//! Measures by which a prior weights changes of the coefficients.
 
 use std::sync::Arc;
 
@@ -14,41 +14,43 @@ use super::outcome::RefineError;
 use super::population::PopulationRegression;
 use sistership_numerics::{Moments, merged};
 
-/// Where the sizes of the regressors come from.
+/// The measure of a prior: the source of the sizes of the regressors.
 pub(super) enum PriorMeasure {
     /// The trials (Kanazawa 2023, Eq. 5.11).
     Trials,
-    /// The trials and the source's standard manoeuvres, where trials are left out part by part.
-    /// Such parts resemble what is fitted, so that errors on them do not tell a cubic term that is
-    /// wrong beyond the trials: in the sizes of the envelope it takes more to move it than a linear
-    /// one. docs/decisions/0006 has the evidence.
+    /// The trials and the source's standard manoeuvres, where trials are held out part by part.
+    /// Such parts resemble the fitted ones, so that errors on them do not reveal a cubic term that
+    /// is wrong beyond the trials: in the sizes of the envelope it takes more to move it than a
+    /// linear one. docs/decisions/0006 has the evidence.
     Envelope(OperatingEnvelope),
-    /// What a mixture says over the envelope, jointly; its model has its values already.
+    /// The accelerations of a mixture over the envelope, jointly; its model has its values already.
     Mixture(OperatingEnvelope),
-    /// What a source of another law says over the envelope, jointly.
+    /// The accelerations of a source of another law over the envelope, jointly.
     Source(Arc<OperatingEnvelope>),
-    /// The same of one that does not roll, where the law does.
+    /// The same for a source that does not roll, where the law does.
     Plane(PlaneSource),
-    /// What a population says at the states of a source's, in its mean and scatter.
+    /// The accelerations of a population at the states of a source's envelope, by mean and scatter.
     Population(Arc<OperatingEnvelope>, Arc<Vec<MemberRates>>),
 }
 
 impl PriorMeasure {
-    /// Of a source by the law that is fitted. One that cannot sail has no envelope.
+    /// Returns the measure for a source of the law that is fitted. A source that cannot be
+    /// simulated has no envelope.
     pub fn own(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
         let envelope = in_parts.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
         envelope.map_or(Self::Trials, Self::Envelope)
     }
 
-    /// Whether the prior is what a source of another law says, or a population.
+    /// Returns true if the prior is a source of another law, or a population.
     pub fn is_source(&self) -> bool {
         matches!(self, Self::Source(_) | Self::Plane(_) | Self::Population(..))
     }
 
-    /// Gives a model's regressions their measure, and the model what a source of another law says.
+    /// Gives a model's regressions their measure, and the model the coefficients that follow from a
+    /// source of another law or a population.
     ///
     /// # Errors
-    /// The law takes something that the trials do not record.
+    /// Returns an error if the law has an input that the trials do not record.
     pub fn hold(
         &self,
         blocks: &mut Blocks,
@@ -68,6 +70,8 @@ impl PriorMeasure {
             }
             Self::Plane(source) => source.hold(blocks, model, trials)?,
             Self::Population(envelope, members) => {
+                // The source's regression sets the states, the ridge and the metric; the population
+                // then replaces values and precision.
                 let states = SourceRegression::new(envelope, blocks, model)?;
                 states.fill(blocks, model);
                 states.hold(blocks, trials);
@@ -77,7 +81,7 @@ impl PriorMeasure {
         Ok(())
     }
 
-    /// What it is, for people; nothing where it is as published.
+    /// Description for reports; `None` for the measure of the published method.
     pub fn words(&self, model: &Model, law: &Law) -> Option<String> {
         match self {
             Self::Trials => None,
@@ -110,8 +114,8 @@ impl PriorMeasure {
     }
 }
 
-/// Measures each coefficient by its regressor's deviation over the envelope, or over the trials
-/// where that is more.
+/// Measures each coefficient by the deviation of its regressor over the envelope, or over the
+/// trials where that is larger.
 fn sized(blocks: &mut Blocks, envelope: &[Vec<Moments>], trials: &[Moments]) {
     let Some(all) = merged(envelope, |_| true) else { return };
     for ((block, envelope), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {

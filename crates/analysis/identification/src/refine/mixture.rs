@@ -1,5 +1,5 @@
-//! The prior as a mixture: what the source says of the ship's accelerations and what the estimate
-//! from its particulars says, each a Gaussian whose covariance was learned by leaving ships out.
+//! The prior as a mixture of the source and the estimate from particulars. Each gives the ship's
+//! accelerations with a Gaussian error whose covariance was learned by leaving ships out.
 
 use std::sync::LazyLock;
 
@@ -16,7 +16,7 @@ use super::measure::PriorMeasure;
 use super::outcome::RefineError;
 use super::thresholds::{LEARNED_POSITION, MIXTURE, Misfit};
 
-/// What estimates are made of.
+/// The regressions of estimates, and the law that they estimate.
 struct Regressions {
     library: Library,
     law: Law,
@@ -31,10 +31,10 @@ fn regressions() -> Result<&'static Regressions, RefineError> {
     REGRESSIONS.as_ref().map_err(|error| RefineError::Law(error.to_string()))
 }
 
-/// The regressions that a mixture is made with, so that a version records them.
+/// Returns the hash of the regressions that a mixture uses, so that a version records them.
 ///
 /// # Errors
-/// Others are asked for than this program has.
+/// Returns an error if the requested regressions are not those of this program.
 pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineError> {
     let own = &regressions()?.library.sha256;
     match asked {
@@ -46,10 +46,11 @@ pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineEr
     }
 }
 
-/// Refuses a source that is the ship's own model: errors of other ships say nothing of it.
+/// Refuses a source that is the ship's own model: the covariance of errors was learned from models
+/// of other ships.
 ///
 /// # Errors
-/// It is.
+/// Returns an error if the source is a model of the target.
 pub(super) fn check(source: &Model, target: &Vessel) -> Result<(), RefineError> {
     if source.ship != target.name() {
         return Ok(());
@@ -58,10 +59,12 @@ pub(super) fn check(source: &Model, target: &Vessel) -> Result<(), RefineError> 
     Err(RefineError::Setting { field: "prior".into(), message })
 }
 
-/// A model carried over by the law that is fitted, moved towards the estimate, and what it says.
+/// Returns a transferred model of the law that is fitted, shifted towards the estimate, and the
+/// measure of the mixture.
 ///
 /// # Errors
-/// As [`mixed`]; the model cannot sail.
+/// Returns an error if the ship's particulars do not suffice for an estimate, or the model cannot
+/// be simulated.
 pub(super) fn of_same_law(
     mut model: Model,
     law: &Law,
@@ -74,11 +77,11 @@ pub(super) fn of_same_law(
     Ok((model, PriorMeasure::Mixture(mixed)))
 }
 
-/// What a source says, moved towards what the estimate says by its shares at a position
-/// ([`super::settings::Settings::mixture_positions`]).
+/// Returns the envelope of a source, shifted towards the estimate by its shares at a position of
+/// the mixture (0 the source, 1 the estimate).
 ///
 /// # Errors
-/// The ship's particulars do not suffice for an estimate.
+/// Returns an error if the ship's particulars do not suffice for an estimate.
 pub(super) fn mixed(
     envelope: &OperatingEnvelope,
     target: &Vessel,
@@ -86,20 +89,21 @@ pub(super) fn mixed(
     (trials, position): (&[&Trial], f64),
 ) -> Result<OperatingEnvelope, RefineError> {
     let (estimated, law) = estimated(target, speed_m_s)?;
+    // An axis without a known covariance keeps the source.
     let shares = MIXTURE.misfit.map(|misfit| misfit.map_or(0.0, |misfit| at(position, misfit)));
     let moved = envelope.moved_to((&estimated, law), &shares, trials)?;
     Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
 }
 
-/// What the estimate says, named as such.
+/// Returns the envelope of the estimate alone, described as such.
 pub(super) fn alone(envelope: OperatingEnvelope) -> OperatingEnvelope {
     OperatingEnvelope { mixed: Some(words(&[1.0; 4])), ..envelope }
 }
 
-/// The estimate from the ship's particulars, and its law.
+/// Returns the estimate from the ship's particulars, and its law.
 ///
 /// # Errors
-/// They do not suffice, or its speed is not known.
+/// Returns an error if the particulars do not suffice, or the speed is not known.
 pub(super) fn estimated(
     target: &Vessel,
     speed_m_s: Option<f64>,
@@ -113,9 +117,10 @@ pub(super) fn estimated(
     Ok((estimate.model, law))
 }
 
-/// Lets an estimate make its approach speed at other revolutions. With `s` their ratio, `k_0/s^2`,
-/// `k_1/s` and `k_2` give the thrust `k_0 (nD)^2 + k_1 u_P nD + k_2 u_P^2` that they gave before, at
-/// every speed and at `s` times the revolutions: the pitch is estimated, the revolutions are read.
+/// Lets an estimate reach its approach speed at other revolutions. With `s` the ratio of the
+/// revolutions, `k_0/s^2`, `k_1/s` and `k_2` give the same thrust `k_0 (nD)^2 + k_1 u_P nD + k_2
+/// u_P^2` as before, at every speed and at `s` times the revolutions: the pitch is estimated, the
+/// revolutions are read from the trials.
 pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
     let Some(own) = estimate.revolutions_rps.replace(n_rps) else { return };
     let ratio = n_rps / own;
@@ -127,7 +132,8 @@ pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
     }
 }
 
-/// The estimate's share at a position: none at 0, that of the least variance at a half, all at 1.
+/// The estimate's share at a position: 0 at the source, that of least variance at a half, 1 at the
+/// estimate, linear between them.
 fn at(position: f64, misfit: Misfit) -> f64 {
     let learned = share(misfit);
     match position <= LEARNED_POSITION {
@@ -145,8 +151,8 @@ fn share(misfit: Misfit) -> f64 {
     ((source - common) / (source + estimate - 2.0 * common)).clamp(0.0, 1.0)
 }
 
-/// Moves a model's coefficients by what the mixture says less what the source says, both regressed
-/// on the law's terms alike: where the estimate has no share the source stays as it is.
+/// Shifts a model's coefficients by the difference of the mixture and the source, both regressed on
+/// the law's terms alike: where the estimate has no share, the source stays as it is.
 fn moved(
     model: &mut Model,
     law: &Law,
@@ -155,6 +161,7 @@ fn moved(
 ) -> Result<(), RefineError> {
     let blocks = Blocks::new(model, law)?;
     let towards = SourceRegression::new(mixed, &blocks, model)?;
+    // The same ridge for both, so that the difference is not one of regularisation.
     let from = towards.of(own, &blocks)?;
     let (mut before, mut after) = (model.clone(), model.clone());
     from.fill(&blocks, &mut before);
@@ -166,7 +173,7 @@ fn moved(
     Ok(())
 }
 
-/// The shares for people.
+/// Description of the shares for reports.
 fn words(shares: &[f64; 4]) -> String {
     if shares.iter().all(|share| *share == 1.0) {
         return "the prior is the estimate from particulars in place of the source".to_owned();

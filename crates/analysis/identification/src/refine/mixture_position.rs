@@ -1,5 +1,5 @@
-//! Where between source and estimate a mixture stands: where its fit simulates manoeuvres left out
-//! best.
+//! Choice of the position of a mixture between source and estimate by simulations of held-out
+//! manoeuvres.
 
 use rayon::prelude::*;
 
@@ -7,13 +7,14 @@ use super::outcome::RefineError;
 use super::settings::Settings;
 use super::weighed::Weighed;
 
-/// The position that is taken; none where there is nothing to choose. The estimate, which was nearer
-/// to most ships than any source (docs/evidence/strangers.md), is asked first, and of few trials
-/// what comes later must be better by more than a standard error. `weigh` weighs a mixture at one
-/// position.
+/// Returns the chosen position; `None` if there is no choice.
+///
+/// The estimate, which was nearer to most ships than any source (docs/evidence/strangers.md), is
+/// evaluated first; with few trials a later position must be better by more than a standard error.
+/// The closure evaluates a mixture at one position.
 ///
 /// # Errors
-/// It was cancelled.
+/// Returns an error if it was cancelled.
 pub(super) fn chosen(
     settings: &Settings,
     weigh: impl Fn(&Settings) -> Result<Vec<Weighed>, RefineError> + Sync,
@@ -22,9 +23,12 @@ pub(super) fn chosen(
     if positions.len() < 2 {
         return Ok(None);
     }
+    // From the estimate (1) to the source (0): a later position must be better to replace an
+    // earlier one.
     positions.sort_by(|a, b| b.total_cmp(a));
     let weighed = |position: &f64| {
         let settings = Settings { mixture_positions: vec![*position], ..settings.clone() };
+        // A position that cannot be evaluated is skipped; only cancellation ends the choice.
         match weigh(&settings) {
             Err(RefineError::Cancelled) => Err(RefineError::Cancelled),
             weighed => Ok(weighed.ok().and_then(least)),
@@ -42,14 +46,14 @@ pub(super) fn chosen(
     Ok(best.map(|(position, _)| position))
 }
 
-/// The one with the least error of those that can be taken.
+/// The evaluation with the least error of those that can be chosen.
 fn least(weighed: Vec<Weighed>) -> Option<Weighed> {
     let takeable = weighed.into_iter().filter(|one| one.reason.is_none() && one.error.is_some());
     takeable.min_by(|a, b| a.error.unwrap_or(f64::MAX).total_cmp(&b.error.unwrap_or(f64::MAX)))
 }
 
-/// Whether a fit has the lesser error, of few trials by more than a standard error of the difference
-/// over their parts (Breiman et al. 1984, section 3.4.3).
+/// Returns true if a fit has the smaller error; with few trials, by more than a standard error of
+/// the difference over their parts (Breiman et al. 1984, section 3.4.3).
 fn is_better(new: &Weighed, old: &Weighed, is_few: bool) -> bool {
     let gains: Vec<f64> =
         new.each.iter().filter_map(|(name, error)| Some(old.each.get(name)? - error)).collect();

@@ -1,4 +1,4 @@
-//! What a refinement gives, and why it may be refused.
+//! Results of a refinement, and the errors by which it is refused.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::constraints::LimitError;
 use sistership_assessment::uncertainty::{Band, Bands};
 use sistership_priors::transfer::UnknownParameter;
 
-/// Why a refinement is refused.
+/// The error type for a refinement that is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RefineError {
     /// The law's equations cannot be set up for the model.
@@ -29,10 +29,10 @@ pub enum RefineError {
         /// The channel.
         channel: Channel,
     },
-    /// The law cannot be used so.
+    /// The law cannot be used for this refinement.
     #[error("{0}")]
     Law(String),
-    /// There is too little to fit on.
+    /// The data do not suffice for a fit.
     #[error("{0}")]
     Data(String),
     /// A setting is out of range.
@@ -40,10 +40,10 @@ pub enum RefineError {
     Setting {
         /// The setting.
         field: String,
-        /// What it may be.
+        /// Values that are allowed.
         message: String,
     },
-    /// Every option left the physical range or cannot keep the constraints.
+    /// Every option left the physical range or does not keep the constraints.
     #[error("no option can be taken: {0}")]
     Diverged(String),
     /// The constraints cannot be kept.
@@ -55,13 +55,13 @@ pub enum RefineError {
 }
 
 impl RefineError {
-    /// Nothing can be taken, for these reasons.
+    /// Returns the error that no option can be chosen, with each reason once.
     pub fn diverged<'a>(reasons: impl Iterator<Item = &'a str>) -> Self {
         Self::Diverged(each_once(reasons))
     }
 }
 
-/// Reasons in their order; many options share one.
+/// Joins distinct reasons in their order; many options share one.
 fn each_once<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
     let mut told: Vec<&str> = Vec::new();
     for reason in reasons {
@@ -78,7 +78,7 @@ impl From<UnknownParameter> for RefineError {
     }
 }
 
-/// How one coefficient moved.
+/// Change of one coefficient.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoefficientChange {
     /// Its name.
@@ -95,7 +95,7 @@ pub struct CoefficientChange {
     pub moved_sd: f64,
 }
 
-/// One step of the widening ranges, with what it would give.
+/// One step of the widening ranges, with the errors that it gives.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepOption {
     /// `source`, or the range's number from 1.
@@ -106,25 +106,26 @@ pub struct StepOption {
     pub lambda: Vec<f64>,
     /// Chosen alpha likewise.
     pub alpha: Vec<f64>,
-    /// Standardised mean squared error of simulated manoeuvres left out, the geometric mean over
-    /// restart intervals; none where a simulation diverged at the shortest.
+    /// Standardised mean squared error of simulated held-out manoeuvres, the geometric mean over
+    /// restart intervals; none if a simulation diverged at the shortest.
     pub error: Option<f64>,
-    /// Whether this option was taken.
+    /// True if this option was chosen.
     pub chosen: bool,
-    /// Why it could not be taken, if so.
+    /// Reason why it could not be chosen, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
 
 impl Manoeuvres {
-    /// What to know first where the trials leave much open: the widest band of an advance or
-    /// tactical diameter that is wider than half the figure, or of a first overshoot that is wider
-    /// than the 10 deg between the least and the most that MSC.137(76) allows.
+    /// Returns a sentence about the widest uncertainty band, if it is wide: that of an advance or
+    /// tactical diameter is wide if it exceeds half the figure, that of a first overshoot if it
+    /// exceeds the 10 deg between the least and the greatest value that MSC.137(76) allows.
     pub fn wide_band(&self) -> Option<String> {
         let bands = self.bands.as_ref()?;
         let width = |figure: &Figure| {
             let allowed = allowed_width(figure)?;
             let band = bands.of(&figure.name)?;
+            // Widths relative to what is allowed make different units comparable.
             let width = (band.high - band.low) / allowed;
             (width > 1.0).then_some((width, band.clone()))
         };
@@ -138,7 +139,8 @@ impl Manoeuvres {
     }
 }
 
-/// How wide a figure's band may be before it is said first; none of figures that are not judged so.
+/// Width from which on a figure's band is reported as wide; `None` for figures that are not judged
+/// by it.
 fn allowed_width(figure: &Figure) -> Option<f64> {
     let is = |name: &str| figure.name.ends_with(name);
     if is("first overshoot") {
@@ -148,14 +150,14 @@ fn allowed_width(figure: &Figure) -> Option<f64> {
     figure.value.filter(|_| turns).map(|value| 0.5 * value.abs())
 }
 
-/// Root mean square errors by channel (SI), on manoeuvres left out.
+/// Root mean square errors by channel (SI) on held-out manoeuvres.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeldOut {
-    /// The source model carried over to the ship.
+    /// The transferred source model.
     pub source: BTreeMap<String, f64>,
     /// The refined model.
     pub refined: BTreeMap<String, f64>,
-    /// How the manoeuvres were left out.
+    /// Method by which the manoeuvres were held out.
     pub how: String,
 }
 
@@ -170,39 +172,39 @@ pub struct Refinement {
     pub method: String,
     /// The refined model.
     pub model: Model,
-    /// The source model carried over to the ship, before refinement.
+    /// The transferred source model, before refinement.
     pub transferred: Model,
     /// Every setting.
     pub settings: Settings,
     /// Largest condition number of the standardised regressions.
     pub condition_number: f64,
-    /// Coefficients that the trials cannot tell apart.
+    /// Groups of coefficients that the trials cannot distinguish.
     pub collinear_groups: Vec<Vec<String>>,
-    /// Errors on manoeuvres left out.
+    /// Errors on held-out manoeuvres.
     pub held_out: HeldOut,
     /// Every coefficient.
     pub coefficients: Vec<CoefficientChange>,
-    /// What a search did, where one was asked for.
+    /// Report of a search, if there was one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SearchReport>,
     /// Every step of the widening ranges.
     pub options: Vec<StepOption>,
-    /// Standard manoeuvres of the source carried over and of the refined model.
+    /// Standard manoeuvres of the transferred source and of the refined model.
     pub manoeuvres: Manoeuvres,
     /// Remarks for the person who must defend the model.
     pub remarks: Vec<String>,
 }
 
-/// What the step of the source as it is is called.
+/// Name of the step that keeps the source.
 pub(super) const SOURCE_STEP: &str = "source";
 
 impl Refinement {
-    /// Whether the source stays as it is: nothing that was fitted is taken.
+    /// Returns true if the source is kept: nothing that was fitted was chosen.
     pub fn is_source_kept(&self) -> bool {
         self.options.iter().any(|option| option.chosen && option.step == SOURCE_STEP)
     }
 
-    /// Why options could not be taken.
+    /// Reasons why options could not be chosen, each once.
     pub fn refusals(&self) -> String {
         each_once(self.options.iter().filter_map(|option| option.reason.as_deref()))
     }
@@ -211,9 +213,9 @@ impl Refinement {
 /// Standard manoeuvres before and after.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manoeuvres {
-    /// Of the source carried over.
+    /// Manoeuvres of the transferred source.
     pub source: StandardManoeuvres,
-    /// Of the refined model.
+    /// Manoeuvres of the refined model.
     pub refined: StandardManoeuvres,
     /// Confidence bands of the refined model's figures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -223,16 +225,16 @@ pub struct Manoeuvres {
     pub measured: Vec<MeasuredManoeuvre>,
 }
 
-/// A manoeuvre that was sailed at sea, and what the models make of it.
+/// A manoeuvre among the trials, measured and simulated by both models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredManoeuvre {
     /// The trial.
     pub trial: String,
-    /// Whether the refined model was fitted on it.
+    /// True if the refined model was fitted on it.
     pub fitted: bool,
     /// As measured.
     pub measured: ManoeuvreMetrics,
-    /// As simulated by the source carried over; absent where that diverged.
+    /// As simulated by the transferred source; absent if that diverged.
     pub source: Option<ManoeuvreMetrics>,
     /// As simulated by the refined model.
     pub refined: Option<ManoeuvreMetrics>,

@@ -1,8 +1,8 @@
-//! Trials in parts, where whole ones cannot be left out.
+//! Trials divided into parts, where whole ones cannot be held out.
 //!
-//! Of roll a source of the plane says nothing, and one zigzag may be all that excites it. Where
-//! that is left out whole, the strength of the prior is chosen by models that know nothing of roll;
-//! left out part by part, what remains of it informs them.
+//! A source of the plane (3-DOF) gives no information on roll, and a single zigzag may be all that
+//! excites it. If that zigzag is held out whole, the strength of the prior is chosen by models
+//! without information on roll; if it is held out part by part, the other parts inform them.
 
 use std::ops::Range;
 
@@ -12,8 +12,9 @@ use sistership_model::trial::Trial;
 use super::equations::Equations;
 use super::settings::Settings;
 
-/// The training trials in parts as long as the settings say, at least two of each, where that is
-/// asked, or a law rolls and there are fewer trials than folds; nothing where the trials stay whole.
+/// Returns the training trials divided into parts of the length of the settings, at least two of
+/// each trial. Empty if the trials stay whole: parts are used where the settings request them, or
+/// where a law has roll and there are fewer trials than folds.
 pub(super) fn parts(
     training: &[&Trial],
     law: &Law,
@@ -28,7 +29,7 @@ pub(super) fn parts(
     training.iter().flat_map(|trial| cut(trial, part_s)).collect()
 }
 
-/// A trial in equal parts that neither overlap nor share a sample.
+/// Divides a trial into equal parts that neither overlap nor share a sample.
 fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
     let count = ((trial.duration_s() / part_s).round() as usize).max(2);
     let size = trial.len().div_ceil(count).max(1);
@@ -38,6 +39,7 @@ fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
         .collect()
 }
 
+/// Returns a range of samples of a trial as a trial, with its conditions and without its warnings.
 pub(super) fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
     let of = |column: &[f64]| column[samples.clone()].to_vec();
     Trial {

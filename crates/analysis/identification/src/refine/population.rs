@@ -1,14 +1,13 @@
-//! The prior as a population: what other ships say of this one's accelerations, each carried over
-//! to its particulars and asked at the same states. Their mean is where the coefficients are held,
-//! and how they differ says what may differ: the covariance of a hierarchical model, from groups
-//! that are known (Gelman et al. 2013, Bayesian Data Analysis, section 5.4, the means of whose
-//! groups are given here).
+//! The prior as a population: the accelerations of other ships, each transferred to this ship's
+//! particulars and evaluated at the same states. Their mean is the mean of the prior, and their
+//! differences are its covariance: that of a hierarchical model, from groups that are known (Gelman
+//! et al. 2013, Bayesian Data Analysis, section 5.4, the means of whose groups are given here).
 //!
-//! Directions of coefficients are measured as of a source of another law (docs/decisions/0015):
-//! with `R' R` the precision that this has earned and `z = R b` a ship's coefficients, the prior's
+//! Directions of coefficients are measured as for a source of another law (docs/decisions/0015):
+//! with `R' R` the precision that this determines and `z = R b` a ship's coefficients, the prior's
 //! covariance of `z` is `e 1 + (1 - e) p S`. `S` is the scatter of the ships about their mean, of
-//! trace 1, `p` the number of coefficients, and `e` ([`POPULATION`]`.outside`) what ships differ by
-//! that no ship shows.
+//! trace 1, `p` the number of coefficients, and `e` ([`POPULATION`]`.outside`) the share of the
+//! variance in directions in which the ships do not differ.
 
 use std::sync::Arc;
 
@@ -35,11 +34,11 @@ pub struct Member {
     pub law: Arc<Law>,
 }
 
-/// What each member that knows every state of an envelope says there; one of the same ship is no
-/// other ship.
+/// Returns the accelerations of each member that covers every state of an envelope. Members of the
+/// target ship itself are excluded.
 ///
 /// # Errors
-/// Fewer of them do than a scatter is taken of.
+/// Returns an error if there are fewer such members than a scatter needs.
 pub(super) fn rates_of(
     members: &[Member],
     target: &Vessel,
@@ -48,6 +47,7 @@ pub(super) fn rates_of(
 ) -> Result<Vec<MemberRates>, RefineError> {
     let one = |Member { model, law }: &Member| {
         let carried = transfer(model, law, target, approach);
+        // A member that cannot be set up, or does not cover a state, is skipped.
         let rates = envelope.asked_of((&carried, law), trials).ok()?;
         Some(MemberRates { name: model.name.clone(), rates })
     };
@@ -66,11 +66,11 @@ pub(super) fn rates_of(
     Ok(known)
 }
 
-/// Refuses laws that a population cannot hold: that of its source, and one with roll, of which few
-/// ships say anything.
+/// Refuses laws for which a population cannot be the prior: the law of its source, and laws with
+/// roll, on which few ships give information.
 ///
 /// # Errors
-/// It is one of them.
+/// Returns an error if the law is one of them.
 pub(super) fn check(law: &Law, source_law: Option<&Law>) -> Result<(), RefineError> {
     let is_across = source_law.is_some_and(|own| own.name != law.name);
     if is_across && !law.has_roll() {
@@ -83,7 +83,7 @@ pub(super) fn check(law: &Law, source_law: Option<&Law>) -> Result<(), RefineErr
     Err(RefineError::Setting { field: "prior".into(), message })
 }
 
-/// What the members say, as the regressions of a law see it.
+/// The members' accelerations, for the regressions of a law.
 pub(super) struct PopulationRegression<'a> {
     envelope: &'a OperatingEnvelope,
     members: &'a [MemberRates],
@@ -91,20 +91,21 @@ pub(super) struct PopulationRegression<'a> {
 }
 
 impl<'a> PopulationRegression<'a> {
-    /// Regressed by the ridge that a source at the same states was.
+    /// Creates the regression with the strength of the ridge that a source at the same states has.
     pub fn new(envelope: &'a OperatingEnvelope, members: &'a [MemberRates], ridge: f64) -> Self {
         Self { envelope, members, ridge }
     }
 
     /// Sets a model's coefficients to the members' mean, and replaces the precision that a source
-    /// has earned by theirs. Where nothing is known there is no precision, and the source's stay.
+    /// determines by that of the members. Regressions without a precision keep the source's values.
     ///
     /// # Errors
-    /// The law takes something that the states do not have.
+    /// Returns an error if the law has an input that the states do not have.
     pub fn hold(&self, blocks: &mut Blocks, model: &mut Model) -> Result<(), RefineError> {
         let rates: Vec<&Rates> = self.members.iter().map(|member| &member.rates).collect();
         let moments = self.envelope.moments_of(blocks, &rates)?;
         for (block, moments) in blocks.blocks.iter_mut().zip(&moments) {
+            // The metric is the precision that the source's regression left in the block.
             let Some(metric) = block.precision.as_ref().and_then(Metric::of_precision) else {
                 continue;
             };
@@ -128,6 +129,7 @@ impl<'a> PopulationRegression<'a> {
         let own = Metric::of_regressors(moments, &block.shrinkage);
         let path = RidgePath::measured(moments, &vec![zero.clone(); moments.targets()], own);
         let choice = RidgeChoice { lambda: self.ridge, alpha: 0.0 };
+        // Targets are ordered by member, then by axis.
         let of = |target: usize, member: usize| {
             metric.root() * DVector::from_vec(path.solve(member * q + target, choice, &zero))
         };
@@ -142,6 +144,7 @@ fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model,
     let solved: Vec<DVector<f64>> = means.iter().map(|mean| metric.back() * mean).collect();
     for place in 0..block.regressors() {
         let seen = DVector::from_iterator(means.len(), solved.iter().map(|one| one[place]));
+        // From the unknowns of the regression back to the coefficients of the axes.
         let own = &block.unmixing * seen;
         for (names, value) in block.names.iter().zip(&own) {
             let source = format!("mean of what {count} ships say");

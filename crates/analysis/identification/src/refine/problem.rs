@@ -1,4 +1,4 @@
-//! A refinement's problem: what does not change while candidates are compared.
+//! The problem of a refinement: everything that is constant while candidates are compared.
 
 use std::collections::BTreeMap;
 
@@ -15,30 +15,30 @@ use super::replayed_trials::ReplayedTrials;
 use super::ridge::Fitted;
 use super::settings::Settings;
 
-/// What does not change while candidates are compared.
+/// Inputs that are constant while candidates are compared.
 pub(super) struct Problem<'a> {
     pub law: &'a Law,
     pub target: Option<&'a Vessel>,
     /// The source's name.
     pub source: &'a str,
-    /// What is fitted and left out: the trials, or parts of them.
+    /// Trials that are fitted and held out, or parts of them.
     pub training: Vec<&'a Trial>,
-    /// The same as simulations of them are compared.
+    /// The same trials with the samples at which simulations are compared.
     pub replayed: ReplayedTrials,
-    /// The trials of which that is.
+    /// The whole trials of which `training` consists.
     pub whole: Vec<&'a Trial>,
     pub judged: Vec<&'a Trial>,
-    /// By which errors are standardised: those of the channels over what is fitted and left out.
+    /// Standard deviations of the channels over the training trials, which standardise errors.
     pub deviations: BTreeMap<Channel, f64>,
     pub transferred: Model,
-    /// What the prior measures coefficients by.
+    /// Measure by which the prior weights coefficients.
     pub measure: PriorMeasure,
     pub settings: Settings,
     pub watch: Option<Watch<'a>>,
 }
 
 impl<'a> Problem<'a> {
-    /// Of a model with itself as the source, on whole trials.
+    /// Creates the problem of a model with itself as the source, on whole trials.
     pub fn of_model(
         model: &'a Model,
         law: &'a Law,
@@ -66,21 +66,22 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Shows an iterate to whoever watches.
+    /// Passes an iterate to the observer, if there is one.
     pub fn show(&self, iterate: &Iterate<'_>) {
         self.watch.into_iter().for_each(|watch| watch(iterate));
     }
 
-    /// Which fold a training trial is left out in.
+    /// Fold in which a training trial is held out.
     pub fn fold_of(&self, trial: usize) -> usize {
         trial % self.fold_count()
     }
 
+    /// Number of folds: one a trial, or the settings' largest number.
     pub fn fold_count(&self) -> usize {
         self.training.len().min(self.settings.folds)
     }
 
-    /// Whether a trial is fitted in a fold; a single trial can only judge itself.
+    /// Returns true if a trial is fitted in a fold; a single trial is fitted and judged at once.
     pub fn is_fitted(&self, trial: usize, fold: usize) -> bool {
         self.training.len() == 1 || self.fold_of(trial) != fold
     }
@@ -90,7 +91,7 @@ impl<'a> Problem<'a> {
         self.training.iter().map(|trial| trial.interval_s()).fold(f64::INFINITY, f64::min).max(1e-3)
     }
 
-    /// The transferred model with these coefficients and no others.
+    /// Returns the transferred model with these coefficients and no others.
     pub fn model_with(&self, coefficients: &BTreeMap<String, Fitted>) -> Model {
         let mut model = self.transferred.clone();
         model.status = Status::Refined;

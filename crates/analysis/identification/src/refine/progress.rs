@@ -1,4 +1,4 @@
-//! What a refinement tells while it works.
+//! Progress of a refinement.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -6,49 +6,52 @@ use sistership_model::Model;
 
 use super::outcome::RefineError;
 
-/// Told how far a refinement is (0 to 1) and what it does; answers `false` to stop it.
+/// Callback with the fraction of a refinement that is done (0 to 1) and its present step; returns
+/// `false` to cancel it.
 pub type Progress<'a> = &'a (dyn Fn(f64, &str) -> bool + Sync);
 
-/// Told how far a part of the work is (0 to 1), and what it does.
+/// Callback with the fraction of a part of the work that is done (0 to 1) and its present step.
 pub(super) type PartProgress<'a> = &'a dyn Fn(f64, &str) -> Result<(), RefineError>;
 
-/// Tells how far a refinement is.
+/// Reports the fraction of a refinement that is done.
 ///
 /// # Errors
-/// It was cancelled.
+/// Returns an error if the callback cancels the refinement.
 pub(super) fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
-/// An iterate of the fit on all trials: for learning curves.
+/// An iterate of the fit on all trials, for learning curves.
 pub struct Iterate<'a> {
-    /// Simulations of all trials so far, by a search; 0 for the trajectory form, which does not
+    /// Simulations of all trials so far, for a search; 0 for the trajectory form, which does not
     /// count them.
     pub evaluations: usize,
-    /// What the estimator makes least, so far; each estimator has its own.
+    /// Value of the objective so far; each estimator has its own objective.
     pub objective: f64,
-    /// The model that it would give if it ended here.
+    /// Model that the fit would give if it ended here.
     pub model: &'a dyn Fn() -> Model,
 }
 
-/// Shown the iterates of a fit.
+/// Observer of the iterates of a fit.
 pub type Watch<'a> = &'a (dyn Fn(&Iterate<'_>) + Sync);
 
-/// Progress that never runs backwards, whatever the parts of the work say.
+/// Progress that never decreases, whatever fractions the parts of the work report.
 pub struct MonotoneProgress<'a> {
     told: Progress<'a>,
-    /// The bits of the largest fraction so far; those of positive numbers have the numbers' order.
+    /// Bits of the largest fraction so far. Positive floating-point numbers have the order of their
+    /// bits, so that an atomic maximum of integers serves.
     largest: AtomicU64,
 }
 
 impl<'a> MonotoneProgress<'a> {
-    /// Of whoever is told.
+    /// Creates the progress in front of a callback.
     pub fn new(told: Progress<'a>) -> Self {
         Self { told, largest: AtomicU64::new(0.0_f64.to_bits()) }
     }
 
-    /// Tells the largest fraction so far.
+    /// Reports the larger of a fraction and the largest one before; returns `false` to cancel.
     pub fn tell(&self, fraction: f64, what: &str) -> bool {
+        // `max` also turns a fraction that is not a number into 0.
         let bits = fraction.max(0.0).to_bits();
         let before = self.largest.fetch_max(bits, Ordering::Relaxed);
         (self.told)(f64::from_bits(before.max(bits)), what)

@@ -1,5 +1,5 @@
-//! Trials as simulations of them are compared: with fewer samples, where instruments record more
-//! often than a simulation needs, and without most of what single readings scatter by.
+//! Trials for comparison with simulations: with fewer samples where instruments record more often
+//! than a simulation needs, and smoothed against the noise of single readings.
 
 use std::ops::Range;
 
@@ -20,12 +20,12 @@ pub struct ReplayedTrials {
     pub step_s: f64,
 }
 
-/// How trials are made into such.
+/// Settings by which trials are thinned and smoothed.
 #[derive(Debug, Clone, Copy)]
 pub struct Thinning {
-    /// With as few samples as a search needs, means of what drives the ship between them.
+    /// True to use as few samples as a search needs, with means of the inputs between them.
     pub economical: bool,
-    /// Window in which motions are smoothed, s; none leaves them as they are.
+    /// Window in which motions are smoothed, s; none leaves them as recorded.
     pub smoothing_s: Option<f64>,
 }
 
@@ -36,7 +36,7 @@ impl From<&Settings> for Thinning {
 }
 
 impl ReplayedTrials {
-    /// Of trials.
+    /// Creates thinned trials; without a known length or approach speed no sample is dropped.
     pub fn new(law: &Law, lpp_m: Option<f64>, training: &[&Trial], by: Thinning) -> Self {
         let economical = by.economical;
         let step_s = lpp_m
@@ -45,15 +45,16 @@ impl ReplayedTrials {
         let usual_s = ReplaySettings::default().step_s;
         Self {
             trials: training.iter().map(|trial| thinned(trial, step_s, by)).collect(),
+            // Ships that roll keep the usual step, as do settings that are not economical.
             step_s: step_s.filter(|_| economical && !law.has_roll()).unwrap_or(usual_s),
         }
     }
 }
 
-/// Every so many samples of a trial, so that they are as far apart as a simulation may step and no
-/// further; none between gaps is joined to another. Every sample where that would leave gaps out,
-/// or nothing.
+/// Thins a trial to samples as far apart as a simulation may step; no sample is joined to another
+/// across a gap. Keeps every sample if thinning would drop a part between gaps.
 fn thinned(trial: &Trial, step_s: Option<f64>, by: Thinning) -> Trial {
+    // Without thinning and smoothing the trial is used as it is.
     let every = every(trial, step_s);
     if every == 1 && by.smoothing_s.is_none() {
         return trial.clone();
@@ -75,14 +76,16 @@ fn thinned(trial: &Trial, step_s: Option<f64>, by: Thinning) -> Trial {
     }
 }
 
-/// Of how many samples one is kept.
+/// Stride from one kept sample to the next.
 fn every(trial: &Trial, step_s: Option<f64>) -> usize {
     let interval_s = trial.interval_s();
     let every = step_s
         .filter(|_| interval_s > 0.0)
+        // The small term keeps a ratio that is whole but for rounding.
         .map_or(1, |step_s| (step_s / interval_s + 1e-9).floor().max(1.0) as usize);
     let parts = trial.segments();
     let kept = Kept::new(trial, &parts, every, None);
+    // Thinning must not merge parts, nor lose a short one: the number of parts has to stay.
     let fewer = Trial { t_s: kept.of(&trial.t_s), ..Trial::default() };
     if fewer.segments().len() == parts.len() { every } else { 1 }
 }
@@ -90,9 +93,9 @@ fn every(trial: &Trial, step_s: Option<f64>) -> usize {
 /// The samples of a trial that are kept.
 struct Kept<'a> {
     every: usize,
-    /// Each with its part.
+    /// Kept samples, each with its part between gaps.
     samples: Vec<(usize, &'a Range<usize>)>,
-    /// The readings of which each is smoothed.
+    /// Readings from which each kept sample is smoothed; none where they are too few.
     about: Vec<Option<ReadingsAbout>>,
 }
 
@@ -111,10 +114,13 @@ impl<'a> Kept<'a> {
         Self { every, about: samples.iter().map(about).collect(), samples }
     }
 
+    /// Values of a column at the kept samples.
     fn of(&self, column: &[f64]) -> Vec<f64> {
         self.samples.iter().map(|&(k, _)| column[k]).collect()
     }
 
+    /// Smoothed values of a motion channel at the kept samples; as recorded where readings are too
+    /// few.
     fn smoothed(&self, channel: Channel, column: &[f64]) -> Vec<f64> {
         let one = |(&(k, _), about): (&(usize, _), &Option<ReadingsAbout>)| {
             about.as_ref().map_or(column[k], |about| about.value(channel, column))
@@ -122,6 +128,7 @@ impl<'a> Kept<'a> {
         self.samples.iter().zip(&self.about).map(one).collect()
     }
 
+    /// Means of an input about each kept sample.
     fn means(&self, column: &[f64]) -> Vec<f64> {
         let one = |&(k, part): &(usize, &Range<usize>)| {
             mean_around(&column[part.clone()], k - part.start, self.every)
@@ -130,12 +137,13 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// What is put in between samples counts as much as at them: a rudder moves within one.
+/// Returns true if a channel is an input whose values between samples matter: a rudder moves within
+/// one step.
 fn drives(channel: Channel) -> bool {
     matches!(channel, Channel::Delta | Channel::N | Channel::WindSpeed)
 }
 
-/// The mean of so many samples about one.
+/// The mean of `count` samples about a place, fewer at the ends.
 fn mean_around(column: &[f64], place: usize, count: usize) -> f64 {
     let before = place.saturating_sub(count / 2);
     let near = &column[before..(place + count - count / 2).min(column.len())];

@@ -1,4 +1,4 @@
-//! What a refinement is asked.
+//! The request of a refinement.
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -7,20 +7,21 @@ use sistership_model::{Model, Vessel};
 use super::population::Member;
 use super::settings::Settings;
 
-/// What is to be refined, and against what.
+/// A request: the ship, the source model and the law, and the trials against which it is refined.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
     /// The ship.
     pub target: &'a Vessel,
     /// The source model, as published or as refined earlier.
     pub source: &'a Model,
-    /// The source's law where it is another than what is fitted: what it says becomes the prior.
+    /// The source's law if it is not the law that is fitted: its accelerations then become the
+    /// prior.
     pub source_law: Option<&'a Law>,
-    /// The law of what is fitted.
+    /// The law that is fitted.
     pub law: &'a Law,
-    /// Its trials.
+    /// Trials of the ship.
     pub trials: &'a [&'a Trial],
-    /// Other ships with their models, where the prior is what they say.
+    /// Other ships with their models, for a prior from a population.
     pub population: &'a [Member],
     /// Settings.
     pub settings: &'a Settings,

@@ -1,5 +1,5 @@
-//! The published estimator: every regression at its (lambda, alpha), and the way back to the law's
-//! coefficients.
+//! The published estimator: each regression at its (lambda, alpha), and the transformation back to
+//! the law's coefficients.
 
 use std::collections::BTreeMap;
 
@@ -21,25 +21,25 @@ pub struct Fitted {
     pub value: f64,
     /// Posterior standard error.
     pub standard_error: f64,
-    /// How far the prior lets the coefficient be from the source: the root of its variance and of
-    /// the square of the share that alpha pulls towards zero.
+    /// Standard deviation of the prior about the source: the root of its variance and of the square
+    /// of the share that alpha shifts towards zero.
     pub prior_deviation: f64,
 }
 
 /// Coefficients fitted on some samples at a choice for each target of each regression.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// By name, in the law's units.
+    /// Coefficients by name, in the law's units.
     pub coefficients: BTreeMap<String, Fitted>,
     /// Largest condition number of the regressions.
     pub condition_number: f64,
-    /// Coefficients that the samples cannot tell apart.
+    /// Groups of coefficients that the samples cannot distinguish.
     pub collinear_groups: Vec<Vec<String>>,
-    /// Joint errors of the coefficients, where they were asked for.
+    /// Joint errors of the coefficients, where they were computed.
     pub(super) errors: Option<CoefficientErrors>,
 }
 
-/// The choices of a whole law: by regression, by target.
+/// Ridge choices of a law, by regression and target.
 pub type Choices = Vec<Vec<RidgeChoice>>;
 
 /// One regression with its decomposition.
@@ -55,6 +55,7 @@ impl<'a> PreparedRegression<'a> {
         Self { block, path: RidgePath::measured(moments, &source, block.metric(moments)), source }
     }
 
+    /// The solution of each target at its choice.
     fn solve(&self, choices: &[RidgeChoice]) -> Vec<Vec<f64>> {
         let one = |(target, choice): (usize, &RidgeChoice)| {
             self.path.solve(target, *choice, &self.source[target])
@@ -68,14 +69,14 @@ impl<'a> PreparedRegression<'a> {
     }
 }
 
-/// A training set's regressions with the left-out samples that judge them.
+/// The regressions of a training set, with the held-out samples that judge them.
 pub struct Fold<'a> {
     prepared: Vec<PreparedRegression<'a>>,
     validations: Vec<Validation>,
 }
 
 impl<'a> Fold<'a> {
-    /// Decomposes the training statistics (one set per regression) and prepares the left-out ones.
+    /// Decomposes the training statistics (one set per regression) and prepares the held-out ones.
     pub fn new(
         blocks: &'a Blocks,
         model: &Model,
@@ -91,7 +92,7 @@ impl<'a> Fold<'a> {
         Self { prepared, validations: left_out.iter().map(Validation::new).collect() }
     }
 
-    /// The coefficients fitted on the training samples.
+    /// Returns the coefficients fitted on the training samples.
     pub fn solve(&self, choices: &Choices) -> BTreeMap<String, Fitted> {
         let mut coefficients = BTreeMap::new();
         self.prepared
@@ -103,8 +104,8 @@ impl<'a> Fold<'a> {
 }
 
 impl Fold<'_> {
-    /// Names of the coefficients, and half the second derivative by them of what [`Fold::solve`]
-    /// makes least, each acceleration by its residual variance.
+    /// Names of the coefficients, and half the second derivative by them of the objective of the
+    /// fold's solution, each acceleration divided by its residual variance.
     pub(super) fn curvature(&self, choices: &Choices) -> (Vec<String>, DMatrix<f64>) {
         let sizes = self.prepared.iter().map(|p| p.block.axes.len() * p.block.regressors()).sum();
         let (mut names, mut all) = (Vec::new(), DMatrix::zeros(sizes, sizes));
@@ -118,8 +119,8 @@ impl Fold<'_> {
 }
 
 impl Fold<'_> {
-    /// The share of the mean square of each acceleration that a strength about the source leaves on
-    /// the left-out samples.
+    /// The share of the mean square of each acceleration that remains on the held-out samples at a
+    /// strength of the prior about the source.
     pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
         let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
             let one = |(target, axis): (usize, &Axis)| {
@@ -133,12 +134,15 @@ impl Fold<'_> {
 }
 
 impl PreparedRegression<'_> {
+    /// Adds the curvature of this regression to the block of `all` that begins at `start`.
     fn add_curvature(&self, choices: &[RidgeChoice], start: usize, all: &mut DMatrix<f64>) {
         let (q, p) = (self.block.axes.len(), self.block.regressors());
         for (target, choice) in choices.iter().enumerate() {
             let variance = self.path.residual_variance(target, *choice).max(f64::MIN_POSITIVE);
             let own = self.path.curvature(choice.lambda) / variance;
             for (a, b) in (0..q).flat_map(|a| (0..q).map(move |b| (a, b))) {
+                // The unknowns of a target are `mixing[target, a]` times the coefficients of axis
+                // `a`: the chain rule gives a block for each pair of axes.
                 let shared = self.block.mixing[(target, a)] * self.block.mixing[(target, b)];
                 let mut part = all.view_mut((start + a * p, start + b * p), (p, p));
                 part += &own * shared;
@@ -147,11 +151,11 @@ impl PreparedRegression<'_> {
     }
 }
 
-/// The best choices of a range by one-step error on held-out samples, for each target of each
-/// regression.
+/// Returns the choices of a range with the least one-step error on held-out samples, for each
+/// target of each regression.
 ///
 /// # Errors
-/// Names the axis whose error is not finite at any strength of the range.
+/// Returns an error with the axis whose error is not finite at any strength of the range.
 pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Result<Choices, RefineError> {
     let Some(first) = folds.first() else { return Ok(Choices::new()) };
     let of_block = |b: usize| {
@@ -171,8 +175,7 @@ pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Result<Choices, 
     (0..first.prepared.len()).map(of_block).collect()
 }
 
-/// The lambda and alpha with the least error, each pair scored by the sum over the folds. None
-/// where no error is finite.
+/// The lambda and alpha with the least sum of errors over the folds; `None` if no error is finite.
 fn tune_target(
     target: usize,
     folds: &[(&PreparedRegression<'_>, &Validation)],
@@ -183,6 +186,8 @@ fn tune_target(
         let of_fold = |(prepared, held_out): &(&PreparedRegression<'_>, &Validation)| {
             prepared.error_by_alpha(target, lambda, held_out)
         };
+        // At a given lambda the error is a quadratic function of alpha: sums over folds add its
+        // coefficients, and its minimum up to `alpha_max` is found directly.
         let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least(range.alpha_max);
         (error, RidgeChoice { lambda, alpha })
     };
@@ -191,8 +196,8 @@ fn tune_target(
     finite.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, choice)| choice)
 }
 
-/// The strengths with the greatest marginal likelihood, for each target of each regression, on the
-/// given statistics.
+/// The strengths with the greatest marginal likelihood on the given statistics, for each target of
+/// each regression.
 pub(super) fn most_likely(
     blocks: &Blocks,
     moments: &[Moments],
@@ -221,7 +226,7 @@ fn log_spaced(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |k| (low + (high - low) * k as f64 / (count - 1) as f64).exp())
 }
 
-/// The source's coefficients as the regression sees them.
+/// The source's coefficients in the unknowns of the regression, by target.
 pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
     let q = block.axes.len();
     let mut mixed = vec![vec![0.0; block.regressors()]; q];
@@ -235,7 +240,7 @@ pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
 }
 
 impl Fit {
-    /// With joint errors, from which each coefficient's own is taken.
+    /// Returns the fit with joint errors, from which each coefficient's standard error is set.
     pub(super) fn with_errors(mut self, errors: Option<CoefficientErrors>) -> Self {
         if let Some(errors) = &errors {
             for (k, name) in errors.names.iter().enumerate() {
@@ -250,7 +255,7 @@ impl Fit {
     }
 }
 
-/// Fits every regression at its choices on the given statistics (one set per regression).
+/// Fits each regression at its choices on the given statistics (one set per regression).
 pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choices) -> Fit {
     let mut result = Fit {
         coefficients: BTreeMap::new(),
@@ -262,6 +267,8 @@ pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choice
         let prepared = PreparedRegression::new(block, moments, model);
         unmix(&prepared, choices, &mut result.coefficients);
         result.condition_number = result.condition_number.max(prepared.path.condition_number());
+        // A regressor is common to the axes of a block, so that their coefficients are collinear
+        // together.
         for group in prepared.path.collinear_groups(SELECTION.collinear) {
             result.collinear_groups.push(group.iter().map(|&i| joined(block, i)).collect());
         }
@@ -269,12 +276,12 @@ pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choice
     result
 }
 
-/// `Y_v, N_v`: the coefficients that share a regressor.
+/// Names of the coefficients that share a regressor, as `Y_v/N_v`.
 fn joined(block: &Block, i: usize) -> String {
     block.names.iter().map(|names| names[i].as_str()).collect::<Vec<_>>().join("/")
 }
 
-/// From what the regression solved for back to the coefficients of each axis.
+/// Transforms the unknowns of a regression back to the coefficients of each axis.
 fn unmix(
     prepared: &PreparedRegression<'_>,
     choices: &[RidgeChoice],
@@ -288,6 +295,8 @@ fn unmix(
         .enumerate()
         .map(|(t, choice)| prepared.path.residual_variance(t, *choice).sqrt())
         .collect();
+    // Standard deviations of posterior and prior for residuals of variance one, by target and
+    // regressor.
     let deviations: Vec<Vec<(f64, f64)>> =
         choices.iter().map(|choice| prepared.path.deviations(choice.lambda)).collect();
     let unmixing = &block.unmixing;
@@ -295,6 +304,8 @@ fn unmix(
         let solved = DVector::from_iterator(q, solutions.iter().map(|solution| solution[i]));
         let own = unmixing * solved;
         for axis in 0..q {
+            // Errors of different targets are treated as independent here; joint errors replace
+            // them where they are computed.
             let spread = |of: &dyn Fn(usize) -> f64| {
                 (0..q)
                     .map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2))

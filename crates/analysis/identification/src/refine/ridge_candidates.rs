@@ -1,4 +1,4 @@
-//! Candidates that are ridges, from the source outwards.
+//! Ridge candidates, from the source outwards.
 
 use rayon::prelude::*;
 use sistership_model::Model;
@@ -13,7 +13,7 @@ use super::simulated::{Simulated, simulate_training};
 use super::variant::Variant;
 use crate::constraints::LimitError;
 
-/// A ridge of a variant at its choices.
+/// Ridge of a variant at its choices, as a solution.
 struct RidgeSolution {
     variant: usize,
     choices: Choices,
@@ -24,6 +24,8 @@ impl Solution for RidgeSolution {
         let variant = &variants[self.variant];
         let all = variant.together(|_| true)?;
         let mut fitted = fit(&variant.blocks, &all, &variant.model, &self.choices);
+        // The condition numbers are those of the unconstrained fit; the coefficients become the
+        // nearest within the limits.
         if variant.limits.is_some() {
             let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
             fitted.coefficients = variant.solve(&fold, &self.choices)?;
@@ -44,10 +46,10 @@ impl Solution for RidgeSolution {
     }
 }
 
-/// The source as it is, where it keeps what the settings ask of a model.
+/// Returns the source as a candidate; a refused one if it does not keep the constraints.
 ///
 /// # Errors
-/// A trial lacks a channel.
+/// Returns an error if a trial lacks a channel.
 pub(super) fn source_candidate(
     problem: &Problem<'_>,
     variants: &[Variant],
@@ -60,10 +62,11 @@ pub(super) fn source_candidate(
     Ok(CandidateFit::new(problem, (SOURCE_STEP.into(), None), UnchangedSource, 0, simulated))
 }
 
-/// A ridge of a variant at its choices, each trial left out simulated by the model of its fold.
+/// Returns the ridge of a variant at its choices as a candidate, each held-out trial simulated by
+/// the model of its fold.
 ///
 /// # Errors
-/// A trial lacks a channel.
+/// Returns an error if a trial lacks a channel.
 pub(super) fn ridge_candidate(
     problem: &Problem<'_>,
     (name, lambda_min): (String, f64),
@@ -98,14 +101,14 @@ pub(super) fn ridge_candidate(
     Ok(CandidateFit { left_out: models, ..candidate })
 }
 
-/// What is done with a variant: its place, itself, its folds, and whom to tell how far it is.
+/// Work on a variant: its place and itself, its folds, and the callback for progress.
 pub(super) type WithFolds<'a> =
     &'a mut dyn FnMut((usize, &Variant), &[Fold<'_>], PartProgress<'_>) -> Result<(), RefineError>;
 
-/// Takes the variants one after the other, each with its folds.
+/// Does some work on each variant with its folds, one after the other.
 ///
 /// # Errors
-/// A fold has no sample, or as `work` says.
+/// Returns an error if a fold has no sample, or the error of `work`.
 pub(super) fn each_variant(
     problem: &Problem<'_>,
     variants: &[Variant],
@@ -120,7 +123,7 @@ pub(super) fn each_variant(
     Ok(())
 }
 
-/// How far a refinement is where so much of a variant is done: candidates are seven tenths of the
+/// Fraction of a refinement at the fraction `done` of a variant: candidates are seven tenths of the
 /// work.
 pub(super) fn share(index: usize, done: f64, variants: usize) -> f64 {
     0.1 + 0.7 / variants as f64 * (index as f64 + done)

@@ -1,5 +1,4 @@
-//! From a trial to the sufficient statistics of each regression: one-step differences against
-//! regressors.
+//! Sufficient statistics of each regression from a trial: one-step differences against regressors.
 
 use sistership_model::coefficient::Axis;
 use sistership_model::effect::input_channel;
@@ -10,14 +9,15 @@ use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use sistership_numerics::Moments;
 
-/// Samples evaluated at a time.
+/// Samples that the tape evaluates together.
 pub(super) const LANES: usize = 8;
 
-/// The statistics of one trial, one set for each regression. Accelerations are forward differences
-/// over `difference_s` (one sampling interval where absent); no difference reaches over a gap.
+/// Returns the statistics of one trial, one set for each regression. Accelerations are forward
+/// differences over `difference_s` (one sampling interval if it is `None`); no difference crosses a
+/// gap.
 ///
 /// # Errors
-/// Names the channel that the trial lacks.
+/// Returns an error with the channel that the trial lacks.
 pub fn trial_moments(
     blocks: &Blocks,
     trial: &Trial,
@@ -28,11 +28,11 @@ pub fn trial_moments(
     Ok(pairs.map(|(block, table)| Moments::of_columns(table, block.regressors())).collect())
 }
 
-/// The columns of each regression over the samples of a trial: regressors, then targets.
+/// Columns of a regression over the samples of a trial: regressors, then targets.
 pub type Table = Vec<Vec<f64>>;
 
-/// The samples behind [`trial_moments`], less accelerations that something beside the law gives:
-/// `known` has those of an axis at a sample, m/s2 (rad/s2).
+/// Returns the rows behind [`trial_moments`], less accelerations that have a cause outside the law:
+/// `known` gives those of an axis at a sample, m/s2 (rad/s2).
 ///
 /// # Errors
 /// As [`trial_moments`].
@@ -48,8 +48,8 @@ pub fn trial_tables(
     Ok(tables(blocks, &record, &pairs(trial, difference_s), &left))
 }
 
-/// The columns of each regression over the samples of a trial where the accelerations are known;
-/// `known` has those of an axis.
+/// Returns the rows of each regression over the samples of a trial for given accelerations; `known`
+/// has those of an axis.
 ///
 /// # Errors
 /// As [`trial_moments`].
@@ -66,12 +66,15 @@ pub(super) fn known_tables<'k>(
 /// The acceleration of an axis at a pair of samples.
 type Acceleration<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
 
+/// The rows of each regression over pairs of samples; regressors are evaluated at the first of a
+/// pair.
 fn tables(
     blocks: &Blocks,
     record: &RegressionRecord<'_>,
     pairs: &[(usize, usize)],
     acceleration: Acceleration<'_>,
 ) -> Vec<Table> {
+    // The tape evaluates a chunk of samples in the lanes of a vector.
     let mut tables: Vec<Table> =
         blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
     let mut work = Slots::default();
@@ -86,8 +89,10 @@ fn tables(
     tables
 }
 
-/// Samples and the later samples to which they are differenced.
+/// Pairs of samples for differences: each sample with the one `difference_s` later in the same
+/// part.
 fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
+    // At least one sampling interval, whatever the time is.
     let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);
     let within = |segment: std::ops::Range<usize>| {
         (segment.start..segment.end.saturating_sub(stride)).map(move |k| (k, k + stride))
@@ -98,25 +103,31 @@ fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
 /// The channels of a trial that regressions read.
 pub(super) struct RegressionRecord<'a> {
     t_s: &'a [f64],
-    /// What the tape takes: a recorded column or a constant.
+    /// Inputs of the tape: a recorded column (`Ok`) or a constant (`Err`).
     pub(super) columns: Vec<Result<&'a [f64], f64>>,
     /// Velocities by axis.
     velocities: [Option<&'a [f64]>; 4],
 }
 
 impl<'a> RegressionRecord<'a> {
+    /// Reads the channels that the regressions of a law need: velocities always, roll for laws with
+    /// roll, inputs as recorded or at their defaults.
     pub(super) fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
         let missing =
             |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
         let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));
+        // Roll and heading are zero where a law does not need them; laws with roll check them
+        // below.
         let or_zero = |channel: Channel| trial.channel(channel).ok_or(0.0);
         let mut columns = vec![Ok(need(Channel::U)?), Ok(need(Channel::V)?), Ok(need(Channel::R)?)];
         columns.extend([Channel::P, Channel::Phi, Channel::Psi].map(or_zero));
         for (name, default) in &blocks.inputs {
             let channel = input_channel(name);
             let recorded = channel.and_then(|channel| trial.channel(channel));
+            // The depth is a property of the whole trial, not a channel.
             let constant =
                 if channel == Some(Channel::Depth) { trial.depth_m.or(*default) } else { *default };
+            // A recorded channel has priority over the depth of the trial and over the default.
             columns.push(match (recorded, constant, channel) {
                 (Some(column), ..) => Ok(column),
                 (None, Some(value), _) => Err(value),
@@ -138,6 +149,8 @@ impl<'a> RegressionRecord<'a> {
         Ok(Self { t_s: &trial.t_s, columns, velocities })
     }
 
+    /// Loads the first samples of a chunk of pairs into lanes; a short chunk repeats its last
+    /// sample.
     pub(super) fn load(&self, chunk: &[(usize, usize)], lanes: &mut [Lanes<LANES>]) {
         for (lane, column) in lanes.iter_mut().zip(&self.columns) {
             *lane = std::array::from_fn(|i| {
@@ -147,12 +160,13 @@ impl<'a> RegressionRecord<'a> {
         }
     }
 
-    /// The velocity of an axis; none where it is not recorded.
+    /// The velocity of an axis; empty if it is not recorded.
     pub(super) fn velocity(&self, axis: Axis) -> &'a [f64] {
         self.velocities[axis as usize].unwrap_or_default()
     }
 
-    /// The acceleration of an axis between two samples.
+    /// The acceleration of an axis between two samples, m/s2 (rad/s2); 0 if the velocity is not
+    /// recorded.
     fn acceleration(&self, axis: Axis, (k, later): (usize, usize)) -> f64 {
         let velocity = self.velocities[axis as usize].unwrap_or_default();
         match (velocity.get(later), velocity.get(k)) {
@@ -162,7 +176,7 @@ impl<'a> RegressionRecord<'a> {
     }
 }
 
-/// Adds the rows of a chunk to a block's table.
+/// Appends the rows of a chunk to a block's table.
 fn append(
     blocks: &Blocks,
     block: &Block,
@@ -172,6 +186,7 @@ fn append(
     table: &mut [Vec<f64>],
 ) {
     let read = |output: usize| blocks.tape.read(output, work);
+    // A single uncoupled axis is divided by its mass, so that its target is an acceleration.
     let own_mass =
         if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
     let scale = read(block.scales[0]);
@@ -189,8 +204,8 @@ fn append(
     }
 }
 
-/// What the regressors must explain at a sample: mass times acceleration less the rest, for coupled
-/// axes solved for the accelerations.
+/// The targets at a sample: mass times acceleration less the rest; for axes that are solved
+/// together, accelerations less those that the rests cause.
 fn target(
     blocks: &Blocks,
     block: &Block,
@@ -213,9 +228,12 @@ fn target(
         return nalgebra::DVector::from_element(1, inertia - rests[0]);
     }
     let accelerations = nalgebra::DVector::from_iterator(q, (0..q).map(moved));
+    // Without rests no scale is divided by, which may be zero at rest.
     if rests.iter().all(|rest| *rest == 0.0) {
         return accelerations;
     }
+    // `M^-1 rest` from the mixing matrix `M^-1 diag(scale_k / scale_0)`: rests are divided by the
+    // ratios first.
     let ratios: Vec<f64> =
         block.scales.iter().map(|&scale| read(scale) / read(block.scales[0])).collect();
     let unscaled = nalgebra::DVector::from_iterator(

@@ -1,5 +1,5 @@
-//! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
-//! simulations of manoeuvres left out are best is taken.
+//! The whole refinement: an estimator gives candidates from the source outwards, and the one with
+//! the best simulations of held-out manoeuvres is chosen.
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -32,12 +32,12 @@ use sistership_priors::transfer::approach_of;
 /// Refines a source model against trials.
 ///
 /// # Errors
-/// Says which setting, trial or channel is at fault; never leaves a model half refined.
+/// Returns an error with the setting, trial or channel at fault; no model is left half refined.
 pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
     refine_watched(request, progress, &|_| ())
 }
 
-/// As [`refine`], and shows what `trajectory` and `cma-es` pass by.
+/// As [`refine`], with an observer of the iterates of `trajectory` and `cma-es`.
 ///
 /// # Errors
 /// As [`refine`].
@@ -52,6 +52,7 @@ pub fn refine_watched(
         let goes_on = |_, _: &str| progress(0.02, "where between source and estimate");
         weigh((&request, &known), Extent::Estimator, &goes_on)
     };
+    // The position of a mixture is chosen first, by complete evaluations at each position.
     let Some(position) = chosen(request.settings, weighed)? else {
         return with_candidates((request, &known), Extent::Estimator, progress, watch, finish);
     };
@@ -60,8 +61,9 @@ pub fn refine_watched(
     with_candidates((&request, &known), Extent::Estimator, progress, watch, finish)
 }
 
-/// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out.
-/// No model is made. What sources say is `known` where it has been asked for the same trials.
+/// Evaluates the source as it is, and the best fit to the given extent, on held-out manoeuvres,
+/// without making a model. `known` keeps the envelopes of sources for further requests on the same
+/// trials.
 ///
 /// # Errors
 /// As [`refine`].
@@ -77,7 +79,8 @@ pub fn weigh(
     with_candidates((request, known), extent, progress, &|_| (), weigh)
 }
 
-/// As [`weigh`], and as [`refine`] where what it tells is wanted.
+/// Evaluates candidates without making a model, and completes the refinement if `wanted` returns
+/// true for the evaluations.
 ///
 /// # Errors
 /// As [`refine`].
@@ -100,7 +103,8 @@ pub fn refine_wanted(
     with_candidates((request, known), Extent::Estimator, progress, &|_| (), both)
 }
 
-/// The model that a refinement gives, without standard manoeuvres, bands and what they refuse.
+/// Returns the model that a refinement gives, without standard manoeuvres, uncertainty bands and
+/// the checks on them.
 ///
 /// # Errors
 /// As [`refine`].
@@ -113,8 +117,7 @@ pub fn fit_model(request: &Request<'_>) -> Result<Model, RefineError> {
     with_candidates((request, &known), Extent::Estimator, &|_, _| true, &|_| (), fitted)
 }
 
-/// Sets the problem up, gives its candidates to the extent asked for, and does with them what
-/// `then` does.
+/// Sets up the problem, computes its candidates to the given extent, and passes them to `then`.
 fn with_candidates<T>(
     (request, known): (&Request<'_>, &SourceEnvelopes),
     extent: Extent,
@@ -130,13 +133,16 @@ fn with_candidates<T>(
     request.settings.check().map_err(refused)?;
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
+    // Parts of the work report overlapping fractions; users see them never decrease.
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
     let lpp_m = request.target.particular("lpp_m");
     let mut settings = resolved(request.settings, request.law, lpp_m, &whole);
     if settings.prior == Prior::Mixture {
+        // A stored version names its regressions; others are refused.
         let asked = settings.regressions_sha256.as_deref();
         settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
     }
+    // Parts must be known before the prior, whose measure depends on them.
     let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
@@ -149,7 +155,9 @@ fn with_candidates<T>(
         };
         steer_as_recorded(&mut transferred, request.target, &whole, window);
     }
+    // Parts replace whole trials in fit and comparison alike.
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
+    // A source with coefficients of zero is a placeholder and has no name.
     let named = Some(&*request.source.name).filter(|_| !is_empty(request.source));
     let source = settings.origin(named).to_owned();
     let (law, watch) = (request.law, Some(watch));
@@ -175,12 +183,13 @@ fn with_candidates<T>(
     if extent == Extent::Estimator {
         estimator.candidates(&problem, &variants, &mut candidates, progress)?;
     }
+    // After all candidates, since it excludes those that are far from the least error.
     compare_longer(&problem, &mut candidates)?;
     step(progress, 0.8, "fitting all trials")?;
     then(&problem, candidates, &variants, progress)
 }
 
-/// Gives a model the gear that the trials' rudders show.
+/// Sets a model's rudder rate to that of the recorded rudder movements, where these show it.
 fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], window: RateWindow) {
     let length_s = target.particular("lpp_m").zip(approach_of(trials));
     let rate =
@@ -191,7 +200,7 @@ fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], wind
     }
 }
 
-/// The trials that are kept out of fit and choice, and the others.
+/// Divides the trials into those that are kept out of fit and choice, and the others.
 fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
     let names = &request.settings.held_out;
     if let Some(unknown) =
@@ -208,8 +217,8 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
     Ok((judged, whole))
 }
 
-/// The settings with the times that depend on the ship filled in, so that a version records what
-/// was used.
+/// Returns the settings with the times that depend on the ship filled in, so that a version records
+/// those that were used.
 pub(super) fn resolved(
     settings: &Settings,
     law: &Law,

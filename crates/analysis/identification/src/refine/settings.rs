@@ -1,4 +1,4 @@
-//! What a refinement may be told.
+//! Settings of a refinement.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,14 +18,14 @@ pub enum Method {
     /// 5.4-5.17.
     #[default]
     Published,
-    /// The equations of motion integrated over windows with smooth bumps, nothing differentiated;
-    /// the same ridge.
+    /// The equations of motion integrated over windows with smooth bump functions, without
+    /// differentiation of measurements; the same ridge.
     Weak,
-    /// Simulated segments against the trials by forward sensitivities, started from the weak form
-    /// and held by it.
+    /// Simulated segments against the trials by forward sensitivities, started from the weak form,
+    /// which is also the prior.
     Trajectory,
-    /// Simulated subsequences against the trials by a random search with a covariance that adapts:
-    /// Miyauchi 2024, Eqs. 19-33.
+    /// Simulated subsequences against the trials by CMA-ES, a random search with an adapted
+    /// covariance: Miyauchi 2024, Eqs. 19-33.
     #[serde(rename = "cma-es")]
     CmaEs,
 }
@@ -49,34 +49,34 @@ impl Method {
         }
     }
 
-    /// Whether it keeps constraints: of linear regressions the nearest point within them is at
-    /// hand.
+    /// Returns true if the estimator keeps constraints: linear regressions do, since the nearest
+    /// point within the limits is a convex problem.
     pub(super) fn keeps_constraints(self) -> bool {
         matches!(self, Self::Published | Self::Weak)
     }
 }
 
-/// What the prior is about.
+/// Mean of the prior.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Prior {
-    /// The source, carried over to the ship.
+    /// The source model, transferred to the ship.
     #[default]
     Source,
-    /// The source and the estimate from particulars, weighted by how far each was from ships that
-    /// were left out (docs/evidence/strangers.md).
+    /// The source and the estimate from particulars, weighted by their errors on ships that were
+    /// left out (docs/evidence/strangers.md).
     Mixture,
-    /// What other ships say: their mean, held in each direction by how they differ
-    /// (docs/evidence/population.md). The source, which is of another law than what is fitted, says
-    /// at which states they are asked.
+    /// The mean of other ships, with their differences as covariance (docs/evidence/population.md).
+    /// The source, which must be of another law than the one fitted, determines the states at which
+    /// they are evaluated.
     Population,
 }
 
-/// Positions of a mixture among which trials choose where an order says nothing else: source,
-/// learned shares and estimate, and halfway between.
+/// Default positions of a mixture among which the trials choose: source, learned shares and
+/// estimate, and halfway between.
 const MIXTURE_POSITIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// What a refinement without a source is from.
+/// Origin of a refinement without a source.
 pub const TRIALS_ALONE: &str = "the trials alone";
 
 impl Prior {
@@ -118,22 +118,23 @@ pub struct Range {
     pub alpha_max: f64,
 }
 
-/// Settings of a refinement; every one is kept with the version.
+/// Settings of a refinement; all of them are stored with the version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "RefinementSettings")]
 pub struct Settings {
     /// The estimator.
     pub method: Method,
-    /// What the prior is about.
+    /// Mean of the prior.
     #[serde(skip_serializing_if = "Prior::is_source")]
     pub prior: Prior,
-    /// SHA-256 of the regressions by which a `mixture` estimates the ship. Where absent, those of
-    /// the program; nothing where the prior is the source.
+    /// SHA-256 of the regressions by which a `mixture` estimates the ship. Default: those of the
+    /// program. Not used if the prior is the source.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regressions_sha256: Option<String>,
-    /// Where the mean of a `mixture` may stand: 0 at the source, 0.5 where the learned shares put it,
-    /// 1 at the estimate. Of several the trials choose. Where an order leaves it empty, five of them.
+    /// Positions of the mean of a `mixture`: 0 at the source, 0.5 at the learned shares, 1 at the
+    /// estimate. Of several positions the trials choose one. Default of a new request: five
+    /// positions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 20), extend("items" = { "type": "number", "format": "double", "minimum": 0, "maximum": 1 }))]
     pub mixture_positions: Vec<f64>,
@@ -143,151 +144,152 @@ pub struct Settings {
     /// Values of lambda tried in a range, evenly spaced in their logarithm.
     #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
-    /// Time over which accelerations are differenced, s, at least one sampling interval. Where
-    /// absent, a tenth of the time in which the ship sails its length: what the instruments add at
-    /// a shorter one drowns the acceleration.
+    /// Time over which accelerations are differenced, s, at least one sampling interval. Default: a
+    /// tenth of the time in which the ship travels its own length, since at shorter times the noise
+    /// of the instruments exceeds the acceleration.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,
-    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails its
+    /// Length of the weak form's windows, s. Default: the time in which the ship travels its own
     /// length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub window_s: Option<f64>,
-    /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
+    /// Distance from one window of the weak form to the next, s. Default: a tenth of a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub hop_s: Option<f64>,
-    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the
-    /// ship sails its length; for the search ten times, and at least 100 s.
+    /// Length of the trajectory form's segments, s. Default: five times the time in which the ship
+    /// travels its own length; for `cma-es` ten times, and at least 100 s.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub segment_s: Option<f64>,
-    /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time
-    /// in which it sails its length; for the search one sampling interval.
+    /// Time from one residual of the trajectory form to the next, s. Default: a 7.5th of the time
+    /// in which the ship travels its own length; for `cma-es` one sampling interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub residual_s: Option<f64>,
-    /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
-    /// thirtieth of the time in which it sails its length; for the search a 75th, whole or in
-    /// whole parts of an interval.
+    /// Integration step of the trajectory form, s, rounded to sampling intervals. Default: a
+    /// thirtieth of the time in which the ship travels its own length; for `cma-es` a 75th, as a
+    /// multiple or a whole fraction of a sampling interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub step_s: Option<f64>,
-    /// Of the search; absent for other methods.
+    /// Settings of `cma-es`; absent for other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cma_es: Option<CmaEs>,
-    /// Families of terms among which the weak and the trajectory form choose. Where empty, all of
-    /// them.
+    /// Families of terms among which the weak and the trajectory form choose. Default: all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub families: Vec<Family>,
-    /// Strengths of the prior among which they choose, from the source outwards. Where empty, half
-    /// decades from 10 to 1e-8.
+    /// Strengths of the prior among which the weak and the trajectory form choose, from the source
+    /// outwards. Default: half decades from 10 to 1e-8.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
     pub strengths: Vec<f64>,
-    /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the
-    /// time in which the ship sails its length, or five times where the default search compares;
-    /// longer than a trial runs it whole.
+    /// Restart interval of simulations of held-out manoeuvres, s. Default: ten times the time in
+    /// which the ship travels its own length, or five times in the default search. An interval
+    /// longer than a trial simulates the trial as a whole.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
-    /// Longer restart intervals, s, at which manoeuvres left out are simulated, too: the error by
-    /// which candidates are compared is the geometric mean over all intervals. A simulation that
-    /// stops early counts there with what an unrelated motion would have. Where empty, `restart_s`
-    /// alone. The default search sets it.
+    /// Longer restart intervals, s, at which held-out manoeuvres are simulated as well: the error
+    /// by which candidates are compared is the geometric mean over all intervals. A simulation that
+    /// stops early counts there with the error of an unrelated motion. Default: `restart_s` alone.
+    /// The default search sets it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 10), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
     pub longer_restarts_s: Vec<f64>,
-    /// Such simulations start in, and are compared with, motions that are smoothed over so many
-    /// seconds: what one noisy reading does at the start of a simulation grows where a ship is
-    /// unstable on her course. Where absent, motions as recorded. The default search sets it.
+    /// Window, s, over which the motions are smoothed in which such simulations start and with
+    /// which they are compared: the effect of one noisy reading at the start of a simulation grows
+    /// if a ship is unstable on a straight course. Default: motions as recorded. The default search
+    /// sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub smoothing_s: Option<f64>,
-    /// Most folds; with more manoeuvres than that, several are left out together.
+    /// Largest number of folds; with more manoeuvres than that, several are held out together.
     #[schemars(range(min = 2, max = 100))]
     pub folds: usize,
-    /// Where trials are left out part by part, how long each part is, s, at least two of each trial.
-    /// Where absent, as long as simulations run between restarts. The default search sets it to ten
-    /// times the time in which the ship sails its length from three trials on.
+    /// Length of a part where trials are held out part by part, s; each trial has at least two
+    /// parts. Default: the restart interval. The default search sets it to ten times the time in
+    /// which the ship travels its own length if there are three trials or more.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub part_s: Option<f64>,
-    /// Trials are left out part by part, each as long as simulations run between restarts, and what
-    /// is taken must be clearly better than the source: for one or two trials, where leaving one
-    /// out leaves too little. The default search sets it.
+    /// Hold trials out part by part, and choose only a fit that is clearly better than the source:
+    /// for one or two trials, where holding a whole one out leaves too little. The default search
+    /// sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub in_parts: bool,
-    /// The steering gear's rate is read from the rudder's movements in the trials, where these show
-    /// it; else it is the source's, scaled. The default search sets it.
+    /// Read the steering gear's rate from the rudder's movements in the trials, where these show
+    /// it; otherwise it is the source's, scaled. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_from_trials: bool,
-    /// That rate is taken over as long a time as the noise of the rudder's readings asks for, not
-    /// by the ship's length alone. The default search sets it.
+    /// Choose the time over which that rate is read by the noise of the rudder's readings, not by
+    /// the ship's length alone. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_above_noise: bool,
-    /// Terms of an input that no trial records, such as the wind, are left out where the source has
-    /// none. The default search sets it.
+    /// Omit terms of an input that no trial records, such as the wind, where the source has none.
+    /// The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_terms: bool,
-    /// A source without roll takes the stiffness in roll from the ship's metacentric height, and a
-    /// usual damping, where the law that is fitted rolls and says the same in the plane. Every new
-    /// order has it, and the default search sets it.
+    /// Give a source without roll the stiffness in roll from the ship's metacentric height and a
+    /// typical damping, where the fitted law has roll and agrees with the source's law in surge,
+    /// sway and yaw. Every new request and the default search set it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub hydrostatic_roll: bool,
-    /// A source of another law that does not roll says sway and yaw, too, of a ship that stays
-    /// upright, where the law that is fitted couples them with roll, and roll begins with
-    /// hydrostatics. Every new order has it, and the default search sets it.
+    /// Use a 3-DOF source of another law as prior of sway and yaw, too, for a ship that stays
+    /// upright, where the fitted law couples them with roll; roll begins with hydrostatics. Every
+    /// new request and the default search set it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub plane_source: bool,
-    /// By how much stronger the prior of roll is than the likeliest by the trials, dimensionless.
-    /// The default search sets it where a model rolls over.
+    /// Strength of the prior of roll relative to the likeliest by the trials, dimensionless. The
+    /// default search sets it where a model capsizes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roll_strength: Option<f64>,
-    /// An estimate that stands in the source's place makes the approach speed at the revolutions that
-    /// the trials record, not at those that its own propeller needs. Every new order of a `mixture`
-    /// has it, and the default search sets it.
+    /// Let an estimate that replaces the source reach the approach speed at the revolutions that
+    /// the trials record, not at those that its own propeller needs. Every new request of a
+    /// `mixture` and the default search set it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub recorded_revolutions: bool,
-    /// The posterior is as wide as models are apart that each missed some of the trials, where that
-    /// is wider than the noise of the readings makes it. The default search sets it.
+    /// Widen the posterior to the scatter of models that each missed some of the trials, where that
+    /// is wider than the noise of the readings implies. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
-    /// That width is taken by the normal's quantile, not by Student's: it is a mean over the
+    /// Use the normal distribution's quantile for that width, not Student's: it is a mean over the
     /// figures of all standard manoeuvres. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub folds_pooled: bool,
-    /// No more is computed than the numbers need: simulations step as far as the ship's motion
-    /// allows, the weak form takes neighbouring samples in the mean, and the noise model is searched
-    /// in two rounds. The default search sets it.
+    /// Compute no more than the accuracy needs: simulations step as far as the ship's motion
+    /// allows, the weak form uses means of neighbouring samples, and the noise model is searched in
+    /// two rounds. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub economical: bool,
-    /// What late instruments would explain of the trials is learned from the rates that the filter
-    /// expects, not from those on the recorded path, whose noise is that of the readings: a right
-    /// model seems late by it. Every new order has it; docs/evidence/diagnosis_unseen.md.
+    /// Learn the effect of delayed instruments from the rates that the Kalman filter expects, not
+    /// from those on the recorded path, whose noise makes a right model seem delayed. Every new
+    /// request sets it; docs/evidence/diagnosis_unseen.md.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub expected_rates: bool,
-    /// How far readings are apart whose noise is new is asked of the trials as they were recorded,
-    /// and kept with what they leave open, so that later trials are read alike. Every new order has
-    /// it.
+    /// Determine the interval between readings with independent noise from the trials as they were
+    /// recorded, and store it with the model's uncertainty, so that later trials are read alike.
+    /// Every new request sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub reading_interval: bool,
-    /// The noise model of what the trials leave open is learned on whole trials of about so many
-    /// samples in all, those that differ most. Where absent, on all. The default search sets it.
+    /// Number of samples, about, of the whole trials on which the noise model is learned: those
+    /// trials that differ most. Default: all samples. The default search sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1))]
     pub calibration_samples: Option<usize>,
-    /// Names of trials that are kept out of fit and choice altogether, to be judged on.
+    /// Names of trials that are held out of fit and choice altogether, to judge the result.
     pub held_out: Vec<String>,
-    /// What the refined model must keep to.
+    /// Constraints on the refined model.
     #[serde(skip_serializing_if = "Constraints::is_empty")]
     pub constraints: Constraints,
-    /// How the posterior is sampled for the bands of the standard manoeuvres; no samples leave them
-    /// out.
+    /// Sampling of the posterior for the uncertainty bands of the standard manoeuvres; no samples,
+    /// no bands.
     pub bands: Sampling,
 }
 
 impl Default for Settings {
     fn default() -> Self {
+        // Each range reaches a decade further from the source, and allows a tenth more of alpha.
         let range = |exponent: i32| Range {
             lambda_min: 10_f64.powi(-exponent),
             lambda_max: 1e10,
@@ -336,7 +338,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// With what a new order means where it says nothing. Versions of before it was asked have none.
+    /// Returns the settings with the defaults of a new request. Settings of stored versions are
+    /// used as they are.
     pub fn as_ordered(mut self) -> Self {
         if self.prior == Prior::Mixture && self.mixture_positions.is_empty() {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
@@ -349,7 +352,8 @@ impl Settings {
         self
     }
 
-    /// Fills in what model selection chooses among, so that a version records it.
+    /// Fills in the families and strengths among which model selection chooses, so that a version
+    /// records them.
     pub(super) fn fill_selection(&mut self, families: &[Family]) {
         if self.families.is_empty() {
             self.families = families.to_vec();
@@ -359,8 +363,8 @@ impl Settings {
         }
     }
 
-    /// What a refinement by these settings is from, for people: the source by its name, or what
-    /// stands in its place; [`TRIALS_ALONE`] where there is no source.
+    /// Returns the origin of a refinement with these settings, for reports: the source's name, or
+    /// the prior that replaces it; [`TRIALS_ALONE`] if there is no source.
     pub fn origin<'a>(&self, source: Option<&'a str>) -> &'a str {
         match self.prior {
             Prior::Mixture if self.mixture_positions == [ESTIMATE_POSITION] => {
@@ -371,8 +375,9 @@ impl Settings {
         }
     }
 
-    /// Window in which motions are smoothed that errors on manoeuvres left out are against, s; those
-    /// on trials that are kept out are against motions as recorded.
+    /// Returns the smoothing window, s, of the motions with which simulations of held-out
+    /// manoeuvres are compared; errors on trials that are kept out altogether refer to motions as
+    /// recorded.
     pub fn compared_smoothing_s(&self) -> Option<f64> {
         self.smoothing_s.filter(|_| self.held_out.is_empty())
     }

@@ -1,4 +1,4 @@
-//! Whether settings can be used at all.
+//! Checks of settings.
 
 use super::cma_es::CmaEs;
 use super::outcome::RefineError;
@@ -9,18 +9,19 @@ use super::settings::{Prior, Range, Settings};
 pub struct SettingFault {
     /// The field.
     pub field: String,
-    /// What it may be.
+    /// Values that are allowed.
     pub message: String,
 }
 
 impl Settings {
-    /// Checks the numbers.
+    /// Checks that all settings are in range and consistent.
     ///
     /// # Errors
-    /// Every field that cannot be used, and what it may be.
+    /// Returns every field that cannot be used, with the values that are allowed.
     pub fn check(&self) -> Result<(), Vec<SettingFault>> {
         let fault =
             |field: &str, message: String| SettingFault { field: field.to_owned(), message };
+        // All rules are checked, so that one answer names every fault.
         let rules = [self.choices(), self.counts(), self.times()].concat();
         let broken = rules.into_iter().filter(|(.., is_kept)| !is_kept);
         let cma_es = self.cma_es.as_ref().map_or(Ok(()), CmaEs::check);
@@ -38,6 +39,7 @@ impl Settings {
         if all.is_empty() { Ok(()) } else { Err(all) }
     }
 
+    /// Rules for ranges, strengths and positions.
     fn choices(&self) -> Vec<Rule> {
         let is_ordered = |range: &Range| {
             range.lambda_min > 0.0
@@ -62,6 +64,7 @@ impl Settings {
         ]
     }
 
+    /// Rules for numbers of values, folds and samples, and for the methods that keep constraints.
     fn counts(&self) -> Vec<Rule> {
         let kept = self.method.keeps_constraints() || self.constraints.is_empty();
         vec![
@@ -72,6 +75,7 @@ impl Settings {
         ]
     }
 
+    /// Rules for times: all are above 0 s.
     fn times(&self) -> Vec<Rule> {
         let times = [
             ("difference_s", self.difference_s),
@@ -94,8 +98,9 @@ impl Settings {
     }
 }
 
-/// Faults as one error, named by the first.
+/// Combines faults into one error with the field of the first.
 pub(super) fn refused(faults: Vec<SettingFault>) -> RefineError {
+    // The error has one field; further faults follow in its message.
     let further =
         faults.iter().skip(1).map(|fault| format!("; {}: {}", fault.field, fault.message));
     let further: String = further.collect();
@@ -103,7 +108,7 @@ pub(super) fn refused(faults: Vec<SettingFault>) -> RefineError {
     RefineError::Setting { field, message: message + &further }
 }
 
-/// A field, what it may be, and whether it is.
+/// A rule: field, allowed values, and true if it is kept.
 type Rule = (&'static str, &'static str, bool);
 
 fn is_positive(value: &f64) -> bool {

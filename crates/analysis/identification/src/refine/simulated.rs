@@ -1,4 +1,4 @@
-//! Trials as simulated by models that did not see them.
+//! Simulations of held-out trials by models that were fitted without them.
 
 use rayon::prelude::*;
 use sistership_model::Model;
@@ -12,7 +12,7 @@ use super::outcome::RefineError;
 use super::problem::Problem;
 use sistership_priors::transfer::ready_for_sisters;
 
-/// Trials that are simulated in lockstep.
+/// Number of trials that are simulated in lockstep.
 const TOGETHER: usize = 8;
 
 /// The errors of simulated trials.
@@ -20,14 +20,15 @@ const TOGETHER: usize = 8;
 pub(super) struct Simulated {
     /// Squared errors over all trials.
     pub total: SquaredError,
-    /// Standardised errors at that interval; none of what cannot be simulated at all.
+    /// Standardised errors at the restart interval of the simulations; empty if the models cannot
+    /// be simulated at all.
     pub horizons: Vec<HorizonErrors>,
-    /// The first divergence.
+    /// First divergence, or the reason of a refusal.
     pub reason: Option<String>,
 }
 
 impl Simulated {
-    /// Of an option that is out of the question.
+    /// Creates the errors of an option that is refused without simulations.
     pub fn refused(reason: String) -> Self {
         Self { reason: Some(reason), ..Self::default() }
     }
@@ -37,6 +38,7 @@ impl Simulated {
         let each: Vec<SquaredError> =
             trials.iter().zip(runs).map(|(trial, run)| SquaredError::of(trial, run)).collect();
         each.iter().for_each(|error| total.add(error));
+        // A single stopped simulation excludes the candidate; its errors are kept for the report.
         let stopped = |(trial, run): (&&Trial, &Replay)| {
             Some(format!("{} {}", trial.name, run.stopped.as_ref()?))
         };
@@ -46,11 +48,12 @@ impl Simulated {
     }
 }
 
-/// Simulates what is fitted and left out, each with its model, at no finer steps than it takes and
-/// at the shortest restart interval; the first divergence is the reason against the candidate.
+/// Simulates the training trials, each by its model, at the shortest restart interval and at no
+/// finer steps than comparison needs; the first divergence is the reason against the candidate.
 ///
 /// # Errors
-/// A trial lacks a channel, or the models differ in more than their coefficients.
+/// Returns an error if a trial lacks a channel, or the models differ in more than their
+/// coefficients.
 pub(super) fn simulate_training(
     problem: &Problem<'_>,
     models: &[Model],
@@ -61,10 +64,11 @@ pub(super) fn simulate_training(
     simulate(problem, (&trials, how), models, model_of)
 }
 
-/// Simulates the same at the longer restart intervals, where a simulation that stops counts.
+/// Simulates the training trials at the longer restart intervals, where a simulation that stops
+/// counts as an error.
 ///
 /// # Errors
-/// As [`simulate_training`], and the models cannot be simulated.
+/// As [`simulate_training`]; also returns an error if the models cannot be simulated.
 pub(super) fn simulate_longer(
     problem: &Problem<'_>,
     models: &[Model],
@@ -82,7 +86,7 @@ pub(super) fn simulate_longer(
     problem.settings.longer_restarts_s.iter().map(one).collect()
 }
 
-/// Simulates trials, each with its model, at the shortest restart interval; the first divergence is
+/// Simulates trials, each by its model, at the shortest restart interval; the first divergence is
 /// the reason against the candidate.
 ///
 /// # Errors
@@ -100,6 +104,7 @@ pub(super) fn simulate_all(
 /// Trials with the restart interval and the longest step, s.
 type Simulation<'a> = (&'a [&'a Trial], (Option<f64>, f64));
 
+/// The errors of a simulation, refused if the models cannot be simulated.
 fn simulate(
     problem: &Problem<'_>,
     simulation: Simulation<'_>,
@@ -112,7 +117,7 @@ fn simulate(
     })
 }
 
-/// The simulations, or why the models cannot be simulated at all.
+/// The simulations, or the reason (inner error) why the models cannot be simulated at all.
 fn runs(
     problem: &Problem<'_>,
     (trials, (restart_s, step_s)): Simulation<'_>,
@@ -122,6 +127,8 @@ fn runs(
     let Some(first) = models.first().filter(|_| !trials.is_empty()) else {
         return Ok(Ok(Vec::new()));
     };
+    // Models of one candidate differ in their coefficients only, so that one ship with exchanged
+    // coefficients simulates all of them in lockstep.
     let ship = match ready_for_sisters(first, problem.law, trials) {
         Ok(ship) => ship,
         Err(error) => return Ok(Err(error.to_string())),
@@ -137,14 +144,15 @@ fn runs(
             .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })
     };
     let runs: Vec<Vec<Replay>> =
+        // Chunks are simulated in parallel and keep their order.
         all.par_chunks(TOGETHER).map(together).collect::<Result<_, _>>()?;
     Ok(Ok(runs.concat()))
 }
 
-/// The coefficients of models, as a ship with their law takes them.
+/// Returns the coefficients of models in the order of a ship with their law.
 ///
 /// # Errors
-/// They differ in more than their coefficients.
+/// Returns an error if the models differ in more than their coefficients.
 pub(super) fn sisters(ship: &Ship, models: &[Model]) -> Result<Vec<Vec<f64>>, RefineError> {
     let one = |model: &Model| {
         let differ = || {

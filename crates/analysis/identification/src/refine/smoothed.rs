@@ -1,4 +1,5 @@
-//! Recorded motions without most of what single readings scatter by: local quadratic regression.
+//! Smoothing of recorded motions by local quadratic regression, against the noise of single
+//! readings.
 //!
 //! A parabola is fitted by least squares to the readings about a time and read at that time
 //! (Cleveland 1979, J Am Stat Assoc 74, 829-836, section 2, with weights of one). Near an end of a
@@ -11,22 +12,24 @@ use sistership_model::trial::Channel;
 use sistership_simulation::error::wrapped;
 use sistership_simulation::state::RECORDED;
 
-/// Readings that tell a parabola from their scatter.
+/// Fewest readings that determine a parabola despite their noise.
 const LEAST: usize = 5;
 
-/// Whether a channel is of the ship's motion: what drives her has edges.
+/// Returns true if a channel belongs to the ship's motion. Inputs are not smoothed: they change
+/// abruptly.
 pub(super) fn is_motion(channel: Channel) -> bool {
     RECORDED.iter().any(|(recorded, _)| *recorded == channel)
 }
 
-/// The readings in a window about a time, and how much each counts.
+/// The readings in a window about a time, with their weights.
 pub(super) struct ReadingsAbout {
     range: Range<usize>,
     weights: Vec<f64>,
 }
 
 impl ReadingsAbout {
-    /// Those of a part of a record in a window of `window_s`; none where they are too few.
+    /// Selects the readings of a part of a record in a window of `window_s` about `t`; `None` if
+    /// they are too few.
     pub fn new(t_s: &[f64], part: &Range<usize>, t: f64, window_s: f64) -> Option<Self> {
         let range = within(t_s, part, t, window_s);
         if range.len() < LEAST {
@@ -36,19 +39,24 @@ impl ReadingsAbout {
             let s = (s - t) / window_s;
             Vector3::new(1.0, s, s * s)
         };
+        // Normal equations of the parabola in time scaled by the window, which keeps them well
+        // conditioned.
         let mut normal = Matrix3::zeros();
         for s in &t_s[range.clone()] {
             normal.ger(1.0, &powers(*s), &powers(*s), 1.0);
         }
-        // The parabola at the time is its constant.
+        // At `t` the parabola equals its constant term, so that the weights are the row of the
+        // least-squares solution that gives this term.
         let constant = normal.cholesky()?.solve(&Vector3::x());
         let weights = t_s[range.clone()].iter().map(|s| powers(*s).dot(&constant)).collect();
         Some(Self { range, weights })
     }
 
-    /// The parabola of a channel at the time.
+    /// Returns the value of the fitted parabola of a channel at the time.
     pub fn value(&self, channel: Channel, column: &[f64]) -> f64 {
         let readings = &column[self.range.clone()];
+        // Headings are differenced to a reading nearby, so that a jump from 180 to -180 deg does
+        // not matter.
         let near = readings[readings.len() / 2];
         let apart = |reading: &f64| match channel {
             Channel::Psi => wrapped(reading - near),
@@ -58,7 +66,8 @@ impl ReadingsAbout {
     }
 }
 
-/// Samples of a part in a window about a time, which ends where the part does.
+/// Samples of a part in a window about a time; near an end of the part the window is shifted
+/// inside.
 fn within(t_s: &[f64], part: &Range<usize>, t: f64, window_s: f64) -> Range<usize> {
     let times = &t_s[part.clone()];
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0..0 };

@@ -1,4 +1,4 @@
-//! Where a refinement starts: the model that the prior is about, and what that measures by.
+//! The starting point of a refinement: the model of the prior's mean, and the measure of the prior.
 
 use std::sync::Arc;
 
@@ -21,21 +21,22 @@ use sistership_numerics::merged;
 use sistership_priors::rolling::with_roll;
 use sistership_priors::transfer::Approach;
 
-/// What is refined, by which trials.
+/// The request and the trials by which it is refined.
 pub(super) struct Starting<'a> {
     pub request: &'a Request<'a>,
     pub known: &'a SourceEnvelopes,
-    /// The trials that have a say, whole.
+    /// The whole trials that are used.
     pub whole: &'a [&'a Trial],
     pub approach: Option<Approach>,
 }
 
 impl Starting<'_> {
-    /// What the prior is about: the source carried over, by its own law or as another law says what
-    /// it says.
+    /// Returns the mean of the prior, which is the transferred source or its regression on another
+    /// law, and the prior's measure.
     ///
     /// # Errors
-    /// The prior does not go with source or law, or the source cannot sail.
+    /// Returns an error if the prior does not suit the source or the law, or the source cannot be
+    /// simulated.
     pub fn prior(&self, in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
         let Request { target, source, source_law, law, settings, .. } = *self.request;
         match settings.prior {
@@ -43,9 +44,12 @@ impl Starting<'_> {
             Prior::Population => population::check(law, source_law)?,
             Prior::Source => {}
         }
+        // Without a law of its own the source has the law that is fitted.
         let Some(own) = source_law.filter(|own| own.name != law.name) else {
             return self.of_same_law(in_parts);
         };
+        // A law that agrees with the source's in the plane keeps the source's coefficients and adds
+        // roll from hydrostatics; no regression is needed.
         if settings.prior == Prior::Source && settings.hydrostatic_roll {
             let carried = across::carried_over((source, own), target, self.approach);
             if let Some(rolling) = with_roll((&carried, own), law, target, self.approach) {
@@ -56,6 +60,7 @@ impl Starting<'_> {
         self.of_another_law(own)
     }
 
+    /// The start from a source of the law that is fitted.
     fn of_same_law(&self, in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
         let Request { target, source, law, settings, .. } = *self.request;
         let mut carried = across::carried_over((source, law), target, self.approach);
@@ -69,6 +74,7 @@ impl Starting<'_> {
         Ok((carried, measure))
     }
 
+    /// The start from a source of another law.
     fn of_another_law(&self, own: &Law) -> Result<(Model, PriorMeasure), RefineError> {
         let Request { law, settings, .. } = *self.request;
         let (mut model, envelope) = match settings.prior {
@@ -90,13 +96,14 @@ impl Starting<'_> {
         Ok((model, PriorMeasure::Source(envelope)))
     }
 
+    /// A model without coefficients, and the envelope of the source.
     fn begun(&self, own: &Law) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
         let Request { target, source, law, .. } = *self.request;
         across::begun((source, own), law, target, self.approach, (self.whole, self.known))
     }
 
-    /// The envelope of a mixture; at its end that of the estimate, by its own manoeuvres, not those
-    /// of the source.
+    /// A model without coefficients, and the envelope of a mixture. At the end of the mixture it is
+    /// the envelope of the estimate by the estimate's own manoeuvres, not those of the source.
     fn mixed(&self, own: &Law) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
         let Request { target, law, settings, .. } = *self.request;
         let (model, envelope) = self.begun(own)?;
@@ -111,12 +118,14 @@ impl Starting<'_> {
         {
             mixture::turn_at(&mut estimated, n_rps);
         }
+        // The estimate's envelope is not shared: it depends on the ship's approach, not on a
+        // source.
         let of = (self.whole, &SourceEnvelopes::default());
         let (model, envelope) = across::begun((&estimated, own), law, target, self.approach, of)?;
         Ok((model, Arc::new(mixture::alone(Arc::unwrap_or_clone(envelope)))))
     }
 
-    /// What a population says at the states of a source's envelope, in place of what that says.
+    /// The start from a population at the states of a source's envelope, in place of that source.
     fn held_by_population(
         &self,
         mut model: Model,
@@ -134,7 +143,7 @@ impl Starting<'_> {
         Ok((model, measure))
     }
 
-    /// Where between source and estimate a mixture is.
+    /// Position of a mixture between source and estimate.
     fn position(&self) -> f64 {
         let asked = &self.request.settings.mixture_positions;
         asked.first().copied().unwrap_or(LEARNED_POSITION)

@@ -1,57 +1,58 @@
 //! Constants by which estimators are compared, with symbol, meaning, unit and source; each
-//! estimator has its own beside it.
+//! estimator has its own in its module.
 //!
-//! `L/U` is the time in which the ship sails its length at the approach speed of its trials. A
-//! source that begins with "chosen" has no measurement of how results move at half and at double
-//! the value: the reason that can be given is the one of the mathematics.
+//! `L/U` is the time in which the ship travels its own length at the approach speed of its trials.
+//! A source that begins with "chosen" has not been measured at half and at double the value; the
+//! reason given is a mathematical one.
 
-/// How candidates are compared and taken.
+/// Constants by which candidates are compared and chosen.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SelectionThresholds {
-    /// `r_e`: error by that of an earlier candidate below which a later one is better,
-    /// dimensionless. Source: chosen; less than one per cent is not told apart from chance.
+    /// `r_e`: ratio to the error of an earlier candidate below which a later one is better,
+    /// dimensionless. Source: chosen; a difference of less than one per cent is statistically tied.
     pub better: f64,
     /// `k_se`: standard errors of the difference over the trials by which a candidate with more
     /// coefficients must win, dimensionless. Source: decision 6, after the rule of one standard
     /// error (Breiman et al. 1984, section 3.4.3); it was settled while the errors of Paper V were
     /// in sight (`docs/evidence/estimators.md`).
     pub standard_errors: f64,
-    /// `lambda_h`: strength at which a source is kept as it is, dimensionless. Source: derived:
-    /// what the trials say counts for less than the rounding of its coefficients.
+    /// `lambda_h`: strength at which a source is kept as it is, dimensionless. Source: derived: the
+    /// effect of the trials is smaller than the rounding of its coefficients.
     pub held: f64,
     /// `s_l`: share of the strongest prior from which on it counts as reached, dimensionless.
-    /// Source: derived: 1 less what rounding takes from a strength that was spaced in its
-    /// logarithm.
+    /// Source: derived: 1 less the rounding of a strength that was spaced in its logarithm.
     pub strongest_share: f64,
-    /// `e_c`: eigenvalue by the largest below which regressors cannot be told apart, dimensionless.
-    /// Source: chosen; their coefficients then have a thousand times the standard error of the best
-    /// one.
+    /// `e_c`: ratio to the largest eigenvalue below which regressors cannot be distinguished,
+    /// dimensionless. Source: chosen; their coefficients then have a thousand times the standard
+    /// error of the best one.
     pub collinear: f64,
     /// `n_c`: samples for each coefficient of an axis where rows are differences, dimensionless;
-    /// windows count once. Source: chosen; neighbouring differences share most of what they say.
+    /// windows count once. Source: chosen; neighbouring differences share most of their
+    /// information.
     pub samples_a_coefficient: f64,
     /// `lambda_k`: strengths of the weak form from which trajectories start where effects are
     /// fitted with the coefficients, dimensionless. Source: chosen, half decades from 10 down to
     /// where trials alone decide.
     pub alternatives: [f64; 6],
-    /// `T_r`: how often simulations of trials left out start anew, by `L/U`, dimensionless. Source:
-    /// decision 2.
+    /// `T_r`: restart interval of simulations of held-out trials, in units of `L/U`, dimensionless.
+    /// Source: decision 2.
     pub restart: f64,
-    /// `g_s`: error at the shortest restart interval by the least of it up to which longer
-    /// simulations are made, dimensionless. Source: chosen: a ratio that trials tell apart; errors
-    /// on trials left out have standard errors of a tenth to a third of them.
+    /// `g_s`: ratio to the least error at the shortest restart interval up to which longer
+    /// simulations are made, dimensionless. Source: chosen: a ratio that trials distinguish; errors
+    /// on held-out trials have standard errors of a tenth to a third of them.
     pub near_least: f64,
-    /// `r_lambda`: how far strengths that asymmetric terms are tried with are from the best of
-    /// other terms, to both sides, dimensionless. Source: chosen: a decade, the next strengths of
-    /// those that the default search tries.
+    /// `r_lambda`: ratio of the strengths with which asymmetric terms are tried to the best
+    /// strength of other terms, to both sides, dimensionless. Source: chosen: a decade, the next
+    /// strengths of those that the default search tries.
     pub near_strength: f64,
     /// `n_h`: steps of the classical Runge-Kutta method in `L/U`, and samples that a simulation
     /// needs, a count. Source: derived: natural periods of roll are from half of `L/U` on, and a
     /// step is then a fifteenth of one.
     pub steps_a_length: f64,
     /// The same where the ship does not roll and no more is computed than needed, a count. Source:
-    /// derived: sway and yaw settle in some 0.3 `L/U`, of which a step is a fifth; what such a step
-    /// neglects, `(h/T)^5/120`, is 2e-6 of a motion. `docs/evidence/plain.md` has half and double.
+    /// derived: sway and yaw settle in some 0.3 `L/U`, of which a step is a fifth; the error of
+    /// such a step, `(h/T)^5/120`, is 2e-6 of a motion. `docs/evidence/plain.md` has half and
+    /// double.
     pub steps_a_length_economical: f64,
     /// `[lambda_0, lambda_1]`: range of roll's own strength, dimensionless. Source: chosen, from
     /// nothing to the common strength at which a source counts as much as all samples; the marginal
@@ -79,29 +80,28 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     roll_strength_count: 50,
 };
 
-/// Positions of a mixture between the source (0) and the estimate from particulars: where the
-/// learned shares put the mean, and the estimate.
+/// Position of the mean of least variance between the source (0) and the estimate from particulars.
 pub(super) const LEARNED_POSITION: f64 = 0.5;
-/// The estimate's end.
+/// Position of the estimate from particulars.
 pub(super) const ESTIMATE_POSITION: f64 = 1.0;
 
-/// How far what is said of a ship's acceleration is from the truth, by the mean square of that
-/// acceleration over its standard manoeuvres, dimensionless.
+/// Covariance of the errors of a source and an estimate in a ship's acceleration, relative to the
+/// mean square of that acceleration over its standard manoeuvres, dimensionless.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Misfit {
     /// Mean square of the source's error.
     pub source: f64,
-    /// That of the estimate's.
+    /// Mean square of the estimate's error.
     pub estimate: f64,
-    /// Mean product of both.
+    /// Mean product of both errors.
     pub common: f64,
 }
 
-/// How the prior's parts are weighted.
+/// Constants by which the parts of a mixture are weighted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MixtureThresholds {
-    /// `C_a`: covariance of both errors by axis, in the order of `Axis`; none of roll, of which an
-    /// estimate says nothing. Source: medians over the zoo's ships for work, each left out
+    /// `C_a`: covariance of both errors by axis, in the order of `Axis`; none for roll, on which an
+    /// estimate gives no information. Source: medians over the zoo's ships for work, each left out
     /// (`cargo run -p sistership-tests --example strangers -- misfit`, docs/evidence/strangers.md).
     pub misfit: [Option<Misfit>; 4],
 }
@@ -116,15 +116,16 @@ pub(super) const MIXTURE: MixtureThresholds = MixtureThresholds {
     ],
 };
 
-/// How ships become a prior.
+/// Constants by which ships become a prior.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PopulationThresholds {
-    /// `e`: share of the prior's variance outside what the ships differ by, dimensionless. Source:
-    /// `docs/evidence/population.md`, which has a tenth and three times it.
+    /// `e`: share of the prior's variance in directions in which the ships do not differ,
+    /// dimensionless. Source: `docs/evidence/population.md`, which has a tenth and three times it.
     pub outside: f64,
-    /// Fewest ships, a count. Source: chosen: a scatter of fewer says little.
+    /// Fewest ships, a count. Source: chosen: a scatter of fewer has little information.
     pub least: usize,
-    /// Rounds in which a robust mean is sought, a count. Source: chosen; by then it stands still.
+    /// Rounds of the iteration for a robust mean, a count. Source: chosen; it has converged by
+    /// then.
     pub rounds: usize,
 }
 
@@ -132,29 +133,29 @@ pub(super) struct PopulationThresholds {
 pub(super) const POPULATION: PopulationThresholds =
     PopulationThresholds { outside: 0.1, least: 5, rounds: 10 };
 
-/// What a source is asked, and how far its answers are believed.
+/// Constants of the evaluation of a source, and of the weight of its accelerations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SourceThresholds {
-    /// `n_s`: most samples of a trial or manoeuvre, a count. Source: chosen; neighbours say the
-    /// same.
+    /// `n_s`: largest number of samples of a trial or manoeuvre, a count. Source: chosen;
+    /// neighbours have the same information.
     pub samples: usize,
-    /// `s_U`: speed by that of the approach below which a law that is expanded about it says
-    /// nothing, dimensionless. Source: decision 15 ("those below 0.3 of it"); chosen.
+    /// `s_U`: share of the approach speed below which a law that is expanded about it does not
+    /// hold, dimensionless. Source: decision 15 ("those below 0.3 of it"); chosen.
     pub least_speed: f64,
-    /// `e_r`: regressor by the largest below which it is rounding, dimensionless. Source: derived:
-    /// some hundred times the spacing of doubles.
+    /// `e_r`: ratio to the largest regressor below which one is rounding error, dimensionless.
+    /// Source: derived: some hundred times the spacing of doubles.
     pub rounding: f64,
-    /// `n_f`: groups that are left out together at most so many times, a count. Source: chosen, as
-    /// many as the default folds.
+    /// `n_f`: largest number of folds of groups, a count. Source: chosen, as many as the default
+    /// folds.
     pub folds: usize,
-    /// `c_D`: how strongly a coefficient is held of which the source says nothing, by one of which
-    /// it says all, dimensionless. Source: the Esso Osaka trials, few fitted and the others
-    /// simulated (`cargo test --release -p sistership-tests --test accuracy another_law --
-    /// --nocapture`): with 0.3 and 0.03 errors are alike, and more files leave the physical range
-    /// (`docs/evidence/across_laws.md`).
+    /// `c_D`: strength of the prior on a coefficient on which the source has no information,
+    /// relative to one that it determines, dimensionless. Source: the Esso Osaka trials, few fitted
+    /// and the others simulated (`cargo test --release -p sistership-tests --test accuracy
+    /// another_law -- --nocapture`): with 0.3 and 0.03 errors are alike, and more files leave the
+    /// physical range (`docs/evidence/across_laws.md`).
     pub ignorance: f64,
     /// `lambda_z`: strengths of the ridge about zero that are tried, dimensionless. Source: chosen,
-    /// decades; groups left out choose among them.
+    /// decades; held-out groups decide among them.
     pub ridges: [f64; 8],
 }
 
@@ -168,16 +169,16 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
     ridges: [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8],
 };
 
-/// Rudders that no trial had, under which the models of folds are compared.
+/// Constants of the rudder orders that no trial had, under which the models of folds are compared.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HelmThresholds {
     /// Records, a count. Source: chosen; half and double are not measured yet.
     pub records: usize,
-    /// `T_h`: how long each lasts, by `L/U`, dimensionless. Source: [`SelectionThresholds::restart`];
-    /// half and double are not measured yet.
+    /// `T_h`: duration of each record, in units of `L/U`, dimensionless. Source:
+    /// [`SelectionThresholds::restart`]; half and double are not measured yet.
     pub lengths: f64,
-    /// Samples in `L/U`, a count. Source: chosen; states are compared there, steps are those of
-    /// every simulation.
+    /// Samples in `L/U`, a count. Source: chosen; states are compared there, while the steps are
+    /// those of every simulation.
     pub samples_a_length: f64,
     /// Shortest and longest time for which an order is held, by `L/U`, dimensionless. Source:
     /// chosen: a zigzag holds its rudder for two to three, and a turn is steady after five.

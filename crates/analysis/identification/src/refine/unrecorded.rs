@@ -1,10 +1,10 @@
-//! Terms of what no trial records.
+//! Terms of inputs that no trial records.
 //!
-//! A law may take the wind, or another input, at a default where nobody records it. What its terms
-//! then say of the ship is what other terms say, too: in still air the apparent wind is the ship's
-//! own speed. Fitted all the same, they would take over a part of the hull's forces, and give
-//! nonsense in the first trial that records the input. So a model that knows nothing of them yet is
-//! fitted without them.
+//! A law may take the wind, or another input, at a default if it is not recorded. Its terms are
+//! then redundant with other terms: in still air the apparent wind is the ship's own speed. If they
+//! were fitted, they would take over a part of the hull's forces, and give wrong forces in the
+//! first trial that records the input. A model that has no values for them is therefore fitted
+//! without them.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use sistership_model::effect::input_channel;
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial};
 
-/// Takes the coefficients out of a model that are zero and whose terms depend on an input that no
+/// Removes the coefficients from a model that are zero and whose terms depend on an input that no
 /// trial records.
 pub(super) fn forget(model: &mut Model, law: &Law, trials: &[&Trial]) {
     let unrecorded = unrecorded(law, trials);
@@ -25,7 +25,7 @@ pub(super) fn forget(model: &mut Model, law: &Law, trials: &[&Trial]) {
     model.coefficients.retain(|name, quantity| quantity.value != 0.0 || !depends(name));
 }
 
-/// Inputs with a default whose channel no trial has.
+/// Names of the inputs with a default whose channel no trial has.
 fn unrecorded<'a>(law: &'a Law, trials: &[&Trial]) -> BTreeSet<&'a str> {
     let nowhere = |name: &str| {
         input_channel(name)
@@ -35,7 +35,7 @@ fn unrecorded<'a>(law: &'a Law, trials: &[&Trial]) -> BTreeSet<&'a str> {
     inputs.map(|(name, _)| name.as_str()).collect()
 }
 
-/// Whether a formula depends on any of some inputs, by the law's values too.
+/// Returns true if a formula depends on any of some inputs, directly or by the law's values.
 fn mentions(formula: &Expr, law: &Law, inputs: &BTreeSet<&str>) -> bool {
     formula.names().into_iter().any(|name| {
         inputs.contains(name)

@@ -1,4 +1,5 @@
-//! The term families of a refinement, each with its regressions, statistics and training sets.
+//! Variants of a refinement: one for each family of terms, with its regressions, statistics and
+//! training sets.
 
 use std::collections::BTreeMap;
 
@@ -23,28 +24,28 @@ use super::thresholds::SELECTION;
 use crate::constraints::{CoefficientLimits, LimitError};
 use sistership_numerics::{Moments, RidgeChoice, merged};
 
-/// One family of terms.
+/// A variant: one family of terms with its regressions.
 pub(super) struct Variant {
-    /// Which.
+    /// Family of terms.
     pub family: Family,
-    /// The source carried over, with these terms.
+    /// Transferred source with these terms.
     pub model: Model,
     /// Its regressions.
     pub blocks: Blocks,
-    /// How its rows were made.
+    /// Method by which its rows were made.
     pub equations: Equations,
     /// Its statistics, by trial and regression.
     pub moments: Vec<Vec<Moments>>,
-    /// What its coefficients must keep to, if anything.
+    /// Limits of its coefficients, if any.
     pub limits: Option<CoefficientLimits>,
 }
 
 impl Variant {
-    /// A family's, for a model with its terms.
+    /// Creates the variant of a family for a model with its terms.
     ///
     /// # Errors
-    /// The trials lack a channel or have too few samples, or the constraints name what the model
-    /// lacks.
+    /// Returns an error if the trials lack a channel or have too few samples, or the constraints
+    /// refer to a coefficient that the model does not have.
     fn new(
         problem: &Problem<'_>,
         equations: Equations,
@@ -53,6 +54,7 @@ impl Variant {
     ) -> Result<Self, RefineError> {
         let mut blocks = Blocks::new(&model, problem.law)?;
         let moments = moments(problem, equations, &blocks)?;
+        // The prior may set coefficients of the model, so that the limits are built after it.
         if let Some(all) = merged(&moments, |_| true) {
             problem.measure.hold(&mut blocks, &mut model, &all)?;
         }
@@ -60,10 +62,10 @@ impl Variant {
         Ok(Self { family, model, blocks, equations, moments, limits })
     }
 
-    /// Coefficients fitted by a training set, within the limits.
+    /// Returns the coefficients fitted on a training set, within the limits.
     ///
     /// # Errors
-    /// Names the limits that cannot be kept together.
+    /// Returns an error with the limits that cannot be kept together.
     pub fn solve(
         &self,
         fold: &Fold<'_>,
@@ -74,6 +76,7 @@ impl Variant {
         let (names, curvature) = fold.curvature(choices);
         let solution = fitted.iter().map(|(name, fitted)| (name.clone(), fitted.value)).collect();
         let prior = |name: &str| fitted.get(name).map_or(0.0, |fitted| fitted.prior_deviation);
+        // Standard errors remain those of the unconstrained solution.
         let nearest = limits.nearest(&solution, &names, &curvature, &prior)?;
         nearest.into_iter().for_each(|(name, value)| {
             fitted.get_mut(&name).into_iter().for_each(|fitted| fitted.value = value);
@@ -81,10 +84,10 @@ impl Variant {
         Ok(fitted)
     }
 
-    /// The statistics of some trials together, one set for each regression.
+    /// Returns the statistics of some trials together, one set for each regression.
     ///
     /// # Errors
-    /// They have no sample.
+    /// Returns an error if the trials have no sample.
     pub fn together(&self, keep: impl Fn(usize) -> bool) -> Result<Vec<Moments>, RefineError> {
         merged(&self.moments, keep)
             .ok_or_else(|| RefineError::Data("the trials have no sample".into()))
@@ -99,7 +102,7 @@ impl Variant {
         model
     }
 
-    /// How far a ridge's coefficients on all trials may be from the truth.
+    /// Joint errors of a ridge's coefficients on all trials.
     pub fn errors(
         &self,
         training: &[&Trial],
@@ -109,8 +112,8 @@ impl Variant {
         errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices).map(Some)
     }
 
-    /// The rows behind the statistics. Differences of neighbouring samples share most of what they
-    /// say: they are merged over the time of a difference.
+    /// The rows behind the statistics. Differences of neighbouring samples share most of their
+    /// information: they are merged over the time of a difference.
     fn rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
         let parts = |trial: &&Trial| {
             trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>()
@@ -119,14 +122,16 @@ impl Variant {
             training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
         let one = |part: &Trial| self.equations.tables(&self.blocks, part);
         let tables: Vec<Vec<Table>> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
+        // All trials are assumed to have the sampling interval of the first part.
         let dependent = self.equations.dependent_rows(parts.first().map_or(1.0, Trial::interval_s));
         Ok(rows(&self.blocks, &tables, dependent, self.equations.are_differences()))
     }
 
-    /// Training sets with whole manoeuvres left out; a single trial can only judge itself.
+    /// Returns the training set of each fold, with its trials held out; a single trial is fitted
+    /// and judged at once.
     ///
     /// # Errors
-    /// A fold has no sample.
+    /// Returns an error if a fold has no sample.
     pub fn folds(&self, problem: &Problem<'_>) -> Result<Vec<Fold<'_>>, RefineError> {
         let nothing = || RefineError::Data("a fold has no sample".into());
         let one = |fold: usize| {
@@ -139,14 +144,15 @@ impl Variant {
         (0..problem.fold_count()).into_par_iter().map(one).collect()
     }
 
-    /// The same strength for every acceleration but roll's: of roll a source of the plane says
-    /// nothing, so that its strength is the one with the greatest marginal likelihood on all
-    /// training samples. Windows left out would do only where every fold keeps something that
-    /// excites roll. `roll` is by how much stronger than that.
+    /// Returns the same strength for every acceleration but that of roll. A source of the plane
+    /// gives no information on roll, so that its strength is the one with the greatest marginal
+    /// likelihood on all training samples; held-out windows could choose it only if every fold kept
+    /// something that excites roll. `roll` multiplies this strength.
     pub fn common_choices(&self, lambda: f64, roll: f64) -> Result<Choices, RefineError> {
         let blocks = &self.blocks.blocks;
         let [lambda_min, lambda_max] = SELECTION.roll_strengths;
         let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
+        // `tuned` is read for roll only, so that it may be empty for laws without roll.
         let tuned = if blocks.iter().any(|block| block.axes.contains(&Axis::K)) {
             most_likely(
                 &self.blocks,
@@ -168,11 +174,11 @@ impl Variant {
     }
 }
 
-/// The families that the settings name and that differ from each other; one that has too few
-/// samples, or of a blank law no coefficient, is left out.
+/// Returns the variants of the families in the settings that differ from each other. A family with
+/// too few samples, or without a coefficient of a blank law, is omitted.
 ///
 /// # Errors
-/// As of the first family, where none is left.
+/// Returns the error of the first omitted family if none remains.
 pub(super) fn variants(
     problem: &Problem<'_>,
     equations: Equations,
@@ -184,6 +190,7 @@ pub(super) fn variants(
         let Some(model) = family.of(&problem.transferred, problem.law) else { continue };
         match Variant::new(problem, equations, family, model) {
             Ok(variant) => variants.push(variant),
+            // Too little data for one family is no error as long as another one can be fitted.
             Err(error @ RefineError::Data(_)) => drop(lacking.get_or_insert(error)),
             Err(error) => return Err(error),
         }
@@ -191,7 +198,7 @@ pub(super) fn variants(
     lacking.filter(|_| variants.is_empty()).map_or(Ok(variants), Err)
 }
 
-/// What the settings ask of a model's coefficients.
+/// The limits that the settings set on a model's coefficients, over the speeds of the whole trials.
 fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimits>, RefineError> {
     let asked = &problem.settings.constraints;
     if asked.is_empty() {
@@ -219,7 +226,8 @@ fn moments(
         problem.training.par_iter().map(one).collect::<Result<_, _>>()?;
     let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
     let widest = blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
-    // A prior as strong as a source's lets rows be fewer than coefficients.
+    // With the prior of a source of another law, or of a population, rows may be fewer than
+    // coefficients.
     let least = if problem.measure.is_source() { 1.0 } else { equations.least_samples(widest) };
     if samples < least {
         let message = format!(

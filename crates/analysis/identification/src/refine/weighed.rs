@@ -1,4 +1,4 @@
-//! Candidates as they are weighed against those of other sources, laws and estimators.
+//! Evaluations by which candidates are compared with those of other sources, laws and estimators.
 
 use std::collections::BTreeMap;
 
@@ -11,41 +11,41 @@ use super::fold_variance::fold_variance;
 use super::problem::Problem;
 use super::variant::Variant;
 
-/// How much of a refinement is done before its candidates are weighed.
+/// Extent of a refinement before its candidates are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// The source as carried over.
+    /// The transferred source alone.
     Source,
-    /// Everything that the estimator tries.
+    /// All candidates of the estimator.
     Estimator,
 }
 
-/// What a candidate gives on manoeuvres left out. The scales are the deviations of the measured
-/// channels over all trials fitted, so that candidates on the same trials can be compared whatever
-/// their source, law and estimator.
+/// Evaluation of a candidate on held-out manoeuvres. Errors are scaled by the standard deviations
+/// of the measured channels over all training trials, so that candidates on the same trials can be
+/// compared whatever their source, law and estimator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weighed {
-    /// What it is, for people.
+    /// Name for reports.
     pub step: String,
-    /// Standardised mean squared error, the geometric mean over restart intervals; none where a
+    /// Standardised mean squared error, the geometric mean over restart intervals; none if a
     /// simulation diverged at the shortest.
     pub error: Option<f64>,
-    /// That at the shortest restart interval.
+    /// Error at the shortest restart interval.
     pub shortest: Option<f64>,
-    /// The same by trial.
+    /// Error by trial.
     pub each: BTreeMap<String, f64>,
-    /// Jackknife variance of what is simulated under rudders that no trial had, on the same scales:
-    /// 0 of the source as carried over, infinite where a fold does not sail, none where folds made
-    /// no models.
+    /// Jackknife variance of the states that are simulated under rudder orders that no trial had,
+    /// on the same scales: 0 for the transferred source, infinite if a fold's model cannot be
+    /// simulated to the end, none if folds have no models.
     pub variance: Option<f64>,
-    /// Number of coefficients fitted; 0 of the source as carried over.
+    /// Number of fitted coefficients; 0 for the transferred source.
     pub coefficients: usize,
-    /// Of a ridge, its family of terms and the strength of its prior.
+    /// Family of terms and strength of the prior, for a ridge.
     pub ridge: Option<(Family, f64)>,
-    /// The model of each fold, fitted without it; none of the source as carried over, and where
-    /// trials were held out in parts.
+    /// Model of each fold, fitted without it; empty for the transferred source, and if trials were
+    /// held out in parts.
     pub folds: Vec<FoldModel>,
-    /// Why it cannot be taken, if so.
+    /// Reason why it cannot be chosen, if any.
     pub reason: Option<String>,
 }
 
@@ -54,12 +54,12 @@ pub struct Weighed {
 pub struct FoldModel {
     /// The model.
     pub model: Model,
-    /// The places of those trials among the ones that have a say.
+    /// Places of those trials among the trials that are used.
     pub held_out: Vec<usize>,
 }
 
 impl Weighed {
-    /// What cannot be fitted.
+    /// Returns the evaluation of a candidate that cannot be fitted.
     pub fn refused(reason: String) -> Self {
         Self {
             step: String::new(),
@@ -75,7 +75,8 @@ impl Weighed {
     }
 }
 
-/// The source, and the best of the others where there is one; where all of them diverge, the first.
+/// Returns the evaluations of the source and of the best other candidate; if all others diverge, of
+/// the first of them.
 pub(super) fn weighed(
     problem: &Problem<'_>,
     candidates: &[CandidateFit],
@@ -86,6 +87,7 @@ pub(super) fn weighed(
     std::iter::once(source).chain(fit).map(|candidate| one(problem, candidate, variants)).collect()
 }
 
+/// Evaluation of one candidate.
 fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) -> Weighed {
     let ridge =
         |(place, _): (usize, _)| Some((variants.get(place)?.family, candidate.option.lambda_min?));
@@ -94,6 +96,7 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
         error: candidate.option.error.filter(|error| error.is_finite()),
         shortest: candidate.horizons.first().map(|horizon| horizon.mean),
         each: by_trial(problem, &candidate.each),
+        // The source is no fit, so that no trial affects it.
         variance: match candidate.size {
             0 => Some(0.0),
             _ => fold_variance(problem, &candidate.left_out),
@@ -105,6 +108,8 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
     }
 }
 
+/// Models of the folds with the trials that each was fitted without; none if trials were held out
+/// in parts, since every model has then seen a part of each trial.
 fn folds(problem: &Problem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
     if problem.training.len() != problem.whole.len() || problem.training.len() < 2 {
         return Vec::new();
@@ -117,8 +122,8 @@ fn folds(problem: &Problem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
     left_out.iter().enumerate().map(one).collect()
 }
 
-/// Means by trial: parts of one count together, for they depend on each other; of one or two trials
-/// there is nothing else to tell a scatter from.
+/// Mean errors by trial. Parts of one trial count together, since they depend on each other, unless
+/// only parts of one or two trials can show a scatter.
 fn by_trial(problem: &Problem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
     if problem.settings.in_parts {
         let named = |(k, (trial, error)): (usize, (&&Trial, &f64))| {

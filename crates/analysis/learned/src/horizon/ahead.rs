@@ -1,4 +1,4 @@
-//! The tracks that a foundation draws ahead from each of some samples of a trial.
+//! Tracks that a foundation predicts from samples of a trial.
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Ship;
@@ -7,11 +7,12 @@ use sistership_simulation::state::StateVector;
 
 use super::error::HorizonError;
 
-/// The states one to so many samples after each of the given ones, under the recorded orders and
-/// the wind of the instant of the prediction: nobody knows that of later.
+/// Returns the states at the next `steps` samples after each of the given ones, under the recorded
+/// orders and the wind at the instant of the prediction: later wind is not known then.
 ///
 /// # Errors
-/// Names the channel that the trial lacks, or the sample from which the foundation cannot sail.
+/// Returns an error that names the missing channel, or the sample from which the foundation cannot
+/// be simulated.
 pub fn ahead(
     ship: &Ship,
     trial: &Trial,
@@ -24,6 +25,7 @@ pub fn ahead(
     let replays = replay_all(ship, &recorded, &ReplaySettings::default())?;
     let of = |(replay, k): (sistership_simulation::recorded::Replay, &usize)| {
         let (trial, t_s) = (trial.name.clone(), trial.t_s[*k]);
+        // A track that ends early gives no example.
         if replay.stopped.is_some() || replay.track.states.len() != steps + 1 {
             return Err(HorizonError::Stopped { trial, t_s });
         }
@@ -35,7 +37,7 @@ pub fn ahead(
     replays.into_iter().zip(starts).map(of).collect()
 }
 
-/// A part of a trial in which the wind is that of its first sample.
+/// Part of a trial with the wind of its first sample throughout.
 fn part(trial: &Trial, start: usize, steps: usize) -> Trial {
     let own = start..=start + steps;
     let wind = [
@@ -45,6 +47,7 @@ fn part(trial: &Trial, start: usize, steps: usize) -> Trial {
         Channel::ApparentWindFrom,
     ];
     let of = |(channel, column): (&Channel, &Vec<f64>)| {
+        // Later wind is unknown at the instant of the prediction; the orders are known.
         let kept = if wind.contains(channel) {
             vec![column[start]; steps + 1]
         } else {

@@ -1,8 +1,8 @@
-//! The ship's axes at the instant of a prediction: Kanazawa 2023, Eq. 4.1.
+//! Ship's axes at the instant of a prediction: Kanazawa 2023, Eq. 4.1.
 
 use sistership_simulation::state::{StateVector, at};
 
-/// Axes ahead and to starboard from where the ship is.
+/// Axes ahead and to starboard, with origin at the ship.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axes {
     origin: [f64; 2],
@@ -10,25 +10,25 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// Those of a ship at a state.
+    /// Creates the axes of a ship at a state.
     pub fn of(state: &StateVector) -> Self {
         Self { origin: [state[at::X], state[at::Y]], psi_rad: state[at::PSI] }
     }
 
-    /// How far ahead and to starboard a position is, m.
+    /// Position in the axes, ahead and to starboard, m.
     pub fn seen(&self, north_m: f64, east_m: f64) -> [f64; 2] {
         let (sin, cos) = self.psi_rad.sin_cos();
         let (north, east) = (north_m - self.origin[0], east_m - self.origin[1]);
         [cos * north + sin * east, cos * east - sin * north]
     }
 
-    /// Where that is, north and east, m.
+    /// Position north and east, m, of a position in the axes.
     pub fn there(&self, [ahead, aside]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.psi_rad.sin_cos();
         [self.origin[0] + cos * ahead - sin * aside, self.origin[1] + sin * ahead + cos * aside]
     }
 
-    /// How far a heading is from the ship's own, rad.
+    /// Heading relative to the ship's own, rad.
     pub fn turned(&self, psi_rad: f64) -> f64 {
         psi_rad - self.psi_rad
     }

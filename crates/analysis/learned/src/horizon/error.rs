@@ -1,19 +1,19 @@
-//! Why nothing can be learned or predicted over a horizon.
+//! Errors of learning and prediction over a horizon.
 
 use sistership_simulation::recorded::MissingChannel;
 
-/// Why nothing can be learned or predicted over a horizon.
+/// Error of learning or prediction over a horizon.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HorizonError {
     /// A channel is missing.
     #[error(transparent)]
     Channel(#[from] MissingChannel),
-    /// What was recorded, or the foundation's track from there, is no number.
+    /// A recorded value, or the foundation's track from there, is not a finite number.
     #[error("trial `{trial}`, {t_s} s: what was recorded or the foundation's track is no number")]
     NotANumber {
-        /// The trial.
+        /// Name of the trial.
         trial: String,
-        /// When, s.
+        /// Time of the sample, s.
         t_s: f64,
     },
     /// The foundation's track left the physical range.
@@ -21,25 +21,25 @@ pub enum HorizonError {
         "trial `{trial}`, {t_s} s: the foundation's track from there leaves the physical range"
     )]
     Stopped {
-        /// The trial.
+        /// Name of the trial.
         trial: String,
-        /// When, s.
+        /// Time of the sample, s.
         t_s: f64,
     },
-    /// There is too little to learn from.
+    /// There are too few examples.
     #[error("{found} examples are too few to learn from: {wanted} are needed at least")]
     Few {
-        /// How many.
+        /// Number of examples.
         found: usize,
-        /// The fewest.
+        /// Smallest number that is accepted.
         wanted: usize,
     },
-    /// Examples do not belong together, or not to the network that is trained on.
+    /// Examples differ in size, or do not fit the network.
     #[error("examples have {found} numbers where {wanted} are expected")]
     Shape {
-        /// How many.
+        /// Size found.
         found: usize,
-        /// How many are expected.
+        /// Expected size.
         wanted: usize,
     },
 }

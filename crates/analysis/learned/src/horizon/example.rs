@@ -1,4 +1,4 @@
-//! What is learned from: what was known at an instant, and where the ship then went.
+//! Training examples: the inputs known at an instant, and the track of the ship afterwards.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
@@ -10,52 +10,54 @@ use super::axes::Axes;
 use super::error::HorizonError;
 use super::inputs::{Told, end, orders, present};
 
-/// How predictions are made.
+/// Settings of one-shot prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OneShot {
-    /// Samples ahead.
+    /// Number of samples ahead.
     pub steps: usize,
-    /// What stands for the orders to come.
+    /// Encoding of the future orders.
     pub told: Told,
-    /// Samples of which a network is told, the present one among them.
+    /// Number of samples given to the network, including the present one.
     pub memory: usize,
 }
 
-/// An instant of a trial.
+/// Example at one instant of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Example {
-    /// The sample.
+    /// Index of the sample.
     pub sample: usize,
-    /// What was known at it and before, the oldest first.
+    /// Inputs at the sample and before, oldest first.
     pub inputs: Vec<Vec<f64>>,
-    /// The foundation's positions ahead, then those to starboard, m; zeros without a foundation.
+    /// Positions predicted by the foundation, ahead and then to starboard, m; zeros without a
+    /// foundation.
     pub foundation: Vec<f64>,
-    /// The ship's, in the same order, m.
+    /// Recorded positions in the same order, m.
     pub sailed: Vec<f64>,
 }
 
 impl Example {
-    /// What the foundation lacks, m.
+    /// Error of the foundation: recorded less predicted positions, m.
     pub fn lacking(&self) -> Vec<f64> {
         self.sailed.iter().zip(&self.foundation).map(|(sailed, drawn)| sailed - drawn).collect()
     }
 
-    /// Distances from where the ship went, at each sample ahead, m; `added` is put to what the
-    /// foundation drew.
+    /// Distances from the recorded track at each sample ahead, m, where `added` is added to the
+    /// foundation's positions.
     pub fn misses(&self, added: &[f64]) -> Vec<f64> {
         let off = |k: usize| self.foundation[k] + added[k] - self.sailed[k];
+        // The first half is the distance ahead, the second half that to starboard.
         let steps = self.sailed.len() / 2;
         (0..steps).map(|k| off(k).hypot(off(steps + k))).collect()
     }
 }
 
 impl OneShot {
-    /// The examples of a trial, one every so many samples, none across a gap. Without a foundation
-    /// [`Told::End`] tells nothing.
+    /// Returns the examples of a trial, one every `hop` samples, none across a gap. Without a
+    /// foundation the encoding by its end state adds no inputs.
     ///
     /// # Errors
-    /// As [`ahead`].
+    /// Returns the errors of the foundation's prediction.
     pub fn examples(
         &self,
         foundation: Option<&Ship>,
@@ -64,6 +66,7 @@ impl OneShot {
     ) -> Result<Vec<Example>, HorizonError> {
         let mut all = Vec::new();
         for segment in trial.segments() {
+            // Instants with a full horizon within the segment.
             let known: Vec<usize> =
                 (segment.start..segment.end.saturating_sub(self.steps)).collect();
             let drawn = match foundation {
@@ -75,6 +78,7 @@ impl OneShot {
                 .zip(&drawn)
                 .map(|(k, drawn)| self.row(trial, *k, drawn))
                 .collect::<Result<_, _>>()?;
+            // At the start of a segment the memory is shorter: inputs do not cross a gap.
             for place in (0..known.len()).step_by(hop.max(1)) {
                 let seen = (place + 1).saturating_sub(self.memory.max(1))..=place;
                 let inputs = rows[seen].to_vec();
@@ -84,6 +88,7 @@ impl OneShot {
         Ok(all)
     }
 
+    /// Inputs of a network at one sample.
     fn row(
         &self,
         trial: &Trial,
@@ -102,6 +107,7 @@ impl OneShot {
         Err(HorizonError::NotANumber { trial: trial.name.clone(), t_s: trial.t_s[k] })
     }
 
+    /// Example with its tracks in the ship's axes.
     fn example(
         &self,
         trial: &Trial,
@@ -117,14 +123,14 @@ impl OneShot {
     }
 }
 
-/// Positions ahead, then those to starboard.
+/// Positions of some states, ahead and then to starboard.
 fn seen(axes: &Axes, states: &[StateVector]) -> Vec<f64> {
     let all: Vec<[f64; 2]> = states.iter().map(|s| axes.seen(s[at::X], s[at::Y])).collect();
     let column = |place: usize| all.iter().map(move |position| position[place]);
     column(0).chain(column(1)).collect()
 }
 
-/// Position and heading at a sample.
+/// Recorded position and heading at a sample.
 fn state(trial: &Trial, k: usize) -> StateVector {
     let mut state = StateVector::zeros();
     for (channel, place) in [(Channel::X, at::X), (Channel::Y, at::Y), (Channel::Psi, at::PSI)] {

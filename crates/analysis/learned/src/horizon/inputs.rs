@@ -1,4 +1,4 @@
-//! What a network is told at an instant.
+//! Inputs of a network at an instant.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
@@ -6,23 +6,24 @@ use sistership_simulation::state::{StateVector, at};
 
 use super::axes::Axes;
 
-/// What stands for the orders to come.
+/// Encoding of the future orders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Told {
-    /// Where the foundation ends under them, and how fast: three numbers each, however long the
-    /// horizon is (Kanazawa 2023, sec. 3.1.1).
+    /// Position, heading and velocities of the foundation at the end of the horizon: three numbers
+    /// each, independent of the length of the horizon (Kanazawa 2023, sec. 3.1.1).
     End,
-    /// They themselves, each as the mean over a part of the horizon (sec. 3.3.1 has every second).
+    /// The orders themselves, each as the mean over parts of the horizon (sec. 3.3.1 uses every
+    /// second).
     Orders {
-        /// Parts of the horizon.
+        /// Number of parts of the horizon.
         parts: usize,
     },
-    /// Nothing: they stay as they are (sec. 4.1.1).
+    /// None: orders are assumed constant (sec. 4.1.1).
     Nothing,
 }
 
-/// The motion, the orders and the apparent wind, where it was recorded, at a sample.
+/// Motion, orders and, if recorded, apparent wind at a sample.
 pub fn present(trial: &Trial, k: usize) -> Vec<f64> {
     let of = |channel: Channel| trial.channel(channel).map(|column| column[k]);
     let known = [Channel::U, Channel::V, Channel::R, Channel::N, Channel::Delta];
@@ -31,7 +32,8 @@ pub fn present(trial: &Trial, k: usize) -> Vec<f64> {
     row
 }
 
-/// Along and across the ship, from where it comes, m/s.
+/// Components of the apparent wind along and across the ship, m/s, positive from ahead and from
+/// starboard.
 fn apparent_wind(trial: &Trial, k: usize) -> Option<[f64; 2]> {
     let of = |channel: Channel| trial.channel(channel).map(|column| column[k]);
     if let (Some(speed), Some(from)) =
@@ -40,23 +42,25 @@ fn apparent_wind(trial: &Trial, k: usize) -> Option<[f64; 2]> {
         let (sin, cos) = from.sin_cos();
         return Some([speed * cos, speed * sin]);
     }
+    // True wind relative to the bow, plus the ship's own velocity.
     let (speed, from) = (of(Channel::WindSpeed)?, of(Channel::WindFrom)?);
     let (sin, cos) = (from - of(Channel::Psi)?).sin_cos();
     Some([of(Channel::U)? + speed * cos, of(Channel::V)? + speed * sin])
 }
 
-/// Where a foundation ends and how fast, seen from where it began.
+/// Position, heading and velocities at the end of a foundation's track, in the axes of its start.
 pub fn end(axes: &Axes, last: &StateVector) -> [f64; 6] {
     let [ahead, aside] = axes.seen(last[at::X], last[at::Y]);
     [ahead, aside, axes.turned(last[at::PSI]), last[at::U], last[at::V], last[at::R]]
 }
 
-/// Revolutions and rudder, the means over parts of a horizon.
+/// Means of revolutions and rudder angle over parts of a horizon.
 pub fn orders(trial: &Trial, k: usize, steps: usize, parts: usize) -> Vec<f64> {
     let channels = [Channel::N, Channel::Delta];
     let mut row = Vec::with_capacity(2 * parts);
     for column in channels.into_iter().filter_map(|channel| trial.channel(channel)) {
         for part in 0..parts {
+            // Integer division spreads the samples evenly over the parts.
             let own = &column[k + part * steps / parts..k + (part + 1) * steps / parts];
             row.push(own.iter().sum::<f64>() / own.len().max(1) as f64);
         }

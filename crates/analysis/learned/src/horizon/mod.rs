@@ -1,7 +1,7 @@
-//! One-shot prediction (Kanazawa 2023, secs. 2.1.3, 3.1, 3.3 and 4.1): a foundation draws the track
-//! ahead once under the orders to come, and a network that is asked once takes off what such tracks
-//! lacked. Positions are in the ship's axes at the instant of the prediction (Eq. 4.1), so that
-//! nothing depends on the heading.
+//! One-shot prediction (Kanazawa 2023, secs. 2.1.3, 3.1, 3.3 and 4.1): a foundation simulates the
+//! track ahead once under the future orders, and a network that is evaluated once corrects the
+//! error of such tracks. Positions are in the ship's axes at the instant of the prediction (Eq.
+//! 4.1), so that nothing depends on the heading.
 
 mod ahead;
 mod axes;

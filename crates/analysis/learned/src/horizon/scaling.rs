@@ -1,10 +1,10 @@
-//! Centres and scales of numbers in a row, and their range.
+//! Centres, scales and ranges of the columns of a data set.
 
 use serde::{Deserialize, Serialize};
 
 use crate::sample::centre_and_scale;
 
-/// Centres and scales of numbers in a row, with the range that training held.
+/// Centres and scales of columns, with their ranges in the training data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scaling {
@@ -14,7 +14,7 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// Of rows that are all as long as the first.
+    /// Computes the scaling of rows of equal length.
     pub fn of(rows: &[&[f64]]) -> Self {
         let width = rows.first().map_or(0, |row| row.len());
         let column = |place: usize| rows.iter().map(|row| row[place]).collect::<Vec<f64>>();
@@ -31,18 +31,18 @@ impl Scaling {
         Self { centres, scales, ranges }
     }
 
-    /// How many numbers a row has.
+    /// Number of columns.
     pub fn width(&self) -> usize {
         self.centres.len()
     }
 
-    /// A row in deviations.
+    /// Row in standard deviations from the centres.
     pub fn scaled(&self, row: &[f64]) -> Vec<f64> {
         let of = row.iter().zip(&self.centres).zip(&self.scales);
         of.map(|((value, centre), scale)| (value - centre) / scale).collect()
     }
 
-    /// A row from its deviations, none beyond what training held.
+    /// Row in original units from its scaled values, limited to the range of the training data.
     pub fn bounded(&self, scaled: &[f64]) -> Vec<f64> {
         let one = |place: usize| {
             let [least, most] = self.ranges[place];
@@ -51,7 +51,7 @@ impl Scaling {
         (0..scaled.len()).map(one).collect()
     }
 
-    /// Scales alone.
+    /// Scale of each column.
     pub fn scales(&self) -> &[f64] {
         &self.scales
     }

@@ -1,4 +1,4 @@
-//! Training by Adam on squared errors, until examples kept for validation are answered no better.
+//! Training by Adam on squared errors, with early stopping on validation examples.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -10,40 +10,40 @@ use super::scaling::Scaling;
 use crate::draws::Draws;
 use crate::recurrent::{Adam, Cell, Memory, Recurrent, Shape};
 
-/// How a predictor is trained.
+/// Settings of the training of a predictor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonTraining {
-    /// The cell; an RNN told of one sample is a perceptron of three hidden layers.
+    /// Kind of cell; an RNN with a memory of one sample is a perceptron of three hidden layers.
     pub cell: Cell,
-    /// Neurons of each layer.
+    /// Number of neurons of each layer.
     pub width: usize,
-    /// Most epochs.
+    /// Largest number of epochs.
     pub epochs: usize,
-    /// Epochs without a gain after which it ends (Kanazawa 2023 has 200).
+    /// Number of epochs without improvement after which the training ends (Kanazawa 2023 has 200).
     pub patience: usize,
-    /// Examples to a step.
+    /// Number of examples per step.
     pub batch: usize,
-    /// Length of the steps of Adam.
+    /// Learning rate of Adam.
     pub rate: f64,
-    /// Of every random number drawn.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// Fewest examples.
+/// Smallest number of examples.
 const FEWEST: usize = 20;
 
-/// An example in deviations.
+/// Example with scaled inputs and target.
 struct Scaled {
     inputs: Vec<Vec<f64>>,
     target: Vec<f64>,
 }
 
-/// Trains a predictor of what the foundation lacks. It goes on from `start` where one is given, in
-/// its scales (pre-training: Kanazawa 2023, sec. 3.3.1). The same arguments give the same bytes.
+/// Trains a predictor of the foundation's error. It continues from `start` if given, with its
+/// scaling (pre-training: Kanazawa 2023, sec. 3.3.1). The same arguments give the same bytes.
 ///
 /// # Errors
-/// There are too few examples, or they do not belong together.
+/// Returns an error if there are too few examples, or if their sizes do not match.
 pub fn train(
     seen: &[Example],
     kept: &[Example],
@@ -60,8 +60,10 @@ pub fn train(
     Ok(descend(first, &seen, &kept, training))
 }
 
+/// Predictor with random weights, and the scaling of the training examples.
 fn drawn(seen: &[Example], training: &HorizonTraining) -> Predictor {
     let rows: Vec<&[f64]> = seen.iter().flat_map(|one| &one.inputs).map(Vec::as_slice).collect();
+    // Targets are errors of the foundation, not positions.
     let targets: Vec<Vec<f64>> = seen.iter().map(Example::lacking).collect();
     let targets: Vec<&[f64]> = targets.iter().map(Vec::as_slice).collect();
     let (inputs, answers) = (Scaling::of(&rows), Scaling::of(&targets));
@@ -76,6 +78,7 @@ fn drawn(seen: &[Example], training: &HorizonTraining) -> Predictor {
     Predictor { network, inputs, answers, spread_m: Vec::new(), validation: Vec::new() }
 }
 
+/// Checks that the examples fit the predictor.
 fn check(examples: &[Example], predictor: &Predictor) -> Result<(), HorizonError> {
     let (inputs, answers) = (predictor.inputs.width(), predictor.answers.width());
     let wrong = |one: &Example| {
@@ -95,6 +98,7 @@ fn scaled(examples: &[Example], predictor: &Predictor) -> Vec<Scaled> {
     examples.iter().map(of).collect()
 }
 
+/// Minimises the mean squared error, and keeps the network of least validation error.
 fn descend(
     mut predictor: Predictor,
     seen: &[Scaled],
@@ -104,6 +108,7 @@ fn descend(
     let mut adam = Adam::new(predictor.network.numbers.len());
     let mut draws = Draws::new(training.seed, 1);
     let mut network = predictor.network.clone();
+    // The starting network counts as the best so far, so pre-training is never made worse.
     let (mut best, mut last_gain) = (mean_square(&network, kept), 0);
     for epoch in 1..=training.epochs {
         for batch in draws.some_of(seen.len(), seen.len()).chunks(training.batch.max(1)) {
@@ -112,6 +117,7 @@ fn descend(
         }
         let loss = mean_square(&network, kept);
         predictor.validation.push(loss);
+        // Early stopping: the best network on the validation examples is kept.
         if loss < best {
             (best, last_gain) = (loss, epoch);
             predictor.network = network.clone();
@@ -123,11 +129,11 @@ fn descend(
     predictor
 }
 
-/// Examples whose gradients are summed by one thread.
+/// Number of examples whose gradients are summed by one thread.
 const CHUNK: usize = 8;
 
-/// How the mean square of a batch changes with the network's numbers. Sums are of fixed parts in
-/// their order, whoever was first.
+/// Gradient of the mean squared error of a batch. Fixed parts are summed in a fixed order, so the
+/// result does not depend on the threads.
 fn gradient(network: &Recurrent, seen: &[Scaled], batch: &[u32]) -> Vec<f64> {
     let share = 2.0 / (batch.len() * network.shape.outputs) as f64;
     let part = |part: &[u32]| {
@@ -135,6 +141,7 @@ fn gradient(network: &Recurrent, seen: &[Scaled], batch: &[u32]) -> Vec<f64> {
         for k in part {
             let Scaled { inputs, target } = &seen[*k as usize];
             let unrolled = network.unrolled(inputs.iter().map(Vec::as_slice));
+            // Derivative of the mean over examples and outputs.
             let off = unrolled.outputs.iter().zip(target);
             let blame: Vec<f64> = off.map(|(answer, target)| share * (answer - target)).collect();
             network.back(&unrolled, &blame, &mut gradient);
@@ -149,7 +156,7 @@ fn gradient(network: &Recurrent, seen: &[Scaled], batch: &[u32]) -> Vec<f64> {
     sum
 }
 
-/// Squares of what each answer lacks, the means over examples, in deviations.
+/// Mean squared error of each output over the examples, scaled.
 fn squares(network: &Recurrent, examples: &[Scaled]) -> Vec<f64> {
     let one = |Scaled { inputs, target }: &Scaled| -> Vec<f64> {
         let outputs = network.unrolled(inputs.iter().map(Vec::as_slice)).outputs;
@@ -167,6 +174,7 @@ fn mean_square(network: &Recurrent, examples: &[Scaled]) -> f64 {
     squares(network, examples).iter().sum::<f64>() / network.shape.outputs as f64
 }
 
+/// Root mean squared error of each output, m.
 fn spread(predictor: &Predictor, kept: &[Scaled]) -> Vec<f64> {
     let squares = squares(&predictor.network, kept);
     let scales = predictor.answers.scales();

@@ -1,25 +1,27 @@
-//! Adam (Kingma and Ba 2015, Algorithm 1) on numbers in a row.
+//! Optimiser Adam (Kingma and Ba 2015, Algorithm 1) on a vector of numbers.
 
-/// Decays of the moments, and what keeps it from dividing by nothing, as its authors give them.
+/// Decay rates of the moments, and the constant that prevents a division by zero, as given by its
+/// authors.
 const DECAYS: [f64; 2] = [0.9, 0.999];
 const EPSILON: f64 = 1e-8;
 
-/// Moments of a gradient.
+/// Optimiser state: moments of the gradient.
 pub struct Adam {
     moments: Vec<[f64; 2]>,
-    /// What the moments lack of their full size: powers of the decays.
+    /// Bias of the moments relative to their full size: powers of the decay rates.
     lacks: [f64; 2],
 }
 
 impl Adam {
-    /// Nothing seen yet, for so many numbers.
+    /// Creates the state for `count` numbers, with zero moments.
     pub fn new(count: usize) -> Self {
         Self { moments: vec![[0.0; 2]; count], lacks: [1.0; 2] }
     }
 
-    /// A step of a length against a gradient.
+    /// Applies one step against a gradient, with the given learning rate.
     pub fn step(&mut self, numbers: &mut [f64], gradient: &[f64], rate: f64) {
         self.lacks.iter_mut().zip(DECAYS).for_each(|(lack, decay)| *lack *= decay);
+        // The moments start at zero; this corrects their bias.
         let full = self.lacks.map(|lack| 1.0 - lack);
         let all = numbers.iter_mut().zip(gradient).zip(&mut self.moments);
         for ((number, slope), [m, v]) in all {

@@ -1,10 +1,10 @@
-//! How the loss on states changes with each of them, and how that goes back through a simulation.
+//! Gradient of the loss on simulated states, and its propagation back through a simulation.
 
 use super::motion::Motion;
 use super::scales::Scales;
 use super::simulated::Simulated;
 
-/// How the loss changes with each state.
+/// Loss and its derivatives with respect to each simulated state.
 pub struct Blame {
     pub loss: f64,
     pub positions: Vec<[f64; 3]>,
@@ -12,11 +12,13 @@ pub struct Blame {
 }
 
 impl Blame {
-    /// What a simulation lacks of the recorded motion, and how that changes with its states.
+    /// Computes the weighted squared differences between a simulation and the recorded motion, and
+    /// their derivatives with respect to the simulated states.
     pub fn of(run: &Simulated, motion: &Motion, start: usize, scales: &Scales, share: f64) -> Self {
         let mut loss = 0.0;
         let mut one = |simulated: &[f64; 3], recorded: &[f64; 3], scales: &[f64; 3]| {
             std::array::from_fn(|axis| {
+                // Each difference is divided by the scale of its state.
                 let off = (simulated[axis] - recorded[axis]) / scales[axis];
                 loss += share * off * off;
                 2.0 * share * off / scales[axis]
@@ -31,10 +33,13 @@ impl Blame {
         Self { loss, positions, velocities }
     }
 
-    /// What a step's state has to answer for at the next: Eqs. 21 to 23 backwards.
+    /// Adds to the derivatives at a step those that act through the next step: the transposed
+    /// Jacobian of Eqs. 21 to 23.
     pub fn through_positions(&mut self, run: &Simulated, step: usize, dt: f64) {
         let ([_, _, psi], [u, v, _]) = (run.positions[step], run.velocities[step]);
         let (sin, cos) = psi.sin_cos();
+        // Derivatives at the next step. Euler's method has state(k + 1) = state(k) + dt
+        // f(state(k)), hence the identity plus dt times the Jacobian of the kinematics.
         let ([x, y, heading], next) = (self.positions[step + 1], self.velocities[step + 1]);
         let at = &mut self.positions[step];
         at[0] += x;

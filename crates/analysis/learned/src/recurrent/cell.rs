@@ -1,67 +1,69 @@
-//! A recurrent cell: what it makes of an input and of its own state, and how its gradient goes
-//! back. Neurons answer `x / sqrt(1 + x^2)` in place of the hyperbolic tangent, gates half of that
-//! and a half in place of the logistic function (decision 20).
+//! Recurrent cells: forward step and backpropagation. The activation function is `x / sqrt(1 +
+//! x^2)` in place of the hyperbolic tangent, and a gate is one half plus half of that in place of
+//! the logistic function (decision 20).
 
 use serde::{Deserialize, Serialize};
 
-/// The kinds of cells.
+/// Kind of recurrent cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
-    /// Wakita 2022, Eq. 8: nothing comes of nothing.
+    /// Simple recurrent cell without offset: zero input gives zero output (Wakita 2022, Eq. 8).
     Rnn,
-    /// Long short-term memory with a gate that forgets (Gers and others 2000).
+    /// Long short-term memory with a forget gate (Gers and others 2000).
     Lstm,
 }
 
-/// The state of a cell: its answer, and what it keeps to itself.
+/// State of a cell: its output and its internal memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellState {
-    /// Its answer.
+    /// Output of the cell.
     pub answer: Vec<f64>,
-    /// What an LSTM keeps.
+    /// Internal memory of an LSTM.
     pub kept: Vec<f64>,
 }
 
-/// A step of a cell, as its gradient needs it.
+/// Intermediate values of a step of a cell, as needed by its gradient.
 #[derive(Debug, Clone)]
 pub struct CellStep {
     inputs: Vec<f64>,
     before: CellState,
-    /// Answers and slopes of each block of neurons.
+    /// Outputs and derivatives of each block of neurons.
     blocks: Vec<Vec<(f64, f64)>>,
-    /// What an LSTM keeps, through a neuron.
+    /// Activation of the internal memory of an LSTM, and its derivative.
     squashed: Vec<(f64, f64)>,
 }
 
-/// Blocks of an LSTM: the gates of what enters, what stays and what is shown, and what could enter.
+/// Indices of the blocks of an LSTM: input gate, forget gate, output gate, and candidate memory.
 const ENTERS: usize = 0;
 const STAYS: usize = 1;
 const SHOWN: usize = 2;
 const NEW: usize = 3;
 
-/// A neuron's answer to its sum, and the slope there.
+/// Activation of a neuron at its weighted sum, and the derivative there.
 #[inline(always)]
 pub fn neuron(sum: f64) -> (f64, f64) {
     let root = 1.0 / (1.0 + sum * sum).sqrt();
     (sum * root, root * root * root)
 }
 
+/// Activation of a gate, between 0 and 1, and the derivative there.
 #[inline(always)]
 fn gate(sum: f64) -> (f64, f64) {
     let (answer, slope) = neuron(sum);
+    // Maps the activation from (-1, 1) to (0, 1).
     (0.5 + 0.5 * answer, 0.5 * slope)
 }
 
 impl CellState {
-    /// Nothing remembered.
+    /// State of zeros: no memory of the past.
     pub fn empty(width: usize) -> Self {
         Self { answer: vec![0.0; width], kept: vec![0.0; width] }
     }
 }
 
 impl Cell {
-    /// Blocks of neurons.
+    /// Number of blocks of neurons.
     pub(super) fn blocks(self) -> usize {
         match self {
             Self::Rnn => 1,
@@ -69,21 +71,24 @@ impl Cell {
         }
     }
 
-    /// Numbers of one block: weights of inputs and of answers, and biases, neuron by neuron.
+    /// Number of parameters of one block: for each neuron, weights of inputs and of outputs, and a
+    /// bias.
     fn block(inputs: usize, width: usize) -> usize {
         width * (inputs + width + 1)
     }
 
-    /// Numbers of a cell.
+    /// Number of parameters of a cell.
     pub fn numbers(self, inputs: usize, width: usize) -> usize {
         self.blocks() * Self::block(inputs, width)
     }
 
+    /// Activation of a neuron of a block, and its derivative: the blocks of an LSTM are gates,
+    /// except the candidate memory.
     fn answer_of(self, block: usize, sum: f64) -> (f64, f64) {
         if self == Self::Lstm && block != NEW { gate(sum) } else { neuron(sum) }
     }
 
-    /// Answers of a block's neurons in place of their sums.
+    /// Replaces the weighted sums of a block's neurons by their activations.
     #[inline(always)]
     pub(super) fn answers<const N: usize>(self, block: usize, sums: &mut [f64; N]) {
         match self == Self::Lstm && block != NEW {
@@ -92,7 +97,8 @@ impl Cell {
         }
     }
 
-    /// One step.
+    /// Evaluates one step from the state before it. Returns the next state, and what the gradient
+    /// needs.
     pub fn forward(
         self,
         numbers: &[f64],
@@ -115,6 +121,7 @@ impl Cell {
         (state, CellStep { inputs: inputs.to_vec(), before: before.clone(), blocks, squashed })
     }
 
+    /// State after a step, from the outputs of the blocks, with the activation of the memory.
     fn state(
         self,
         numbers: &[f64],
@@ -125,6 +132,8 @@ impl Cell {
         let width = before.answer.len();
         match self {
             Self::Rnn => {
+                // Subtracting the activation of the bias makes the output zero at zero input and
+                // state.
                 let bias = |k: usize| neuron(numbers[(k + 1) * row - 1]).0;
                 let answer = (0..width).map(|k| blocks[0][k].0 - bias(k)).collect();
                 (CellState { answer, kept: vec![0.0; width] }, Vec::new())
@@ -132,6 +141,8 @@ impl Cell {
             Self::Lstm => {
                 let of = |block: usize, k: usize| blocks[block][k].0;
                 let kept: Vec<f64> = (0..width)
+                    // c = forget * c_before + input * candidate; the output is the output gate
+                    // times its activation.
                     .map(|k| of(STAYS, k) * before.kept[k] + of(ENTERS, k) * of(NEW, k))
                     .collect();
                 let squashed: Vec<(f64, f64)> = kept.iter().map(|x| neuron(*x)).collect();
@@ -141,8 +152,9 @@ impl Cell {
         }
     }
 
-    /// How an error that changes with the state after a step changes with the state before it and
-    /// with the inputs; the changes with the numbers are added to `gradient`.
+    /// Propagates error derivatives from the state after a step to the state before it and to the
+    /// inputs, which are returned; derivatives with respect to the parameters are added to
+    /// `gradient`.
     pub fn backward(
         self,
         numbers: &[f64],
@@ -166,17 +178,20 @@ impl Cell {
             gradient[row - 1] += sum;
         }
         if self == Self::Rnn {
-            // The answer to nothing is taken off.
+            // The output at zero input is subtracted in the forward step, so the bias has a second
+            // path.
             for (k, blame) in after.answer.iter().enumerate() {
                 let bias = (k + 1) * row - 1;
                 gradient[bias] -= blame * neuron(numbers[bias]).1;
             }
         }
+        // The weights of a neuron are those of the inputs, then those of the cell's outputs.
         let answer = seen.split_off(step.inputs.len());
         (CellState { answer, kept }, seen)
     }
 
-    /// How the error changes with the sum of each neuron, and with what was kept before.
+    /// Error derivatives with respect to the weighted sum of each neuron, and to the memory before
+    /// the step.
     fn sums(self, step: &CellStep, after: &CellState) -> (Vec<Vec<f64>>, Vec<f64>) {
         let width = after.answer.len();
         let of = |block: usize, k: usize| step.blocks[block][k];
@@ -187,6 +202,7 @@ impl Cell {
         let mut sums = vec![vec![0.0; width]; 4];
         let mut before = vec![0.0; width];
         for k in 0..width {
+            // The memory acts on the error directly and through the output of the cell.
             let kept = after.kept[k] + after.answer[k] * of(SHOWN, k).0 * step.squashed[k].1;
             sums[SHOWN][k] = after.answer[k] * step.squashed[k].0 * of(SHOWN, k).1;
             sums[STAYS][k] = kept * step.before.kept[k] * of(STAYS, k).1;

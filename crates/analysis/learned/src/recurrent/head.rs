@@ -1,21 +1,21 @@
-//! What stands above a recurrent cell: two layers of neurons and a sum for each output, to none of
-//! which anything comes of nothing (Wakita 2022, Eq. 8).
+//! Head of a recurrent network: two layers of neurons and a weighted sum for each output, all
+//! without offset, so that zero input gives zero output (Wakita 2022, Eq. 8).
 
 use super::cell::neuron;
 
-/// Answers of the layers, and slopes there, as the gradient needs them.
+/// Outputs of the layers, and derivatives there, as needed by the gradient.
 #[derive(Debug, Clone)]
 pub struct HeadStep {
     inputs: [Vec<f64>; 3],
     slopes: [Vec<f64>; 2],
 }
 
-/// Numbers of the head.
+/// Number of parameters of the head.
 pub fn numbers(width: usize, outputs: usize) -> usize {
     2 * width * (width + 1) + outputs * width
 }
 
-/// The outputs for a cell's answer.
+/// Evaluates the outputs for the output of a cell.
 pub fn forward(numbers: &[f64], answer: &[f64], outputs: usize) -> (Vec<f64>, HeadStep) {
     let width = answer.len();
     let mut inputs: [Vec<f64>; 3] = Default::default();
@@ -29,6 +29,8 @@ pub fn forward(numbers: &[f64], answer: &[f64], outputs: usize) -> (Vec<f64>, He
             .map(|row| {
                 let sum = row[width] + dot(row, &inputs[layer]);
                 let (answer, slope) = neuron(sum);
+                // The output at zero input is subtracted, so the bias shifts the working point
+                // only.
                 (answer - neuron(row[width]).0, slope)
             })
             .collect();
@@ -44,8 +46,8 @@ fn dot(row: &[f64], inputs: &[f64]) -> f64 {
     row.iter().zip(inputs).map(|(w, x)| w * x).sum()
 }
 
-/// How an error that changes with the outputs changes with the cell's answer; the changes with the
-/// numbers are added to `gradient`.
+/// Propagates error derivatives from the outputs to the cell's output, which are returned;
+/// derivatives with respect to the parameters are added to `gradient`.
 pub fn backward(numbers: &[f64], step: &HeadStep, blame: &[f64], gradient: &mut [f64]) -> Vec<f64> {
     let width = step.inputs[0].len();
     let layer = width * (width + 1);
@@ -64,6 +66,7 @@ pub fn backward(numbers: &[f64], step: &HeadStep, blame: &[f64], gradient: &mut 
         for (k, (row, slopes)) in rows.zip(slopes).enumerate() {
             let sum = back[k] * step.slopes[place][k];
             add(&mut slopes[..width], &step.inputs[place], sum);
+            // Second term: the bias also enters through the output at zero input.
             slopes[width] += sum - back[k] * neuron(row[width]).1;
             add(&mut before, &row[..width], sum);
         }

@@ -1,5 +1,5 @@
-//! The loss of one sequence and its gradient: on positions and velocities that the network
-//! simulates (Wakita 2022, Eq. 24), or on accelerations (Eq. 17).
+//! Loss of one sequence and its gradient: on positions and velocities that the network simulates
+//! (Wakita 2022, Eq. 24), or on accelerations (Eq. 17).
 
 use super::blame::Blame;
 use super::motion::Motion;
@@ -8,7 +8,7 @@ use super::scales::Scales;
 use super::sequence::{Loss, SequenceTraining};
 use super::simulated::Simulated;
 
-/// A network as it is judged while it is trained.
+/// Network in training, with the settings of its loss.
 pub struct Judged<'a> {
     pub network: &'a Recurrent,
     pub scales: &'a Scales,
@@ -16,7 +16,8 @@ pub struct Judged<'a> {
 }
 
 impl Judged<'_> {
-    /// Loss of the sequence that starts at a sample, and how it changes with the network's numbers.
+    /// Loss of the sequence that starts at a sample, and its gradient with respect to the network's
+    /// parameters.
     pub fn loss(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
         match self.training.loss {
             Loss::States => self.states(motion, start),
@@ -24,7 +25,7 @@ impl Judged<'_> {
         }
     }
 
-    /// Steps that are given, so that the memory is filled: Eq. 20.
+    /// Number of recorded steps that fill the memory: Eq. 20.
     fn given(&self) -> usize {
         match self.network.shape.memory {
             Memory::Steps(steps) => steps,
@@ -32,12 +33,13 @@ impl Judged<'_> {
         }
     }
 
+    /// Evaluates the network over the past that it sees at a step.
     fn unrolled(&self, inputs: &[Vec<f64>], step: usize) -> Unrolled {
         let from = self.network.sees_from(step);
         self.network.unrolled(inputs[from..=step].iter().map(Vec::as_slice))
     }
 
-    /// Eq. 17.
+    /// Loss on accelerations (Eq. 17) and its gradient.
     fn accelerations(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
         let steps = self.training.steps;
         let inputs: Vec<Vec<f64>> = (start..start + steps)
@@ -45,6 +47,7 @@ impl Judged<'_> {
             .collect();
         let mut gradient = vec![0.0; self.network.numbers.len()];
         let mut loss = 0.0;
+        // The first steps only fill the memory.
         for step in self.given() - 1..steps {
             let unrolled = self.unrolled(&inputs, step);
             let measured = motion.differences(start + step);
@@ -54,13 +57,15 @@ impl Judged<'_> {
                 })
                 .collect();
             loss += blame.iter().map(|x| x * x).sum::<f64>() / steps as f64;
+            // Derivative of the mean of squares.
             let blame: Vec<f64> = blame.iter().map(|x| 2.0 * x / steps as f64).collect();
             self.network.back(&unrolled, &blame, &mut gradient);
         }
         (loss, gradient)
     }
 
-    /// Eq. 24 by Euler's method, and its gradient back through the simulation.
+    /// Loss on states (Eq. 24) of a simulation by Euler's method, and its gradient back through the
+    /// simulation.
     fn states(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
         let (run, unrolled) = self.simulated(motion, start);
         let share = 1.0 / (self.training.steps - self.given() + 1) as f64;
@@ -68,7 +73,8 @@ impl Judged<'_> {
         (blame.loss, self.through_simulation(&run, &unrolled, blame, motion.interval_s))
     }
 
-    /// The simulation of a sequence, and what the network was at each step that it answered.
+    /// Simulates a sequence. Also returns the intermediate values of the network at each step,
+    /// `None` at the given ones.
     fn simulated(&self, motion: &Motion, start: usize) -> (Simulated, Vec<Option<Unrolled>>) {
         let steps = self.training.steps;
         let mut run = Simulated::begin(motion, start, self.given());
@@ -77,10 +83,12 @@ impl Judged<'_> {
         for step in 0..steps {
             inputs.push(self.scales.inputs(&run.velocities[step], &motion.known[start + step]));
             if step + 1 < self.given() {
+                // Recorded states follow, so the network need not be evaluated.
                 unrolled.push(None);
                 continue;
             }
             let one = self.unrolled(&inputs, step);
+            // The network gives scaled accelerations on top of those of the foundation.
             let own = |axis: usize| one.outputs[axis] * self.scales.accelerations[axis];
             let acceleration =
                 std::array::from_fn(|axis| own(axis) + motion.given[start + step][axis]);
@@ -90,6 +98,8 @@ impl Judged<'_> {
         (run, unrolled)
     }
 
+    /// Propagates the derivatives of the loss back through all steps (backpropagation through
+    /// time).
     fn through_simulation(
         &self,
         run: &Simulated,
@@ -99,6 +109,9 @@ impl Judged<'_> {
     ) -> Vec<f64> {
         let mut gradient = vec![0.0; self.network.numbers.len()];
         for step in (self.given() - 1..self.training.steps).rev() {
+            // First through the kinematics to the step before; then the velocity at the next step
+            // gives the derivative of the accelerations, and with it of the network's parameters
+            // and inputs.
             blame.through_positions(run, step, dt);
             let outputs: Vec<f64> = (0..3)
                 .map(|axis| dt * blame.velocities[step + 1][axis] * self.scales.accelerations[axis])
@@ -106,6 +119,7 @@ impl Judged<'_> {
             let Some(one) = &unrolled[step] else { continue };
             let from = self.network.sees_from(step);
             for (back, seen) in self.network.back(one, &outputs, &mut gradient).iter().enumerate() {
+                // The inputs are velocities divided by their scales, of every step in the memory.
                 let at = &mut blame.velocities[from + back];
                 let scaled = seen.iter().zip(&self.scales.velocities);
                 at.iter_mut().zip(scaled).for_each(|(at, (seen, scale))| *at += seen / scale);

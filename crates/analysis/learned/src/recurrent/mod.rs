@@ -1,6 +1,8 @@
-//! Recurrent networks, trained on sequences of states: what they remember is of the motion before.
+//! Recurrent networks, trained on sequences of states, so that their memory is of the motion
+//! before.
 //!
-//! They are no kind of branch yet: a simulation asks a branch of an instant, not of its past.
+//! They are not available as learned corrections yet: a simulation evaluates a correction at an
+//! instant, without the past.
 
 mod adam;
 mod blame;

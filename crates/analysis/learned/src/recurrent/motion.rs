@@ -1,4 +1,4 @@
-//! Recorded motion as networks are trained on it.
+//! Recorded motion for the training of networks.
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::branch::Instant;
@@ -6,23 +6,23 @@ use sistership_simulation::branch::Instant;
 /// Recorded motion, sample by sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// From one sample to the next, s.
+    /// Sampling interval, s.
     pub interval_s: f64,
-    /// x, y, psi: m, m, rad.
+    /// Positions and headings x, y, psi: m, m, rad.
     pub positions: Vec<[f64; 3]>,
-    /// u, v, r: m/s, m/s, rad/s.
+    /// Velocities u, v, r: m/s, m/s, rad/s.
     pub velocities: Vec<[f64; 3]>,
-    /// What is known beside them at each sample: rudder, revolutions, and the apparent wind along
-    /// and across the ship (Wakita 2022, Eq. 7).
+    /// Further inputs at each sample: rudder, revolutions, and the apparent wind along and across
+    /// the ship (Wakita 2022, Eq. 7).
     pub known: Vec<Vec<f64>>,
-    /// What a foundation gives of the accelerations along the recorded motion, m/s2, m/s2, rad/s2;
-    /// zeros where there is none.
+    /// Accelerations of a foundation along the recorded motion, m/s2, m/s2, rad/s2; zeros without
+    /// foundation.
     pub given: Vec<[f64; 3]>,
 }
 
 impl Motion {
-    /// The parts of a trial without gaps; none where it lacks a channel or holds what is no number.
-    /// `foundation` are a foundation's instants along it.
+    /// Returns the parts of a trial between gaps, `None` if it lacks a channel or holds a value
+    /// that is not finite. `foundation` holds the instants of a foundation along the trial.
     pub fn parts(trial: &Trial, foundation: Option<&[Instant]>) -> Option<Vec<Self>> {
         let channel = |channel: Channel| trial.channel(channel);
         let three = |channels: [Channel; 3]| -> Option<[&[f64]; 3]> {
@@ -36,6 +36,7 @@ impl Motion {
         let known = |k: usize| {
             let mut known = vec![delta[k], n[k]];
             if let (Some(speed), Some(from)) = wind {
+                // Components of the wind, as its direction has a jump at 360 degrees.
                 let (sin, cos) = from[k].sin_cos();
                 known.extend([speed[k] * cos, speed[k] * sin]);
             }
@@ -50,9 +51,11 @@ impl Motion {
             given: own.map(given).collect(),
         };
         let parts: Vec<Self> = trial.segments().into_iter().map(part).collect();
+        // One value that is not finite makes the whole trial unusable.
         parts.iter().all(Self::is_number).then_some(parts)
     }
 
+    /// True if all values are finite.
     fn is_number(&self) -> bool {
         let states = self.positions.iter().chain(&self.velocities).chain(&self.given).flatten();
         states.chain(self.known.iter().flatten()).all(|number| number.is_finite())
@@ -63,13 +66,13 @@ impl Motion {
         self.velocities.len()
     }
 
-    /// Whether there is no sample.
+    /// True if there is no sample.
     pub fn is_empty(&self) -> bool {
         self.velocities.is_empty()
     }
 
-    /// The accelerations by differences from one sample to the next, less what the foundation
-    /// gives: m/s2, m/s2, rad/s2.
+    /// Accelerations by differences from one sample to the next, less those of the foundation:
+    /// m/s2, m/s2, rad/s2.
     pub fn differences(&self, k: usize) -> [f64; 3] {
         std::array::from_fn(|axis| {
             let change = self.velocities[k + 1][axis] - self.velocities[k][axis];

@@ -1,4 +1,4 @@
-//! A recurrent network: a cell over some of the past, and layers above it (Wakita 2022, Eqs. 8 and
+//! Recurrent networks: a cell over a part of the past, and layers above it (Wakita 2022, Eqs. 8 and
 //! 10).
 
 use serde::{Deserialize, Serialize};
@@ -7,52 +7,53 @@ use super::cell::{Cell, CellState, CellStep};
 use super::head::{self, HeadStep};
 use crate::draws::Draws;
 
-/// How much of the past a network sees.
+/// Length of the past that a network sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Memory {
-    /// So many steps, the present one among them: Eq. 10.
+    /// This number of steps, including the present one: Eq. 10.
     Steps(usize),
-    /// All of it: Eq. 8.
+    /// The whole past: Eq. 8.
     All,
 }
 
-/// What a network is made of.
+/// Structure of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shape {
-    /// The cell.
+    /// Kind of cell.
     pub cell: Cell,
-    /// How much of the past it sees.
+    /// Length of the past that the network sees.
     pub memory: Memory,
-    /// Inputs of a step.
+    /// Number of inputs of a step.
     pub inputs: usize,
-    /// Neurons of the cell and of each layer.
+    /// Number of neurons of the cell and of each layer.
     pub width: usize,
-    /// Outputs.
+    /// Number of outputs.
     pub outputs: usize,
 }
 
-/// A recurrent network.
+/// Recurrent network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recurrent {
-    /// What it is made of.
+    /// Structure of the network.
     pub shape: Shape,
-    /// Its weights and biases: the cell's, then the layers'.
+    /// Weights and biases: the cell's, then the layers'.
     pub numbers: Vec<f64>,
 }
 
-/// A network over some steps, as its gradient needs it.
+/// Network evaluated over some steps, with the values that its gradient needs.
 pub struct Unrolled {
-    /// The outputs at the last step.
+    /// Outputs at the last step.
     pub outputs: Vec<f64>,
     steps: Vec<CellStep>,
     head: HeadStep,
 }
 
 impl Recurrent {
-    /// Small random weights, by the fan in and out (Glorot and Bengio 2010, Eq. 16), and no biases.
+    /// Creates a network with random weights, uniform within limits by the number of inputs and
+    /// neurons (Glorot and Bengio 2010, Eq. 16), and biases of zero.
     pub fn drawn(shape: Shape, seed: u64) -> Self {
         let Shape { cell, inputs, width, outputs, .. } = shape;
         let (of_cell, of_head) = (cell.numbers(inputs, width), head::numbers(width, outputs));
@@ -67,16 +68,17 @@ impl Recurrent {
         };
         rows(of_cell / (inputs + width + 1), inputs + width, true);
         rows(2 * width, width, true);
+        // Order of the parameters: cell, two layers, outputs; the outputs have no bias.
         rows(outputs, width, false);
         Self { shape, numbers }
     }
 
-    /// The numbers of the cell, and of what stands above it.
+    /// Parameters of the cell, and of the head.
     pub(super) fn parts(&self) -> (&[f64], &[f64]) {
         self.numbers.split_at(self.shape.cell.numbers(self.shape.inputs, self.shape.width))
     }
 
-    /// Where the past that is seen at a step begins.
+    /// Index of the first step that is seen at a step.
     pub fn sees_from(&self, step: usize) -> usize {
         match self.shape.memory {
             Memory::Steps(steps) => (step + 1).saturating_sub(steps),
@@ -84,7 +86,7 @@ impl Recurrent {
         }
     }
 
-    /// The outputs after the given steps, from nothing remembered.
+    /// Evaluates the network over the given steps, starting with an empty memory.
     pub fn unrolled<'a>(&self, inputs: impl Iterator<Item = &'a [f64]>) -> Unrolled {
         let (cell, head) = self.parts();
         let (mut state, mut steps) = (CellState::empty(self.shape.width), Vec::new());
@@ -97,14 +99,15 @@ impl Recurrent {
         Unrolled { outputs, steps, head }
     }
 
-    /// How an error that changes with the outputs changes with the inputs of each step; the changes
-    /// with the numbers are added to `gradient`.
+    /// Propagates error derivatives from the outputs to the inputs of each step, which are
+    /// returned; derivatives with respect to the parameters are added to `gradient`.
     pub fn back(&self, unrolled: &Unrolled, blame: &[f64], gradient: &mut [f64]) -> Vec<Vec<f64>> {
         let (cell, head) = self.parts();
         let (of_cell, of_head) = gradient.split_at_mut(cell.len());
         let answer = head::backward(head, &unrolled.head, blame, of_head);
         let mut after = CellState { answer, kept: vec![0.0; self.shape.width] };
         let mut seen = Vec::with_capacity(unrolled.steps.len());
+        // Backwards in time; the derivatives of the parameters add up over the steps.
         for step in unrolled.steps.iter().rev() {
             let (before, inputs) = self.shape.cell.backward(cell, step, after, of_cell);
             after = before;

@@ -1,4 +1,4 @@
-//! Simulation by a network that was trained.
+//! Simulation with a trained network.
 
 use super::motion::Motion;
 use super::simulated::Simulated;
@@ -6,9 +6,9 @@ use super::training::Fit;
 use super::windows::Windows;
 
 impl Fit {
-    /// Simulates from a sample to another by Euler's method, the first `given` samples as recorded:
-    /// positions and velocities at each. `foundation` gives the accelerations of a foundation at a
-    /// sample and simulated velocities, m/s2, m/s2, rad/s2.
+    /// Simulates the samples of `own` by Euler's method, the first `given` of them as recorded.
+    /// Returns positions and velocities at each. `foundation` returns the accelerations of a
+    /// foundation at a sample and simulated velocities, m/s2, m/s2, rad/s2.
     pub fn sail(
         &self,
         motion: &Motion,
@@ -21,6 +21,8 @@ impl Fit {
         for (step, k) in own.clone().enumerate() {
             let velocities = run.velocities[step];
             let outputs = windows.step(&self.scales.inputs(&velocities, &motion.known[k]));
+            // The network also sees the given samples, which fill its memory, but does not advance
+            // them.
             if step + 1 >= run.velocities.len() && k + 1 < own.end {
                 let law = foundation(k, &velocities);
                 let scales = &self.scales.accelerations;

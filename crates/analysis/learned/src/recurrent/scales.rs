@@ -1,26 +1,26 @@
-//! Deviations by which a network's inputs, outputs and states are divided.
+//! Standard deviations by which a network's inputs, outputs and states are divided.
 
 use serde::{Deserialize, Serialize};
 
 use super::motion::Motion;
 use crate::sample::centre_and_scale;
 
-/// Deviations by which inputs, outputs and states are divided.
+/// Standard deviations by which inputs, outputs and states are divided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scales {
-    /// Of x, y, psi.
+    /// Scales of x, y, psi.
     pub positions: [f64; 3],
-    /// Of u, v, r.
+    /// Scales of u, v, r.
     pub velocities: [f64; 3],
-    /// Of what is known beside.
+    /// Scales of the further inputs.
     pub known: Vec<f64>,
-    /// Of the accelerations, by differences.
+    /// Scales of the accelerations, by differences.
     pub accelerations: [f64; 3],
 }
 
 impl Scales {
-    /// Of some motions.
+    /// Computes the scales of some motions.
     pub fn of(motions: &[Motion]) -> Self {
         let scale = |of: &dyn Fn(&Motion) -> Vec<f64>| {
             centre_and_scale(&motions.iter().flat_map(of).collect::<Vec<f64>>()).1
@@ -41,11 +41,13 @@ impl Scales {
             known: (0..known)
                 .map(|at| scale(&|motion| motion.known.iter().map(|known| known[at]).collect()))
                 .collect(),
+            // Differences need a following sample, so there is one less.
             accelerations: three(&|motion, k, axis| motion.differences(k)[axis], 1),
         }
     }
 
-    /// The inputs of a step. They are not centred: of nothing comes nothing.
+    /// Scaled inputs of a step. They are not centred, so that zero motion and rudder are zero
+    /// inputs.
     pub fn inputs(&self, velocities: &[f64; 3], known: &[f64]) -> Vec<f64> {
         let own = velocities.iter().zip(&self.velocities);
         own.chain(known.iter().zip(&self.known)).map(|(value, scale)| value / scale).collect()

@@ -1,37 +1,38 @@
-//! How a network is trained on sequences of states.
+//! Settings of training on sequences of states.
 
 use serde::{Deserialize, Serialize};
 
 use super::network::Shape;
 
-/// What is to be small.
+/// Loss that is minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Loss {
-    /// What simulated positions and velocities lack of the recorded ones: Eq. 24.
+    /// Squared differences of simulated and recorded positions and velocities: Eq. 24.
     States,
-    /// What accelerations lack of differences of the recorded velocities: Eq. 17.
+    /// Squared differences between accelerations and differences of the recorded velocities: Eq.
+    /// 17.
     Accelerations,
 }
 
-/// How a network is trained.
+/// Settings of the training of a network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SequenceTraining {
-    /// The network; its inputs follow from the motions.
+    /// Structure of the network; its number of inputs follows from the motions.
     pub shape: Shape,
-    /// What is to be small.
+    /// Loss that is minimised.
     pub loss: Loss,
-    /// Samples of a sequence, of which those that fill the memory are given: Table 8's N_T.
+    /// Number of samples of a sequence, including those given to fill the memory: Table 8's N_T.
     pub steps: usize,
-    /// Samples from the start of a sequence to that of the next.
+    /// Number of samples between the starts of successive sequences.
     pub hop: usize,
-    /// How often every sequence is seen.
+    /// Number of passes over all sequences.
     pub epochs: usize,
-    /// Sequences to a step.
+    /// Number of sequences per step.
     pub batch: usize,
-    /// Length of the steps of Adam.
+    /// Learning rate of Adam.
     pub rate: f64,
-    /// Of every random number drawn.
+    /// Seed of the random numbers.
     pub seed: u64,
 }

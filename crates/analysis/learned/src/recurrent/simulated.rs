@@ -1,15 +1,15 @@
-//! Euler's method as networks are trained through it.
+//! Simulation by Euler's method, through which networks are trained.
 
 use super::motion::Motion;
 
-/// A simulation of a sequence, sample by sample.
+/// Simulated states of a sequence, sample by sample.
 pub struct Simulated {
     pub positions: Vec<[f64; 3]>,
     pub velocities: Vec<[f64; 3]>,
 }
 
 impl Simulated {
-    /// The first samples as recorded.
+    /// Starts a simulation with the first `given` samples as recorded.
     pub fn begin(motion: &Motion, start: usize, given: usize) -> Self {
         let own = start..start + given;
         Self {
@@ -18,7 +18,7 @@ impl Simulated {
         }
     }
 
-    /// Eqs. 21 to 23.
+    /// Advances the simulation by one step: Eqs. 21 to 23.
     pub fn advance(&mut self, acceleration: &[f64; 3], dt: f64) {
         let last = self.velocities.len() - 1;
         let ([x, y, psi], [u, v, r]) = (self.positions[last], self.velocities[last]);

@@ -1,5 +1,5 @@
-//! Training on sequences of states by Adam; the network of the least loss on sequences kept for
-//! validation is what comes out.
+//! Training on sequences of states by Adam, with the network of least validation loss as the
+//! result.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -12,25 +12,25 @@ use super::scales::Scales;
 use super::sequence::SequenceTraining;
 use crate::draws::Draws;
 
-/// A network that was trained.
+/// Result of a training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fit {
-    /// The network, of the least loss on the sequences kept for validation.
+    /// Network of the least loss on the validation sequences.
     pub network: Recurrent,
-    /// What its inputs and outputs are divided by.
+    /// Divisors of its inputs and outputs.
     pub scales: Scales,
-    /// Loss on the sequences kept for validation, after each epoch.
+    /// Loss on the validation sequences after each epoch.
     pub validation: Vec<f64>,
 }
 
-/// Of so many sequences one is kept for validation.
+/// One of this number of sequences is used for validation.
 const VALIDATION: usize = 5;
 
-/// Where a sequence is: its motion, and its first sample.
+/// Start of a sequence: index of its motion, and its first sample.
 type Place = (usize, usize);
 
-/// Trains a network; none where the motions have too few samples, or not the same channels.
+/// Trains a network. Returns `None` if the motions have too few samples, or different channels.
 pub fn fit(motions: &[Motion], training: &SequenceTraining) -> Option<Fit> {
     let known = motions.first()?.known.first()?.len();
     if motions.iter().any(|motion| motion.known.iter().any(|there| there.len() != known)) {
@@ -39,6 +39,7 @@ pub fn fit(motions: &[Motion], training: &SequenceTraining) -> Option<Fit> {
     let scales = Scales::of(motions);
     let places = places(motions, training);
     let part = |kept: bool| -> Vec<Place> {
+        // Validation sequences are spread evenly over all motions.
         let own = places.iter().enumerate().filter(|(k, _)| (k % VALIDATION == 0) == kept);
         own.map(|(_, place)| *place).collect()
     };
@@ -50,6 +51,7 @@ pub fn fit(motions: &[Motion], training: &SequenceTraining) -> Option<Fit> {
     Some(Trainee { motions, training, scales, network }.descend(&seen, &kept))
 }
 
+/// Starts of all sequences in the motions.
 fn places(motions: &[Motion], training: &SequenceTraining) -> Vec<Place> {
     let of = |(number, motion): (usize, &Motion)| {
         let last = (motion.len() + 1).saturating_sub(training.steps + 1);
@@ -58,6 +60,7 @@ fn places(motions: &[Motion], training: &SequenceTraining) -> Vec<Place> {
     motions.iter().enumerate().flat_map(of).collect()
 }
 
+/// State of the training.
 struct Trainee<'a> {
     motions: &'a [Motion],
     training: &'a SequenceTraining,
@@ -66,6 +69,7 @@ struct Trainee<'a> {
 }
 
 impl Trainee<'_> {
+    /// Minimises the loss on `seen`, and keeps the network of least loss on `kept`.
     fn descend(mut self, seen: &[Place], kept: &[Place]) -> Fit {
         let mut adam = Adam::new(self.network.numbers.len());
         let mut draws = Draws::new(self.training.seed, 1);
@@ -76,6 +80,7 @@ impl Trainee<'_> {
                 let (_, gradient) = self.sum(&places);
                 adam.step(&mut self.network.numbers, &gradient, self.training.rate);
             }
+            // Very short motions leave no validation sequence; then the training loss decides.
             let loss = self.sum(if kept.is_empty() { seen } else { kept }).0;
             if validation.iter().all(|earlier| loss < *earlier) {
                 best = self.network.clone();
@@ -85,8 +90,8 @@ impl Trainee<'_> {
         Fit { network: best, scales: self.scales, validation }
     }
 
-    /// Mean loss of some sequences, and its gradient. They are summed in their order, whoever was
-    /// first.
+    /// Mean loss of some sequences, and its gradient. They are summed in a fixed order, so the
+    /// result does not depend on the threads.
     fn sum(&self, places: &[Place]) -> (f64, Vec<f64>) {
         let each: Vec<(f64, Vec<f64>)> = places.par_iter().map(|place| self.one(*place)).collect();
         let mut gradient = vec![0.0; self.network.numbers.len()];
@@ -94,6 +99,7 @@ impl Trainee<'_> {
         for (_, own) in &each {
             gradient.iter_mut().zip(own).for_each(|(sum, slope)| *sum += share * slope);
         }
+        // Losses were computed in parallel, but are summed in order.
         (share * each.iter().map(|(loss, _)| loss).sum::<f64>(), gradient)
     }
 

@@ -1,47 +1,47 @@
-//! A network as it answers step by step: every stretch of the past that a later answer will have
-//! seen is carried on with the present one, side by side, in place of going through the steps of
-//! each stretch anew.
+//! Step-by-step evaluation of a network: every window of the past that a later output will depend
+//! on is carried on together with the present one, side by side, instead of evaluating the steps of
+//! each window again.
 //!
-//! An answer with a memory of `m` steps is that of a cell which began with nothing `m` steps ago
-//! (Wakita 2022, Eq. 10). At any time `m` such cells are under way, one begun at each of the last
-//! `m` steps. They have the weights and the present input in common, and differ in their states
-//! alone; a lane is one of them. Sums are taken in the order of [`Cell::forward`], so that answers
-//! are the same to the last bit.
+//! The output with a memory of `m` steps is that of a cell which started with an empty memory `m`
+//! steps ago (Wakita 2022, Eq. 10). At any time `m` such cells are active, one started at each of
+//! the last `m` steps. They have the weights and the present input in common, and differ in their
+//! states alone; a lane is one of them. Sums are taken in the order of the cell's own forward step,
+//! so the outputs are the same to the last bit.
 
 use super::cell::{Cell, neuron};
 use super::head;
 use super::network::{Memory, Recurrent, Shape};
 use sistership_simulation::wide::{Wide, widest};
 
-/// Cells that are computed together.
+/// Number of cells that are computed together.
 const LANES: usize = 4;
 
-/// A number of each of them.
+/// One number of each of these cells.
 type Lanes = [f64; LANES];
 
-/// The cells under way.
+/// Active cells of a network.
 pub struct Windows<'a> {
     network: &'a Recurrent,
-    /// How many are under way.
+    /// Number of active cells.
     cells: usize,
-    /// Steps taken.
+    /// Number of steps so far.
     steps: usize,
-    /// By so many cells as are computed together.
+    /// Groups of cells that are computed together.
     groups: Vec<Group>,
 }
 
-/// Some cells.
+/// States of a group of cells.
 struct Group {
-    /// Their answers, neuron by neuron.
+    /// Outputs of the cells, neuron by neuron.
     answers: Vec<Lanes>,
-    /// What those of an LSTM keep, likewise.
+    /// Internal memory of LSTM cells, likewise.
     kept: Vec<Lanes>,
-    /// Answers of each block's neurons, likewise, block by block.
+    /// Outputs of each block's neurons, likewise, block by block.
     blocks: Vec<Lanes>,
 }
 
 impl<'a> Windows<'a> {
-    /// Before the first step.
+    /// Creates the cells before the first step.
     pub fn new(network: &'a Recurrent) -> Self {
         let cells = match network.shape.memory {
             Memory::Steps(steps) => steps.max(1),
@@ -51,13 +51,16 @@ impl<'a> Windows<'a> {
         Self { network, cells, steps: 0, groups }
     }
 
-    /// The outputs after one more step.
+    /// Advances all cells by one step. Returns the network's outputs.
     pub fn step(&mut self, inputs: &[f64]) -> Vec<f64> {
         if self.network.shape.memory != Memory::All {
+            // Cells are reused in turn: the oldest one has left the memory and starts again.
             let begun = self.steps % self.cells;
             self.groups[begun / LANES].forget(begun % LANES);
         }
+        // Runs with the widest SIMD instructions that the processor has.
         widest(Step { windows: self, inputs });
+        // The output is that of the cell which started at the first step of the memory.
         let seen = self.network.sees_from(self.steps) % self.cells;
         self.steps += 1;
         let answers = &self.groups[seen / LANES].answers;
@@ -67,7 +70,7 @@ impl<'a> Windows<'a> {
     }
 }
 
-/// The step of all cells.
+/// One step of all cells, for SIMD dispatch.
 struct Step<'s, 'a> {
     windows: &'s mut Windows<'a>,
     inputs: &'s [f64],
@@ -88,7 +91,8 @@ impl Wide for Step<'_, '_> {
 }
 
 impl Step<'_, '_> {
-    /// The neurons of every block; what their inputs give is the same for all cells.
+    /// Evaluates the neurons of every block; the contribution of the inputs is the same for all
+    /// cells.
     #[inline(always)]
     fn sum(&mut self, network: &Recurrent) {
         let (Shape { cell, width, .. }, (numbers, _)) = (network.shape, network.parts());
@@ -112,6 +116,7 @@ impl Step<'_, '_> {
 }
 
 impl Group {
+    /// Group of cells with an empty memory.
     fn empty(network: &Recurrent) -> Self {
         let width = network.shape.width;
         let nothing = |count: usize| vec![[0.0; LANES]; count];
@@ -119,12 +124,12 @@ impl Group {
         Self { answers: nothing(width), kept: nothing(width), blocks }
     }
 
-    /// A cell begins with nothing.
+    /// Resets the memory of a cell.
     fn forget(&mut self, lane: usize) {
         self.answers.iter_mut().chain(&mut self.kept).for_each(|lanes| lanes[lane] = 0.0);
     }
 
-    /// [`Cell::Rnn`]: the answer to nothing is taken off.
+    /// Outputs of simple recurrent cells: the output at zero input is subtracted.
     #[inline(always)]
     fn answer_less_bias(&mut self, network: &Recurrent, inputs: usize) {
         let (cell, _) = network.parts();
@@ -136,7 +141,7 @@ impl Group {
         }
     }
 
-    /// [`Cell::Lstm`].
+    /// Outputs and memory of LSTM cells.
     #[inline(always)]
     fn answer_by_gates(&mut self) {
         let mut blocks = self.blocks.chunks_exact(self.answers.len());

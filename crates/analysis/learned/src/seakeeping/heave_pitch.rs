@@ -1,28 +1,30 @@
 //! Heave and pitch of a box in regular waves: Jensen, Mansour and Olsen 2004, Ocean Engineering 31,
-//! 61-85 (the paper was not seen; read through MSS waveresponse345.m), at no speed, where the wave
-//! is met at its own frequency.
+//! 61-85 (the paper was not seen; read through MSS waveresponse345.m), at zero speed, where the
+//! encounter frequency is that of the wave.
 
 use super::hull::WaveHull;
 
 /// Acceleration of gravity, m/s2.
 pub const GRAVITY: f64 = 9.80665;
 
-/// What both share: the wave by the ship, the damping and how much of it moves it.
+/// Common factors of heave and pitch.
 struct Shared {
     /// Wave number, 1/m.
     k: f64,
-    /// Half a length of the wave along the ship: k_e L/2.
+    /// Half the ship length in wave phase: k_e L/2.
     sigma: f64,
-    /// kappa f: the pressure's decay, and the correction for the disturbed wave.
+    /// Forcing kappa f: decay of the pressure, and correction for the disturbed wave.
     force: f64,
-    /// eta: how the oscillator enlarges that.
+    /// Amplification eta of the oscillator.
     enlarged: f64,
 }
 
 impl Shared {
+    /// Computes the factors for a wave of frequency `omega`, rad/s, in direction `beta`, rad.
     fn of(hull: &WaveHull, omega: f64, beta: f64) -> Self {
         let k = omega * omega / GRAVITY;
-        // A box of the same displacement: its breadth is the ship's by the block coefficient.
+        // A box of the same displacement: its breadth is the ship's beam times the block
+        // coefficient.
         let breadth = k * hull.beam_m * hull.block_coefficient;
         let (effective, draught) = (k * beta.cos().abs(), k * hull.draught_m);
         // A = 2 sin(kB/2) exp(-kT), the ratio of radiated to own amplitude of a section.
@@ -37,13 +39,13 @@ impl Shared {
     }
 }
 
-/// m/m.
+/// Heave amplitude per wave amplitude, m/m.
 pub fn heave(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
     let Shared { sigma, force, enlarged, .. } = Shared::of(hull, omega, beta);
     (enlarged * force * sinc(sigma)).abs()
 }
 
-/// rad/m.
+/// Pitch amplitude per wave amplitude, rad/m.
 pub fn pitch(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
     let Shared { k, sigma, force, enlarged } = Shared::of(hull, omega, beta);
     if k == 0.0 {

@@ -1,8 +1,8 @@
-//! What the closed-form responses take of a ship.
+//! Particulars of a ship for closed-form responses.
 
 use serde::{Deserialize, Serialize};
 
-/// A ship at rest among waves, SI.
+/// Particulars of a ship at zero speed in waves, SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WaveHull {
@@ -18,9 +18,9 @@ pub struct WaveHull {
     pub gm_m: f64,
     /// Natural period of roll, s.
     pub roll_period_s: f64,
-    /// Damping of roll by the critical one.
+    /// Roll damping, as a fraction of the critical one.
     pub roll_damping: f64,
-    /// The part of it that makes waves, from which the moment of waves follows.
+    /// Part of the roll damping due to wave radiation, from which the wave moment follows.
     pub roll_radiation: f64,
 }
 

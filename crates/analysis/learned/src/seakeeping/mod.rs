@@ -1,7 +1,7 @@
 //! Standard deviations of heave, pitch and roll from a directional wave spectrum (Kanazawa 2023,
 //! sec. 3.4): responses by closed forms or by a table, and a factor for each motion that is learned
-//! from samples, the common ones thinned out. The branch is in series: it maps what the responses
-//! give.
+//! from samples, after thinning out the common ones. The learned factor is in series: it maps the
+//! output of the responses.
 
 mod factor;
 mod heave_pitch;

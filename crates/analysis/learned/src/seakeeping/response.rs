@@ -1,4 +1,4 @@
-//! Responses of a ship among waves.
+//! Responses of a ship in regular waves.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,31 +6,31 @@ use super::heave_pitch::{heave, pitch};
 use super::hull::WaveHull;
 use super::roll::roll;
 
-/// A motion in waves.
+/// Motion of a ship in waves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// m.
+    /// Heave, m.
     Heave,
-    /// rad.
+    /// Pitch, rad.
     Pitch,
-    /// rad.
+    /// Roll, rad.
     Roll,
 }
 
-/// Whatever answers how a ship moves among waves.
+/// Response amplitude operators of a ship.
 pub trait Responses {
-    /// Amplitude of a motion by that of a wave, m/m or rad/m. `omega` is the wave's frequency,
-    /// rad/s; `beta` where it goes from the bow, rad: pi is a head sea.
+    /// Amplitude of a motion per wave amplitude, m/m or rad/m. `omega` is the wave frequency,
+    /// rad/s; `beta` the direction of wave travel from the bow, rad: pi is a head sea.
     fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64;
 }
 
 impl WaveHull {
-    /// Every motion.
+    /// All motions.
     pub const MOTIONS: [Motion; 3] = [Motion::Heave, Motion::Pitch, Motion::Roll];
 }
 
-/// By closed forms.
+/// Responses by closed forms.
 impl Responses for WaveHull {
     fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64 {
         match motion {

@@ -1,7 +1,6 @@
 //! Roll in regular waves by its natural period and damping: Jensen, Mansour and Olsen 2004 (not
-//! seen; read through MSS waveresponse345.m). That file takes all of the damping for what makes
-//! waves, and leaves out the length under the root and the wave's phase along the ship; here are
-//! both.
+//! seen; read through MSS waveresponse345.m). That file attributes all damping to wave radiation,
+//! and omits the length under the root and the wave's phase along the ship; both are included here.
 
 use super::heave_pitch::GRAVITY;
 use super::hull::WaveHull;
@@ -9,9 +8,9 @@ use super::hull::WaveHull;
 /// Density of sea water, kg/m3.
 const DENSITY: f64 = 1025.0;
 
-/// rad/m. The moment follows from the damping by waves, by Haskind's relation: a section that
-/// radiates waves when it rolls is rolled by them, M^2 = (rho g^2/omega) b44; over the length the
-/// sections' moments add up as sin(sigma)/sigma.
+/// Roll amplitude per wave amplitude, rad/m. The moment follows from the radiation damping by
+/// Haskind's relation, for a section M^2 = (rho g^2/omega) b44; over the length the sections'
+/// moments add up as sin(sigma)/sigma.
 pub fn roll(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
     let WaveHull { lpp_m, beam_m, draught_m, .. } = *hull;
     if omega <= 0.0 {
@@ -22,10 +21,12 @@ pub fn roll(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
     let restoring = DENSITY * GRAVITY * volume * hull.gm_m;
     let inertia = restoring / (natural * natural);
     let damping = |share: f64| 2.0 * share * natural * inertia;
-    // Of one metre; over the length in phase, that is L times the root of a metre's.
+    // Squared moment of one metre; over the length in phase, the moment is L times the root of
+    // that.
     let sectional = DENSITY * GRAVITY * GRAVITY / omega * damping(hull.roll_radiation) / lpp_m;
     let sigma = 0.5 * omega * omega / GRAVITY * beta.cos().abs() * lpp_m;
     let along = if sigma < 1e-6 { 1.0 } else { sigma.sin() / sigma };
     let moment = (beta.sin() * lpp_m * sectional.sqrt() * along).abs();
+    // Steady amplitude of a damped oscillator with one degree of freedom.
     moment / (restoring - omega * omega * inertia).hypot(omega * damping(hull.roll_damping))
 }

@@ -1,18 +1,18 @@
-//! Directional wave spectra, as a wave radar gives them, and what a ship does in them.
+//! Directional wave spectra, as measured by a wave radar, and the motions of a ship in them.
 
 use serde::{Deserialize, Serialize};
 
 use super::response::{Motion, Responses};
 
-/// Density of the waves' variance by frequency and direction, m2 s/rad.
+/// Variance density of the wave elevation by frequency and direction, m2 s/rad.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DirectionalSpectrum {
-    /// Frequencies, rad/s, equally far apart.
+    /// Frequencies, rad/s, equally spaced.
     pub omegas: Vec<f64>,
-    /// Where waves go relative to the bow, rad, equally far apart around the ship.
+    /// Directions of wave travel relative to the bow, rad, equally spaced around the ship.
     pub betas: Vec<f64>,
-    /// By frequency, then by direction.
+    /// Densities by frequency, then by direction.
     pub density: Vec<Vec<f64>>,
 }
 
@@ -27,8 +27,10 @@ impl DirectionalSpectrum {
         self.moment(|omega, beta| ship.response(motion, omega, beta).powi(2)).sqrt()
     }
 
+    /// Integral of the spectrum, weighted by a function of frequency and direction.
     fn moment(&self, of: impl Fn(f64, f64) -> f64) -> f64 {
         let apart = |all: &[f64]| if all.len() > 1 { all[1] - all[0] } else { 0.0 };
+        // The grid is equally spaced in both directions, so every cell has the same size.
         let cell = apart(&self.omegas) * apart(&self.betas);
         let row = |(omega, row): (&f64, &Vec<f64>)| {
             let cells = self.betas.iter().zip(row);

@@ -1,4 +1,5 @@
-//! Responses of a ship among waves as a table: by a strip theory program, by panels, or measured.
+//! Responses of a ship in waves as a table: from a strip theory program, a panel method, or
+//! measurements.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,63 +7,63 @@ use serde::{Deserialize, Serialize};
 
 use super::response::{Motion, Responses};
 
-/// Amplitudes of motions by that of a wave, on a grid of frequencies and directions.
+/// Amplitudes of motions per wave amplitude, on a grid of frequencies and directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ResponseGrid {
-    /// Frequencies of waves, rad/s, rising.
+    /// Wave frequencies, rad/s, increasing.
     pub omegas: Vec<f64>,
-    /// Where waves go from the bow, rad, rising: all around the ship, or from 0 to pi, of which the
-    /// other side is the mirror image. pi is a head sea.
+    /// Directions of wave travel from the bow, rad, increasing: all around the ship, or from 0 to
+    /// pi, with the other side as mirror image. pi is a head sea.
     pub betas: Vec<f64>,
-    /// By frequency, then by direction, m/m.
+    /// Heave by frequency, then by direction, m/m.
     pub heave: Vec<Vec<f64>>,
-    /// The same, rad/m.
+    /// Pitch in the same order, rad/m.
     pub pitch: Vec<Vec<f64>>,
-    /// The same, rad/m.
+    /// Roll in the same order, rad/m.
     pub roll: Vec<Vec<f64>>,
 }
 
-/// A grid that has been checked.
+/// Response grid that has been checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ResponseGrid", into = "ResponseGrid")]
 pub struct ResponseTable(ResponseGrid);
 
-/// Why a table cannot be used.
+/// Fault of a response grid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFault {
-    /// The grid of a field does not rise, or is too short.
+    /// The grid of a field is not increasing, or is too short.
     #[error("{0}: at least two numbers that rise are needed")]
     Grid(&'static str),
     /// Directions go around the ship more than once.
     #[error("betas: they go around the ship more than once")]
     Turn,
-    /// Directions leave out a part of the ship's surroundings.
+    /// Directions omit a part of the ship's surroundings.
     #[error("betas: they neither go around the ship nor from 0 to pi")]
     Gap,
-    /// A row is missing or too long.
+    /// The number of rows or columns is wrong.
     #[error("{field}: {found} rows or columns, where the grid has {wanted}")]
     Shape {
-        /// The motion.
+        /// Name of the motion.
         field: &'static str,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many there must be.
+        /// Number expected.
         wanted: usize,
     },
-    /// A value is negative or no number.
+    /// A value is negative or not a finite number.
     #[error("{field}: row {row}, column {column}: an amplitude is a number of at least 0")]
     Value {
-        /// The motion.
+        /// Name of the motion.
         field: &'static str,
-        /// From 1.
+        /// Row, from 1.
         row: usize,
-        /// From 1.
+        /// Column, from 1.
         column: usize,
     },
 }
 
-/// Everything that is wrong with a grid.
+/// All faults of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableFaults(pub Vec<TableFault>);
 
@@ -90,12 +91,13 @@ impl From<ResponseTable> for ResponseGrid {
     }
 }
 
-/// How far from 0 and pi directions of one side may begin and end, rad.
+/// Tolerance of the first and last direction of one side about 0 and pi, rad.
 const NEAR: f64 = 1e-3;
-/// How many times the largest step the step from the last direction to the first may be.
+/// Largest step from the last direction to the first, relative to the largest other step.
 const SEAM: f64 = 2.0;
 
 impl ResponseGrid {
+    /// Checks the grid and the values of each motion.
     fn faults(&self) -> Vec<TableFault> {
         let mut faults: Vec<TableFault> = [("omegas", &self.omegas), ("betas", &self.betas)]
             .into_iter()
@@ -112,13 +114,14 @@ impl ResponseGrid {
         faults
     }
 
-    /// What is wrong with the directions as a way around the ship.
+    /// Checks that the directions cover the ship's surroundings.
     fn around(&self) -> Option<TableFault> {
         let over = self.betas[self.betas.len() - 1] - self.betas[0];
         let steps = self.betas.windows(2).map(|pair| pair[1] - pair[0]);
         let most = steps.fold(0.0, f64::max);
         match over {
             _ if over >= TAU => Some(TableFault::Turn),
+            // A full circle closes within a step similar to the others; one side needs no closing.
             _ if self.is_one_side() || TAU - over <= SEAM * most => None,
             _ => Some(TableFault::Gap),
         }
@@ -129,6 +132,7 @@ impl ResponseGrid {
         first.abs() < NEAR && (last - PI).abs() < NEAR
     }
 
+    /// Checks the size and the values of one motion.
     fn of_motion(&self, field: &'static str, rows: &[Vec<f64>]) -> Vec<TableFault> {
         let shape = |found: usize, wanted: usize| {
             (found != wanted).then_some(TableFault::Shape { field, found, wanted })
@@ -157,11 +161,13 @@ impl ResponseGrid {
 }
 
 impl Responses for ResponseTable {
-    /// Linear between neighbours in both; beyond the frequencies that of the nearest.
+    /// Bilinear interpolation; beyond the frequencies of the grid, the value at the nearest one.
     fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64 {
         let (grid, rows) = (&self.0, self.0.rows(motion));
         let (low, high, share) = between(&grid.omegas, omega);
         let (left, right, turned) = match grid.is_one_side() {
+            // Mirror image: of the angle and its negative, the one on the tabulated side is the
+            // smaller.
             true => between(&grid.betas, beta.rem_euclid(TAU).min((-beta).rem_euclid(TAU))),
             false => around(&grid.betas, beta),
         };
@@ -177,7 +183,7 @@ fn rises(grid: &[f64]) -> bool {
         && grid.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// The neighbours of a value, and how far it is from the first to the second.
+/// Indices of the neighbours of a value, and its position from the first to the second, 0 to 1.
 fn between(grid: &[f64], value: f64) -> (usize, usize, f64) {
     let value = value.clamp(grid[0], grid[grid.len() - 1]);
     let high = grid.partition_point(|x| *x < value).clamp(1, grid.len() - 1);
@@ -185,10 +191,11 @@ fn between(grid: &[f64], value: f64) -> (usize, usize, f64) {
     (high - 1, high, (value - a) / (b - a))
 }
 
-/// The same around the ship: the last is the first one's neighbour.
+/// The same for a direction around the ship: the last is a neighbour of the first.
 fn around(grid: &[f64], beta: f64) -> (usize, usize, f64) {
     let last = grid.len() - 1;
     let beta = grid[0] + (beta - grid[0]).rem_euclid(TAU);
+    // Beyond the last direction, interpolation continues to the first one.
     if beta <= grid[last] {
         return between(grid, beta);
     }

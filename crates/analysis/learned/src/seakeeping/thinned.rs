@@ -1,13 +1,15 @@
-//! Balance: the common samples thinned out to as many as the rare ones (Kanazawa 2023, sec. 3.4.1).
+//! Balanced samples: common samples are thinned out to the number of the rare ones (Kanazawa 2023,
+//! sec. 3.4.1).
 
 use crate::draws::Draws;
 
-/// Places of the samples that are kept: those above a quantile of what was measured, and of the
-/// others as many, drawn by a seed.
+/// Returns the indices of the selected samples: all at or above a quantile of the measured values,
+/// and as many of the others, drawn by a seed.
 pub fn thinned(measured: &[f64], quantile: f64, seed: u64) -> Vec<usize> {
     let mut sorted = measured.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let place = (quantile * measured.len() as f64) as usize;
+    // There is no quantile without samples.
     let Some(limit) = sorted.get(place.min(measured.len().saturating_sub(1))) else {
         return Vec::new();
     };
@@ -16,6 +18,7 @@ pub fn thinned(measured: &[f64], quantile: f64, seed: u64) -> Vec<usize> {
     let drawn = Draws::new(seed, 2).some_of(rare.len(), common.len());
     let mut kept: Vec<usize> = drawn.into_iter().map(|k| common[k as usize]).collect();
     kept.extend(rare);
+    // In the order of the samples.
     kept.sort_unstable();
     kept
 }

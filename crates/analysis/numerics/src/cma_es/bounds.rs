@@ -1,4 +1,4 @@
-//! A box kept by an adaptive penalty: Hansen et al. 2009, as `pycma`'s `BoundPenalty`.
+//! Box constraints by an adaptive penalty: Hansen et al. 2009, as `pycma`'s `BoundPenalty`.
 
 use std::collections::VecDeque;
 
@@ -6,17 +6,18 @@ use nalgebra::DVector;
 
 use super::strategy::Strategy;
 
-/// Weights of leaving a box from -`widths` to `widths`, by coordinate.
+/// Penalty weights of leaving a box from -`widths` to `widths`, by coordinate.
 #[derive(Debug, Clone)]
 pub(super) struct Bounds {
     widths: Vec<f64>,
     weights: Vec<f64>,
     begun: bool,
-    /// Spreads of recent costs by the variance of the coordinates.
+    /// Spreads of recent costs, relative to the variance of the coordinates.
     spreads: VecDeque<f64>,
 }
 
 impl Bounds {
+    /// Creates a penalty that is not active yet.
     pub fn new(widths: &[f64]) -> Self {
         Self {
             widths: widths.to_vec(),
@@ -26,25 +27,28 @@ impl Bounds {
         }
     }
 
-    /// The point of the box that is nearest.
+    /// Nearest point of the box.
     pub fn inside(&self, point: &[f64]) -> Vec<f64> {
         point.iter().zip(&self.widths).map(|(x, width)| x.clamp(-width, *width)).collect()
     }
 
-    /// What a candidate pays for being outside.
+    /// Penalty of a candidate outside the box.
     pub fn penalty(&self, point: &[f64]) -> f64 {
         let beyond = |(x, width): (&f64, &f64)| (x.abs() - width).max(0.0);
+        // Quadratic in the distance from the box, per coordinate.
         let one = |(weight, at): (&f64, (&f64, &f64))| weight * beyond(at).powi(2);
         self.weights.iter().zip(point.iter().zip(&self.widths)).map(one).sum::<f64>()
             / point.len() as f64
     }
 
-    /// Adapts the weights to how the costs of a generation (without penalty) spread and to how far
-    /// the mean is outside.
+    /// Adapts the weights to the spread of the costs of a generation (without penalty) and to the
+    /// distance of the mean from the box.
     pub fn adapt(&mut self, strategy: &Strategy, costs: &[f64]) {
         let variances = strategy.variances();
         let n = variances.len() as f64;
         self.remember(
+            // The spread of costs per variance of the coordinates estimates the curvature of the
+            // cost.
             quartiles(costs) / (variances.sum() / n),
             20 + 3 * self.widths.len() / costs.len().max(1),
         );
@@ -52,17 +56,21 @@ impl Bounds {
         recent.sort_by(f64::total_cmp);
         let Some(&typical) = recent.get(recent.len() / 2) else { return };
         let beyond = self.beyond(strategy.mean(), &variances);
+        // The penalty starts when the mean leaves the box for the first time.
         if !self.begun && beyond.iter().any(|far| *far > 0.0) {
             self.weights.fill(2.0 * typical);
             self.begun = true;
         }
         if self.begun {
             let damping = (strategy.mass() / (10.0 * n)).min(1.0);
+            // Distance at which the weight of a coordinate starts to increase, in standard
+            // deviations.
             let allowed = 3.0 * (n.sqrt() / strategy.mass()).max(1.0);
             self.reweigh(&beyond, allowed, damping, typical);
         }
     }
 
+    /// Adds a spread to the recent ones, of which at most `count` are kept.
     fn remember(&mut self, spread: f64, count: usize) {
         if spread.is_finite() && spread > 0.0 {
             self.spreads.push_front(spread);
@@ -70,12 +78,13 @@ impl Bounds {
         self.spreads.truncate(count);
     }
 
-    /// How far the mean is outside, in standard deviations.
+    /// Distance of the mean from the box, in standard deviations.
     fn beyond(&self, mean: &DVector<f64>, variances: &DVector<f64>) -> Vec<f64> {
         let one = |((x, width), v): ((&f64, &f64), &f64)| (x.abs() - width).max(0.0) / v.sqrt();
         mean.iter().zip(&self.widths).zip(variances.iter()).map(one).collect()
     }
 
+    /// Increases the weights of coordinates that are too far outside, and reduces very large ones.
     fn reweigh(&mut self, beyond: &[f64], allowed: f64, damping: f64, typical: f64) {
         for (weight, far) in self.weights.iter_mut().zip(beyond) {
             if *far > allowed {
@@ -88,7 +97,7 @@ impl Bounds {
     }
 }
 
-/// The distance between the quartiles.
+/// Interquartile range of the costs.
 fn quartiles(costs: &[f64]) -> f64 {
     let mut sorted = costs.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,46 +1,45 @@
-//! When a search has had enough.
+//! Budget of a search.
 
 use std::time::Instant;
 
-/// Limits of a search; the first that is reached ends it after the generation in which that
-/// happens.
+/// Limits of a search; the first limit that is reached ends it after the current generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
-    /// Evaluations.
+    /// Number of evaluations.
     pub evaluations: usize,
-    /// Time on the wall, s.
+    /// Largest elapsed time, s.
     pub wall_s: Option<f64>,
-    /// Time of this process on all cores, s, whatever else the process does meanwhile; not kept
-    /// where the system does not say.
+    /// Largest processor time of this process on all cores, s, including its other work; ignored if
+    /// the system does not report it.
     pub cpu_s: Option<f64>,
 }
 
-/// What a search has spent.
+/// Resources that a search has used.
 #[derive(Debug, Clone, Copy)]
 pub struct Spent {
-    /// Evaluations.
+    /// Largest number of evaluations.
     pub evaluations: usize,
     begun: Instant,
     cpu_s: Option<f64>,
 }
 
 impl Spent {
-    /// Nothing yet.
+    /// Starts counting, without any evaluation.
     pub fn nothing() -> Self {
         Self { evaluations: 0, begun: Instant::now(), cpu_s: process_s() }
     }
 
-    /// Time on the wall since the beginning, s.
+    /// Elapsed time since the start, s.
     pub fn wall_s(&self) -> f64 {
         self.begun.elapsed().as_secs_f64()
     }
 
-    /// Time of this process since the beginning, s; none where the system does not say.
+    /// Processor time of this process since the start, s; `None` if the system does not report it.
     pub fn cpu_s(&self) -> Option<f64> {
         Some(process_s()? - self.cpu_s?)
     }
 
-    /// The share of the budget that is gone: 1 or more where it is used up.
+    /// Used share of the budget: 1 or more when it is used up.
     pub fn share(&self, budget: &Budget) -> f64 {
         let wall = budget.wall_s.map_or(0.0, |limit| self.wall_s() / limit);
         let cpu = budget.cpu_s.zip(self.cpu_s()).map_or(0.0, |(limit, spent)| spent / limit);
@@ -48,7 +47,7 @@ impl Spent {
     }
 }
 
-/// Time of this process on all cores, s.
+/// Processor time of this process on all cores, s.
 #[cfg(unix)]
 fn process_s() -> Option<f64> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);

@@ -1,4 +1,4 @@
-//! Runs one after the other with a growing population, until the budget is used up.
+//! Successive runs with a growing population, until the budget is used up.
 
 use std::collections::VecDeque;
 
@@ -11,12 +11,12 @@ use super::bounds::Bounds;
 use super::budget::{Budget, Spent};
 use super::strategy::Strategy;
 
-/// What is searched, and how: from zero in a box about it.
+/// Settings of a search, which starts from zero in a box about it.
 #[derive(Debug, Clone)]
 pub struct CmaEsSearch {
     /// Half widths of the box.
     pub widths: Vec<f64>,
-    /// Standard deviation of the first candidates, of a restart's too.
+    /// Standard deviation of the first candidates of every run.
     pub sigma: f64,
     /// Population of the first run.
     pub population: usize,
@@ -24,50 +24,50 @@ pub struct CmaEsSearch {
     pub largest_population: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// When to end.
+    /// Budget of the search.
     pub budget: Budget,
 }
 
-/// How a search stands after a generation.
+/// State of a search after a generation.
 #[derive(Debug)]
 pub struct SearchState<'a> {
-    /// What was spent.
+    /// Resources used so far.
     pub spent: &'a Spent,
-    /// The best point so far, with its cost.
+    /// Best point so far, with its cost.
     pub best: (&'a [f64], f64),
-    /// The mean of the present run.
+    /// Mean of the present run, inside the box.
     pub mean: &'a [f64],
-    /// Its population.
+    /// Population of the present run.
     pub population: usize,
-    /// Runs before it.
+    /// Number of runs before it.
     pub restarts: usize,
 }
 
-/// The caller asked to stop.
+/// Error of a search that was stopped by its caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SearchCancelled;
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug, Clone)]
 pub struct SearchOutcome {
-    /// The best point.
+    /// Best point.
     pub best: Vec<f64>,
-    /// Its cost.
+    /// Cost of the best point.
     pub cost: f64,
-    /// The distribution of the run that found it, when it ended.
+    /// Distribution of the run that found it, at the end of that run.
     pub strategy: Strategy,
-    /// What was spent.
+    /// Resources used.
     pub spent: Spent,
-    /// The population of each run.
+    /// Population of each run.
     pub populations: Vec<usize>,
 }
 
 impl CmaEsSearch {
-    /// Searches for the least cost; `cost` must be a function of the point alone, `told` answers
-    /// `false` to stop.
+    /// Searches for the minimum of a cost. `cost` must depend on the point alone; the callback is
+    /// called after each generation and returns false to stop.
     ///
     /// # Errors
-    /// The caller asked to stop.
+    /// Returns an error if the caller asked to stop.
     pub fn least(
         &self,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
@@ -77,16 +77,17 @@ impl CmaEsSearch {
         self.from(Strategy::new(&start, self.sigma, self.population, self.seed), cost, told)
     }
 
-    /// As [`CmaEsSearch::least`], where the first run begins with a given distribution.
+    /// The same search with a given initial distribution of the first run.
     ///
     /// # Errors
-    /// The caller asked to stop.
+    /// Returns an error if the caller asked to stop.
     pub fn from(
         &self,
         first: Strategy,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
         told: &mut dyn FnMut(&SearchState<'_>) -> bool,
     ) -> Result<SearchOutcome, SearchCancelled> {
+        // The first mean counts as a candidate, so the result is never worse than the start.
         let start: Vec<f64> = Bounds::new(&self.widths).inside(first.mean().as_slice());
         let (mut spent, worth) = (Spent::nothing(), cost(&start));
         spent.evaluations += 1;
@@ -111,8 +112,9 @@ impl CmaEsSearch {
         }
     }
 
-    /// A run from anywhere in the box with twice the population.
+    /// Distribution of a restart: a random point in the box, and twice the population.
     fn restarted(&self, restart: usize, population: usize) -> Strategy {
+        // Another seed for each run, reproducible from the first.
         let seed = self.seed.wrapping_add(restart as u64);
         let mut rng = ChaCha12Rng::seed_from_u64(seed);
         let start: Vec<f64> =
@@ -125,8 +127,8 @@ impl CmaEsSearch {
         )
     }
 
-    /// One run until it has converged or the budget is used up; says whether it found something
-    /// better.
+    /// Runs one strategy until it has converged or the budget is used up. Returns true if it found
+    /// a better point.
     fn run(
         &self,
         strategy: &mut Strategy,
@@ -136,14 +138,17 @@ impl CmaEsSearch {
     ) -> Result<bool, SearchCancelled> {
         let mut bounds = Bounds::new(&self.widths);
         let (mut recent, mut found) = (VecDeque::new(), false);
+        // Stagnation test over 10 + 30 n / population generations (Auger and Hansen 2005).
         let patience = 10 + (30 * self.widths.len()).div_ceil(strategy.population());
         while outcome.spent.share(&self.budget) < 1.0 {
             let candidates = strategy.ask();
             let (mut points, mut costs) = evaluated(&bounds, &candidates, strategy.mean(), cost);
             outcome.spent.evaluations += costs.len();
-            // Among hundreds of coordinates the mean is better than most of what is drawn about it:
-            // it is evaluated too.
+            // In hundreds of dimensions the mean is better than most candidates drawn about it, so
+            // it is evaluated, too.
             let of_mean = costs.pop().zip(points.pop());
+            // The strategy ranks candidates by penalised cost; the penalty weights follow the plain
+            // cost.
             let penalised: Vec<f64> = candidates
                 .column_iter()
                 .zip(&costs)
@@ -178,7 +183,7 @@ impl CmaEsSearch {
     }
 }
 
-/// Candidates and the mean brought inside, and what they cost there.
+/// Candidates and the mean moved into the box, and their costs there.
 fn evaluated(
     bounds: &Bounds,
     candidates: &DMatrix<f64>,
@@ -190,13 +195,14 @@ fn evaluated(
     let costs = points
         .par_iter()
         .map(|point| cost(point))
+        // Not a number would have no rank.
         .map(|cost| if cost.is_nan() { f64::INFINITY } else { cost });
     let costs = costs.collect();
     (points, costs)
 }
 
-/// Whether the best of a generation has not changed for long: Auger and Hansen 2005, with a
-/// tolerance by its own size.
+/// True if the best cost of a generation has not changed for a long time: Auger and Hansen 2005,
+/// with a tolerance relative to its own size.
 fn converged(recent: &VecDeque<f64>, patience: usize) -> bool {
     let (low, high) = recent
         .iter()

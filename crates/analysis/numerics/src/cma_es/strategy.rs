@@ -1,4 +1,5 @@
-//! One run: a normal distribution that is asked for candidates and told what they are worth.
+//! Evolution strategy of one run: a normal distribution that draws candidates and adapts to their
+//! costs.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rand::{RngExt, SeedableRng};
@@ -7,14 +8,14 @@ use rand_distr::StandardNormal;
 
 use super::weights::Weights;
 
-/// The distribution of candidates with the paths by which it adapts.
+/// Distribution of candidates, with the evolution paths by which it adapts.
 #[derive(Debug, Clone)]
 pub struct Strategy {
     weights: Weights,
     mean: DVector<f64>,
     sigma: f64,
     covariance: DMatrix<f64>,
-    /// Eigenvectors of the covariance by the roots of its eigenvalues.
+    /// Eigenvectors of the covariance times the roots of its eigenvalues.
     axes: DMatrix<f64>,
     vectors: DMatrix<f64>,
     roots: DVector<f64>,
@@ -22,15 +23,15 @@ pub struct Strategy {
     path: DVector<f64>,
     generation: usize,
     decomposed: usize,
-    /// The candidates that were asked for: standard normal, and so shaped.
+    /// Last candidates: standard normal, and transformed by the axes.
     normal: DMatrix<f64>,
     shaped: DMatrix<f64>,
     rng: ChaCha12Rng,
 }
 
 impl Strategy {
-    /// About a point, with one standard deviation for every coordinate. A population below 4 is
-    /// taken as 4.
+    /// Creates a distribution about a point, with the same standard deviation for every coordinate.
+    /// A population below 4 is raised to 4.
     pub fn new(start: &[f64], sigma: f64, population: usize, seed: u64) -> Self {
         let (n, population) = (start.len(), population.max(4));
         let identity = || DMatrix::identity(n, n);
@@ -52,9 +53,9 @@ impl Strategy {
         }
     }
 
-    /// The same shape about another mean with other random numbers, its paths forgotten; with at
-    /// least a standard deviation in the mean over the coordinates, so that what has converged
-    /// moves again.
+    /// Returns a distribution of the same shape about another mean with other random numbers,
+    /// without its paths. The mean standard deviation over the coordinates is at least `deviation`,
+    /// so that a converged distribution moves again.
     #[must_use]
     pub fn renewed(&self, mean: &[f64], deviation: f64, seed: u64) -> Self {
         let mut renewed = self.clone();
@@ -70,7 +71,7 @@ impl Strategy {
         renewed
     }
 
-    /// Candidates, one a column.
+    /// Draws candidates, one per column.
     pub fn ask(&mut self) -> DMatrix<f64> {
         let rng = &mut self.rng;
         self.normal.iter_mut().for_each(|value| *value = rng.sample(StandardNormal));
@@ -80,21 +81,25 @@ impl Strategy {
         candidates
     }
 
-    /// What the candidates last asked for cost; only their order counts.
+    /// Updates the distribution by the costs of the last candidates; only their order counts.
     pub fn tell(&mut self, costs: &[f64]) {
         let mut order: Vec<usize> = (0..costs.len()).collect();
         order.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
         self.generation += 1;
         let parents = self.weights.parents;
+        // Only the parents, which have positive weights, move the mean.
         let weighted = |of: &DMatrix<f64>| {
             let sum = |sum: DVector<f64>, (k, w): (&usize, &f64)| sum + of.column(*k) * *w;
             order[..parents].iter().zip(&self.weights.all).fold(DVector::zeros(of.nrows()), sum)
         };
+        // Steps of the mean by weighted recombination of the best candidates.
         let (moved, normal) = (weighted(&self.shaped), weighted(&self.normal));
         self.mean += &moved * self.sigma;
         let steady = self.follow(&moved, &normal);
         self.adapt(&order, steady);
         let Weights { step_rate, step_damping, expected_length, .. } = self.weights;
+        // Cumulative step-size adaptation: sigma grows if the path is longer than that of random
+        // steps.
         self.sigma *= (step_rate / step_damping * (self.step_path.norm() / expected_length - 1.0))
             .min(1.0)
             .exp();
@@ -103,11 +108,14 @@ impl Strategy {
         }
     }
 
-    /// Lengthens both paths by a step; says whether that of the covariance went on.
+    /// Extends both evolution paths by a step. Returns true unless the covariance path is stalled
+    /// because the step-size path is too long.
     fn follow(&mut self, moved: &DVector<f64>, normal: &DVector<f64>) -> bool {
         let Weights { step_rate, path_rate, mass, expected_length, .. } = self.weights;
         self.step_path *= 1.0 - step_rate;
+        // The standard normal step rotated by the eigenvectors equals C^(-1/2) times the step.
         self.step_path += (&self.vectors * normal) * (step_rate * (2.0 - step_rate) * mass).sqrt();
+        // Bias correction of the path in the first generations.
         let settled =
             (1.0 - (1.0 - step_rate).powi(2 * self.generation.min(1 << 20) as i32)).sqrt();
         let longest = (1.4 + 2.0 / (self.mean.len() as f64 + 1.0)) * expected_length;
@@ -119,10 +127,11 @@ impl Strategy {
         steady
     }
 
-    /// The covariance towards what was good and away from what was bad.
+    /// Updates the covariance towards good candidates and away from bad ones.
     fn adapt(&mut self, order: &[usize], steady: bool) {
         let Weights { rank_one_rate, rank_mu_rate, path_rate, .. } = self.weights;
         let n = self.mean.len() as f64;
+        // Compensates the variance that a stalled path does not contribute.
         let missed = if steady { 0.0 } else { path_rate * (2.0 - path_rate) };
         let kept = 1.0 + rank_one_rate * missed
             - rank_one_rate
@@ -132,6 +141,8 @@ impl Strategy {
             let factor = if *w >= 0.0 {
                 *w
             } else {
+                // Negative weights are scaled by the candidate's length, which keeps the covariance
+                // positive.
                 w * n / self.normal.column(*k).norm_squared().max(f64::MIN_POSITIVE)
             };
             scaled.column_mut(*k).scale_mut(factor);
@@ -140,18 +151,20 @@ impl Strategy {
         self.covariance.ger(rank_one_rate, &self.path, &self.path, 1.0);
     }
 
+    /// Recomputes axes and eigenvectors of the covariance.
     fn decompose(&mut self) {
         self.decomposed = self.generation;
         self.covariance = (&self.covariance + self.covariance.transpose()) * 0.5;
         let SymmetricEigen { eigenvectors, eigenvalues } =
             self.covariance.clone().symmetric_eigen();
+        // Rounding may leave eigenvalues at or below zero.
         let least = 1e-14 * eigenvalues.max();
         self.roots = eigenvalues.map(|value| value.max(least).sqrt());
         self.axes = &eigenvectors * DMatrix::from_diagonal(&self.roots);
         self.vectors = eigenvectors;
     }
 
-    /// Candidates that are asked for at a time.
+    /// Number of candidates per generation.
     pub fn population(&self) -> usize {
         self.normal.ncols()
     }
@@ -176,8 +189,8 @@ impl Strategy {
         self.weights.mass
     }
 
-    /// Whether no axis can move the mean any more, or the covariance has become as good as singular
-    /// (Auger and Hansen 2005).
+    /// True if no axis changes the mean any more, or the covariance is nearly singular (Auger and
+    /// Hansen 2005).
     pub(super) fn exhausted(&self) -> bool {
         let (low, high) = (self.roots.min(), self.roots.max());
         let still =

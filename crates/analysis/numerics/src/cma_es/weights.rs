@@ -1,11 +1,11 @@
 //! Recombination weights and learning rates: Hansen 2016, Table 1.
 
-/// What follows from the dimension and the population.
+/// Constants that depend on dimension and population.
 #[derive(Debug, Clone)]
 pub(super) struct Weights {
-    /// By rank, best first; the worse half is negative.
+    /// Weights by rank, best first; those of the worse half are negative.
     pub all: Vec<f64>,
-    /// How many are positive.
+    /// Number of positive weights.
     pub parents: usize,
     /// Variance effective selection mass.
     pub mass: f64,
@@ -19,8 +19,10 @@ pub(super) struct Weights {
 }
 
 impl Weights {
+    /// Computes the constants for a dimension and a population.
     pub fn new(dimension: usize, population: usize) -> Self {
         let n = dimension as f64;
+        // Logarithmic weights ln((population + 1) / 2) - ln(rank).
         let raw: Vec<f64> = (1..=population)
             .map(|i| (0.5 * (population as f64 + 1.0)).ln() - (i as f64).ln())
             .collect();
@@ -30,6 +32,7 @@ impl Weights {
         let rank_one_rate = 2.0 / ((n + 1.3).powi(2) + mass);
         let rank_mu_rate = (2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0).powi(2) + mass))
             .min(1.0 - rank_one_rate);
+        // Limits of the sum of the negative weights; the smallest of them applies.
         let against = [
             1.0 + rank_one_rate / rank_mu_rate,
             1.0 + 2.0 * effective(worse) / (mass + 2.0),
@@ -57,14 +60,14 @@ impl Weights {
         }
     }
 
-    /// Generations in which the covariance changes too little for its decomposition to be worth
-    /// repeating.
+    /// Number of generations over which the covariance changes too little for a new decomposition.
     pub fn patience(&self, dimension: usize) -> usize {
         (0.5 / (dimension as f64 * (self.rank_one_rate + self.rank_mu_rate))).floor().max(1.0)
             as usize
     }
 }
 
+/// Effective number of weights, (sum w)^2 / sum w^2.
 fn effective(weights: &[f64]) -> f64 {
     let (sum, squares) =
         weights.iter().fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));

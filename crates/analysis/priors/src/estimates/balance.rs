@@ -1,4 +1,4 @@
-//! Revolutions at which thrust and resistance balance.
+//! Revolutions at which thrust and resistance are in equilibrium.
 
 use crate::estimates::propeller::Thrust;
 
@@ -24,10 +24,11 @@ pub struct Straight {
 }
 
 impl Straight {
-    /// Revolutions, 1/s; none where the propeller cannot give the thrust.
+    /// Returns the revolutions, 1/s; none where the propeller cannot give the thrust.
     ///
     /// `(1 - t) rho n^2 D^4 K_T(J) = R` with `n = u_P/(J D)` is `K_T(J) = c J^2`.
     pub fn revolutions_rps(&self) -> Option<f64> {
+        // The density cancels: thrust and resistance are both proportional to it.
         let resistance = -0.5 * self.x_0 * self.lpp_m * self.draught_m * self.speed_m_s.powi(2);
         let inflow = (1.0 - self.w_p0) * self.speed_m_s;
         let c = resistance / ((1.0 - self.t_p) * (inflow * self.diameter_m).powi(2));
@@ -37,7 +38,7 @@ impl Straight {
     }
 }
 
-/// The smallest root above zero of `a x^2 + b x + c`.
+/// Smallest positive root of `a x^2 + b x + c`.
 fn positive_root(a: f64, b: f64, c: f64) -> Option<f64> {
     let root = (b * b - 4.0 * a * c).sqrt();
     let roots = [(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)];

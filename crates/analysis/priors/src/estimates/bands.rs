@@ -1,4 +1,4 @@
-//! Bands on the standard manoeuvres of an estimate.
+//! Uncertainty bands of the standard manoeuvres of an estimate.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,41 +15,42 @@ use crate::estimates::draws::Draws;
 use crate::estimates::estimate::Estimate;
 use crate::estimates::limits;
 
-/// Sets of parameters and particulars that are drawn; each is a ship of its own.
+/// Number of sets of parameters and particulars that are drawn; each is a ship of its own.
 const SHIPS: usize = 8;
-/// Sets of coefficients that are drawn for each; they sail in lockstep.
+/// Number of sets of coefficients that are drawn for each ship; they are simulated in lockstep.
 const SISTERS: usize = 8;
-/// A step, in the time that the ship takes for its length: draws need no more.
+/// Time step, by the time in which the ship covers its length: draws need no finer one.
 const STEP_LENGTHS: f64 = 0.1;
-/// How long a hard turn is sailed, ship lengths: beyond half a circle until it is steady.
+/// Duration of a hard turn, ship lengths: beyond half a circle until it is steady.
 const TURN_LENGTHS: f64 = 25.0;
-/// How long the heading may take to its first 10 deg, ship lengths.
+/// Longest time until the first 10 deg of heading change, ship lengths.
 const INITIAL_LENGTHS: f64 = 6.0;
 const HARD_DEG: f64 = 35.0;
 const INITIAL_DEG: f64 = 10.0;
 const ZIGZAGS_DEG: [f64; 2] = [10.0, 20.0];
 
-/// The estimate's own manoeuvres, and the bands about them. All to starboard: an estimate is the
-/// same on both sides.
+/// Manoeuvres of the estimate, and the uncertainty bands about them. All to starboard: an estimate
+/// is the same on both sides.
 #[derive(Debug, Clone, Serialize)]
 pub struct EstimateBands {
-    /// By the means.
+    /// Manoeuvres by the means.
     pub manoeuvres: StandardManoeuvres,
-    /// Models that were drawn.
+    /// Number of models that were drawn.
     pub draws: usize,
-    /// Those that left the physical range in some manoeuvre.
+    /// Number of models that left the physical range in some manoeuvre.
     pub failed: usize,
-    /// By figure: 95 % of the draws that reached it are inside.
+    /// Band of each figure: 95 % of the draws that reached it are inside.
     pub figures: Vec<Band>,
 }
 
-/// Sails the standard manoeuvres by the estimate and by draws around it; the same seed gives the
-/// same bands. None where the law does not fit.
+/// Simulates the standard manoeuvres by the estimate and by draws around it; the same seed gives
+/// the same bands. Returns none where the law does not fit.
 pub fn estimate_bands(estimate: &Estimate, law: &Law, seed: u64) -> Option<EstimateBands> {
     let lots = lots(estimate, seed);
     let sailed: Vec<Vec<StandardManoeuvres>> =
         lots.par_iter().map(|lot| sailed(lot, law)).collect::<Option<_>>()?;
     let mut sailed = sailed.into_iter();
+    // The first group is the estimate itself, the others are draws.
     let own = sailed.next()?.into_iter().next()?;
     let drawn: Vec<StandardManoeuvres> = sailed.flatten().collect();
     Some(EstimateBands {
@@ -60,9 +61,10 @@ pub fn estimate_bands(estimate: &Estimate, law: &Law, seed: u64) -> Option<Estim
     })
 }
 
-/// Models that differ in their coefficients alone; the first lot is the estimate.
+/// Groups of models that differ in their coefficients alone; the first group is the estimate.
 fn lots(estimate: &Estimate, seed: u64) -> Vec<Vec<Model>> {
     let mut around = Draws::new(&estimate.around_covariance, seed);
+    // Two independent streams from one seed.
     let mut coefficients = Draws::new(&estimate.coefficients_covariance, seed ^ 0x9e37_79b9);
     let mut lots = vec![vec![estimate.model.clone()]];
     for _ in 0..SHIPS {
@@ -73,6 +75,7 @@ fn lots(estimate: &Estimate, seed: u64) -> Vec<Vec<Model>> {
             .map(|(one, by)| limits::parameter(&one.name, one.mean + by))
             .collect();
         let ship = estimate.moved(&within_particulars(estimate, &moved));
+        // A drawn ship whose propeller cannot balance the resistance is omitted.
         let Ok(ship) = estimate.balanced(ship) else { continue };
         let sister = |_| drawn(estimate, &ship, &coefficients.next());
         lots.push((0..SISTERS).map(sister).collect());
@@ -80,7 +83,7 @@ fn lots(estimate: &Estimate, seed: u64) -> Vec<Vec<Model>> {
     lots
 }
 
-/// Particulars may not change their sign or grow beyond twice themselves.
+/// Limits drawn particulars: no change of sign, and no more than twice the mean.
 fn within_particulars(estimate: &Estimate, moved: &[f64]) -> Vec<f64> {
     let one = |(one, value): (&crate::estimates::combined::Combined, &f64)| {
         if one.name.ends_with("_m") && one.name != "x_g_m"
@@ -116,7 +119,7 @@ fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
         let turn = sailed.and_then(|sailed| Turn::of(sailed, HARD_DEG));
         note(one, turn.map(|turn| turn.metrics), turn_name, |all, turn| all.turns.push(turn));
     }
-    // Both angles at once: those that have checked early give their lanes to others.
+    // Both angles at once: simulations that end early give their lanes to others.
     let zigzag = |angle: f64| Manoeuvre::Zigzag { rudder: angle, switch: angle };
     let mut zigzags = run(&ship, &sisters, &ZIGZAGS_DEG.map(zigzag), None).into_iter();
     for angle in ZIGZAGS_DEG {
@@ -128,6 +131,7 @@ fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
             });
         }
     }
+    // The initial turning ability needs a turn of its own, with a small rudder angle.
     let initial = Manoeuvre::Turn { rudder: INITIAL_DEG };
     for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, &[initial], Some(INITIAL_LENGTHS)))
     {
@@ -135,6 +139,7 @@ fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
             .ok()
             .and_then(|sailed| initial_turning_distance(&sailed.after, INITIAL_DEG, INITIAL_DEG));
     }
+    // The criteria combine figures of several manoeuvres.
     for one in &mut all {
         let speed = ship.approach_speed_m_s();
         one.imo = criteria(ship.lpp_m(), speed, &one.turns, &one.zigzags, one.initial_turning_m);
@@ -150,8 +155,8 @@ fn zigzag_name(angle: f64) -> String {
     Manoeuvre::Zigzag { rudder: angle, switch: angle }.to_string()
 }
 
-/// Sails manoeuvres one after the other, each by every sister; as long as so many lengths take, or
-/// until all is seen.
+/// Simulates manoeuvres one after the other, each by every sister; for the given number of lengths,
+/// or until the manoeuvre is complete.
 fn run(
     ship: &Ship,
     sisters: &[Vec<f64>],

@@ -1,9 +1,9 @@
-//! Several regressions for one value: a mixture, and its mean and covariance.
+//! Combination of several regressions for one value: a mixture, and its mean and covariance.
 //!
-//! Each regression says a value with a scatter. The mixture weights them by the inverse of their
+//! Each regression gives a value with a scatter. The mixture weights them by the inverse of their
 //! variances; its variance is the mean variance within the regressions and the variance between
-//! them (law of total variance), and what lies between them is shared by all values of a
-//! regression, so that their covariance follows.
+//! them (law of total variance). The deviation of a regression is common to all of its values, so
+//! that their covariance follows.
 
 use std::collections::BTreeMap;
 
@@ -11,45 +11,46 @@ use nalgebra::DMatrix;
 
 use crate::estimates::regression::Given;
 
-/// Share of the mixture's variance that is taken. The scatter of each regression against four hulls
-/// has its bias in it, which the variance between regressions counts again, and values of one ship
-/// are not off independently. Chosen so that the bands hold what ships of the zoo do as often as
+/// Share of the mixture's variance that is used. The scatter of each regression against four hulls
+/// includes its bias, which the variance between regressions counts again, and values of one ship
+/// are not independent. Chosen so that the bands contain the values of ships of the zoo as often as
 /// they should (docs/evidence/estimates.md).
 pub const SPREAD: f64 = 0.35;
 
 /// One value of the mixture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Combined {
-    /// What is estimated.
+    /// Name of the estimated value.
     pub name: String,
-    /// What each regression gives.
+    /// Value of each regression.
     pub given: Vec<Given>,
-    /// The mean.
+    /// Mean.
     pub mean: f64,
     /// Variance within the regressions.
     pub within: f64,
 }
 
 impl Combined {
-    /// Combines what regressions give; none where there is nothing.
+    /// Combines the values of regressions; none where there is no value.
     pub fn of(name: &str, given: Vec<Given>) -> Option<Self> {
         let weights = weights(&given);
         let total: f64 = weights.iter().sum();
         if given.is_empty() || total <= 0.0 || total.is_nan() {
             return None;
         }
+        // Weights are inverse variances, the mean is their weighted sum.
         let mean = given.iter().zip(&weights).map(|(one, w)| w * one.value).sum::<f64>() / total;
         let within =
             given.iter().zip(&weights).map(|(one, w)| w * one.scatter.powi(2)).sum::<f64>() / total;
         Some(Self { name: name.to_owned(), given, mean, within })
     }
 
-    /// The regression that weighs most.
+    /// Regression with the largest weight.
     pub fn leading(&self) -> Option<&Given> {
         self.given.iter().min_by(|a, b| a.scatter.total_cmp(&b.scatter))
     }
 
-    /// How far each regression is from the mean, times the root of its weight.
+    /// Deviation of each regression from the mean, times the root of its weight.
     fn deviations(&self) -> BTreeMap<&str, f64> {
         let weights = weights(&self.given);
         let total: f64 = weights.iter().sum();
@@ -63,13 +64,15 @@ impl Combined {
 }
 
 fn weights(given: &[Given]) -> Vec<f64> {
+    // A floor of the scatter, so that a regression without any has a finite weight.
     given.iter().map(|one| one.scatter.max(1e-12).powi(-2)).collect()
 }
 
-/// The covariance of values, in their order.
+/// Covariance of values, in their order.
 pub fn covariance(values: &[Combined]) -> DMatrix<f64> {
     let deviations: Vec<BTreeMap<&str, f64>> = values.iter().map(Combined::deviations).collect();
     DMatrix::from_fn(values.len(), values.len(), |i, j| {
+        // Only regressions that give both values contribute to the covariance between them.
         let between: f64 = deviations[i]
             .iter()
             .filter_map(|(name, a)| deviations[j].get(name).map(|b| a * b))

@@ -1,9 +1,9 @@
-//! Why a ship cannot be estimated.
+//! Errors of the estimate of a ship.
 
-/// Why a ship cannot be estimated.
+/// Error of the estimate of a ship.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EstimateError {
-    /// Particulars that no regression replaces.
+    /// Particulars without a regression are missing.
     #[error("{ship}: an estimate needs {}; give them under `particulars`", .names.join(", "))]
     Missing {
         /// The ship.
@@ -16,10 +16,10 @@ pub enum EstimateError {
     NotGiven {
         /// The ship.
         ship: String,
-        /// What is missing.
+        /// Name of the missing value.
         name: String,
     },
-    /// Thrust and resistance find no balance.
+    /// Thrust and resistance have no equilibrium.
     #[error("{ship}: the propeller of {diameter_m:.3} m cannot drive it at {speed_m_s} m/s")]
     NoBalance {
         /// The ship.
@@ -29,7 +29,7 @@ pub enum EstimateError {
         /// The speed.
         speed_m_s: f64,
     },
-    /// A file of the library does not read.
+    /// A file of the library cannot be read.
     #[error(transparent)]
     File(#[from] sistership_model::FileError),
     /// The law is missing or does not fit.

@@ -1,4 +1,4 @@
-//! The estimate of a ship: a model of the law `mmg`, and how far it may be off.
+//! Estimate of a ship: a model of the law `mmg`, with its uncertainty.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use crate::estimates::limits;
 use crate::estimates::particulars::complete_particulars;
 use crate::estimates::propeller::Thrust;
 
-/// Particulars that regressions replace where the ship does not state them.
+/// Particulars that regressions give where the ship does not state them.
 const REPLACED: [&str; 6] = [
     "rudder_area_m2",
     "rudder_height_m",
@@ -32,9 +32,9 @@ const REPLACED: [&str; 6] = [
     "yaw_gyradius_ratio",
     "propeller_pitch_ratio",
 ];
-/// The particular that follows from the speed where nothing gives it.
+/// The particular that is estimated from the speed where it is not given.
 const FULLNESS: &str = "block_coefficient";
-/// What other formulas need.
+/// Values that other formulas need.
 const FIRST: [&str; 5] = ["m_x", "m_y", "J_z", "w_P0", "t_P"];
 const PARAMETERS: [&str; 12] = [
     "C_1", "C_2", "x_P", "x_R", "t_R", "a_H", "x_H", "gamma_R", "l_R", "epsilon", "kappa",
@@ -44,26 +44,26 @@ const COEFFICIENTS: [&str; 17] = [
     "X_0", "X_vv", "X_vr", "X_rr", "X_vvvv", "Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr",
     "N_v", "N_r", "N_vvv", "N_vvr", "N_vrr", "N_rrr",
 ];
-/// Source key of what is chosen so that thrust and resistance balance.
+/// Source key of values that are chosen so that thrust and resistance balance.
 const BALANCE: &str = "thrust-balance";
 
-/// How far one value may be off, and which regressions give it.
+/// Uncertainty of one value, with its regressions.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Spread {
-    /// Coefficient, parameter or particular.
+    /// Name of the coefficient, parameter or particular.
     pub name: String,
-    /// Its estimate.
+    /// Estimate.
     pub mean: f64,
     /// Standard deviation.
     pub deviation: f64,
-    /// What each regression gives.
+    /// Value of each regression.
     pub given: BTreeMap<String, f64>,
 }
 
-/// A ship's estimate.
+/// Estimate of a ship.
 #[derive(Debug, Clone)]
 pub struct Estimate {
-    /// Labelled estimated; its posterior is of the coefficients.
+    /// Model with the status estimated; its posterior is that of the coefficients.
     pub model: Model,
     /// Particulars that the ship does not state, then parameters.
     pub(crate) around: Vec<Combined>,
@@ -73,7 +73,7 @@ pub struct Estimate {
     pub(crate) thrust: ThrustCurve,
 }
 
-/// The thrust of a propeller by its pitch.
+/// Thrust of a propeller by its pitch.
 #[derive(Debug, Clone)]
 pub(crate) struct ThrustCurve {
     series: crate::estimates::propeller::PropellerSeries,
@@ -89,7 +89,7 @@ impl ThrustCurve {
 /// Estimates a ship at a speed.
 ///
 /// # Errors
-/// Names the particulars that are missing.
+/// Returns an error that names the particulars that are missing.
 pub fn estimate(
     library: &Library,
     vessel: &Vessel,
@@ -102,6 +102,7 @@ pub fn estimate(
     let at = |particulars: &Particulars| regress(library, ship, particulars, speed_m_s);
     let Regressed { around, coefficients, blades } = at(&particulars)?;
     let [by_around, by_coefficients] = fullness_effect(&particulars, &at)?;
+    // The error of an estimated block coefficient moves all values together: a rank-one term.
     let spread = |values: &[Combined], effect: &DVector<f64>| {
         covariance(values) + effect * effect.transpose()
     };
@@ -121,7 +122,7 @@ pub fn estimate(
     Ok(estimate)
 }
 
-/// What all regressions give for a ship.
+/// Values of all regressions for a ship.
 struct Regressed {
     around: Vec<Combined>,
     coefficients: Vec<Combined>,
@@ -136,12 +137,15 @@ fn regress(
 ) -> Result<Regressed, EstimateError> {
     let mut inputs = Inputs::new(ship, particulars, speed_m_s)?;
     let (mut around, mut coefficients) = (Vec::new(), Vec::new());
+    // Particulars first: the formulas of parameters use them.
     for name in REPLACED {
         if inputs.get(name).is_none() {
             take(library, ship, &mut inputs, &mut around, name)?;
         }
     }
+    // Between the steps: the next formulas use values that follow from the particulars.
     set_derived(&mut inputs);
+    // In this order: later formulas use earlier values.
     for name in FIRST.into_iter().chain(PARAMETERS) {
         take(library, ship, &mut inputs, &mut around, name)?;
     }
@@ -151,8 +155,8 @@ fn regress(
     Ok(Regressed { around, coefficients, blades: inputs.get("propeller_blades") })
 }
 
-/// What one standard error of an estimated block coefficient changes in what is around the
-/// coefficients, and in these; nothing where it is stated.
+/// Changes of parameters and of coefficients by one standard error of an estimated block
+/// coefficient; zero where it is stated.
 fn fullness_effect(
     particulars: &Particulars,
     at: &dyn Fn(&Particulars) -> Result<Regressed, EstimateError>,
@@ -164,6 +168,7 @@ fn fullness_effect(
         other.get_mut(FULLNESS).into_iter().for_each(|one| one.value += by);
         at(&other)
     };
+    // Central difference over one standard error to either side.
     let (fuller, finer) = (moved(error)?, moved(-error)?);
     let half = |more: &[Combined], less: &[Combined]| {
         let pairs = more.iter().zip(less).map(|(a, b)| 0.5 * (a.mean - b.mean));
@@ -182,13 +187,14 @@ fn take(
     let given = library.given(name, &|name| inputs.get(name));
     let missing = || EstimateError::NotGiven { ship: ship.to_owned(), name: name.to_owned() };
     let mut combined = Combined::of(name, given).ok_or_else(missing)?;
+    // Limited before it becomes an input of other formulas.
     combined.mean = limits::parameter(name, combined.mean);
     inputs.set(name, combined.mean);
     into.push(combined);
     Ok(())
 }
 
-/// What follows from particulars that were replaced.
+/// Sets values that follow from the estimated particulars.
 fn set_derived(inputs: &mut Inputs) {
     let of = |name: &str| inputs.get(name).unwrap_or(0.0);
     let (area, height, x_g, length) =
@@ -226,10 +232,12 @@ fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
     }
 }
 
-/// The ship's own gear where a model of it states one, scaled to full rate by SOLAS otherwise.
+/// Steering gear of the ship where one of its models states it; otherwise that of SOLAS, scaled to
+/// the ship's size.
 fn steering(vessel: &Vessel) -> Steering {
     let stated = vessel.file.models.first().map(|model| model.steering.clone());
-    // A gear as fast as SOLAS asks of a ship turns a model's rudder faster by the root of scale.
+    // By Froude's law, a model of scale s turns the rudder sqrt(s) times as fast as its full-scale
+    // ship.
     let scaled = || {
         let full = Steering::default();
         let scale = vessel.file.scale.unwrap_or(1.0);
@@ -239,7 +247,7 @@ fn steering(vessel: &Vessel) -> Steering {
 }
 
 impl Estimate {
-    /// How far each value may be off.
+    /// Uncertainty of each value.
     pub fn spreads(&self) -> Vec<Spread> {
         let of = |values: &[Combined], covariance: &DMatrix<f64>| -> Vec<Spread> {
             let spread = |(k, one): (usize, &Combined)| Spread {
@@ -259,7 +267,7 @@ impl Estimate {
         all
     }
 
-    /// Fills the model with the means.
+    /// Sets particulars, parameters and coefficients of the model to the means.
     fn fill(&mut self, stated: &Particulars) -> Result<(), EstimateError> {
         self.model.particulars = stated.clone();
         let around: Vec<f64> = self.around.iter().map(|one| one.mean).collect();
@@ -282,17 +290,18 @@ impl Estimate {
             let deviation = self.coefficients_covariance[(k, k)].sqrt();
             self.model.coefficients.insert(one.name.clone(), quantity(one, deviation));
         }
+        // After all parameters are set: the revolutions depend on them.
         self.model = self.balanced(self.model.clone())?;
         self.model.posterior = Some(posterior(&self.coefficients, &self.coefficients_covariance));
         Ok(())
     }
 
-    /// A model with other particulars and parameters, in the order of `around`.
+    /// Model with other particulars and parameters, in the order of `around`.
     pub(crate) fn moved(&self, around: &[f64]) -> Model {
         with_around(&self.model, &self.around, around, &|k| Quantity::new(around[k], "draw"))
     }
 
-    /// A model with the propeller's thrust and the revolutions that balance its resistance.
+    /// Model with the propeller's thrust and the revolutions that balance its resistance.
     pub(crate) fn balanced(&self, mut model: Model) -> Result<Model, EstimateError> {
         let particular = |name: &str| {
             sistership_model::particulars::value(&model.particulars, name).unwrap_or(0.0)
@@ -316,6 +325,7 @@ impl Estimate {
             speed_m_s,
         })?;
         model.revolutions_rps = Some(revolutions);
+        // Thrust coefficients are those of the series at the ship's pitch ratio.
         for (name, value) in [("k_0", thrust.k_0), ("k_1", thrust.k_1), ("k_2", thrust.k_2)] {
             model.parameters.insert(name.into(), Quantity::new(value, "wageningen-b"));
         }
@@ -328,7 +338,7 @@ impl Estimate {
     }
 }
 
-/// Puts values of `around` where they belong: particulars, or parameters of the law.
+/// Assigns values of `around` to particulars or to parameters of the law.
 fn with_around(
     base: &Model,
     around: &[Combined],
@@ -339,6 +349,7 @@ fn with_around(
     for (k, one) in around.iter().enumerate() {
         let of = || Quantity { value: values[k], ..quantity(k) };
         match one.name.as_str() {
+            // The estimate is the same to both sides.
             "C_2" => both(&mut model, ["C_2_plus", "C_2_minus"], &of),
             "gamma_R" => both(&mut model, ["gamma_R_plus", "gamma_R_minus"], &of),
             name if REPLACED.contains(&name) => {
@@ -361,11 +372,11 @@ fn both(model: &mut Model, names: [&str; 2], of: &dyn Fn() -> Quantity) {
     }
 }
 
-/// Parameters of the law that follow from particulars.
+/// Sets parameters of the law that follow from particulars.
 fn derive(model: &mut Model) {
     let of =
         |name: &str| sistership_model::particulars::value(&model.particulars, name).unwrap_or(0.0);
-    // A rudder lower than the propeller is all in the slipstream.
+    // A rudder lower than the propeller is entirely in the slipstream.
     let eta = (of("propeller_diameter_m") / of("rudder_height_m")).min(1.0);
     let derived = [
         ("m", of("mass_kg")),
@@ -378,12 +389,13 @@ fn derive(model: &mut Model) {
     }
 }
 
-/// The coefficients' covariance as a model carries it.
+/// Covariance of the coefficients in the form of a model's posterior.
 fn posterior(values: &[Combined], covariance: &DMatrix<f64>) -> Posterior {
     let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.sqrt()).collect();
     let correlation = DMatrix::from_fn(values.len(), values.len(), |i, j| {
         covariance[(i, j)] / (deviations[i] * deviations[j])
     });
+    // Without a Cholesky factor the coefficients are independent.
     let identity = || DMatrix::identity(values.len(), values.len());
     let root = correlation.cholesky().map_or_else(identity, |cholesky| cholesky.l());
     Posterior {

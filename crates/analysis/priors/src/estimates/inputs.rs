@@ -1,4 +1,4 @@
-//! What formulas of regressions may name.
+//! Inputs of the formulas of regressions.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use sistership_model::particulars::{self, Particulars};
 
 use crate::estimates::error::EstimateError;
 
-/// Particulars that no regression replaces.
+/// Particulars that have no regression here.
 const NEEDED: [&str; 4] = ["lpp_m", "beam_m", "draught_m", "block_coefficient"];
 
 /// Values by the names that formulas use.
@@ -16,10 +16,10 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Of a ship at a speed.
+    /// Creates the inputs for a ship at a speed.
     ///
     /// # Errors
-    /// Names the particulars that are missing.
+    /// Returns an error that names the particulars that are missing.
     pub fn new(
         ship: &str,
         particulars: &Particulars,
@@ -38,6 +38,7 @@ impl Inputs {
         let mut inputs = Self { known: known.collect() };
         let get = |name: &str| of(name).unwrap_or(0.0);
         let (l, b, t) = (get("lpp_m"), get("beam_m"), get("draught_m"));
+        // A stated displacement takes precedence over the block coefficient.
         let volume = of("displacement_m3").unwrap_or(get("block_coefficient") * l * b * t);
         let trim = get("draught_aft_m") - get("draught_fore_m");
         let both = of("draught_aft_m").is_some() && of("draught_fore_m").is_some();
@@ -49,7 +50,7 @@ impl Inputs {
             ("U", speed_m_s),
             // Mass by 0.5 rho L^2 T.
             ("m", 2.0 * volume / (l * l * t)),
-            // Trim by the stern over draught.
+            // Trim by the stern, divided by the draught.
             ("tau", if both { trim / t } else { 0.0 }),
         ] {
             inputs.set(name, value);
@@ -57,7 +58,7 @@ impl Inputs {
         Ok(inputs)
     }
 
-    /// A value by name.
+    /// Value of a name.
     pub fn get(&self, name: &str) -> Option<f64> {
         self.known.get(name).copied()
     }

@@ -1,4 +1,4 @@
-//! The regressions that the program carries.
+//! Embedded regressions.
 
 use include_dir::{Dir, include_dir};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use crate::estimates::regression::{Given, Regression};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models/regressions");
 
-/// What the propeller series is called.
+/// File name of the propeller series.
 const SERIES: &str = "wageningen-b.yaml";
 
 /// Regressions by name, and the propeller series.
@@ -18,22 +18,23 @@ const SERIES: &str = "wageningen-b.yaml";
 pub struct Library {
     /// SHA-256 of all files, in the order of their names.
     pub sha256: String,
-    /// In the order of their names.
+    /// Regressions in the order of their names.
     pub regressions: Vec<Regression>,
     pub(crate) series: PropellerSeries,
 }
 
 impl Library {
-    /// The embedded ones.
+    /// Parses the embedded regressions.
     ///
     /// # Errors
-    /// The first file that does not read; a test keeps this from happening in a release.
+    /// Returns the error of the first file that cannot be read; a test prevents this in a release.
     pub fn embedded() -> Result<Self, FileError> {
         let files = FILES.files().filter_map(|file| {
             let name = file.path().to_str().filter(|name| name.ends_with(".yaml"))?;
             Some((name, file.contents_utf8()?))
         });
         let mut files: Vec<(&str, &str)> = files.collect();
+        // Sorted, so that the hash does not depend on the order of the embedded directory.
         files.sort_unstable();
         let texts: Vec<u8> = files.iter().flat_map(|(_, text)| text.bytes()).collect();
         let files = files.into_iter();
@@ -53,7 +54,7 @@ impl Library {
         Ok(Self { sha256: sha256(&texts), regressions, series: series.ok_or_else(missing)?? })
     }
 
-    /// What every regression gives for a name.
+    /// Values of all regressions for a name.
     pub fn given(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Vec<Given> {
         self.regressions.iter().filter_map(|one| one.given(name, known)).collect()
     }

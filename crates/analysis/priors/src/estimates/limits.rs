@@ -1,4 +1,4 @@
-//! Ranges that estimates and draws are kept to: beyond them the formulas of the law mean nothing.
+//! Ranges of estimates and draws, beyond which the formulas of the law are invalid.
 
 /// Smallest and largest value of a parameter.
 const RANGES: [(&str, f64, f64); 14] = [
@@ -18,11 +18,12 @@ const RANGES: [(&str, f64, f64); 14] = [
     ("kappa", 0.3, 0.8),
 ];
 
-/// Damping that physics makes negative keeps at least this share of its estimate.
+/// Least share of its estimate that a damping coefficient keeps, as it is negative for physical
+/// reasons.
 const DAMPING_SHARE: f64 = 0.3;
 const DAMPING: [&str; 5] = ["X_0", "Y_v", "N_r", "Y_vvv", "N_rrr"];
 
-/// A parameter within its range.
+/// Limits a parameter to its range.
 pub fn parameter(name: &str, value: f64) -> f64 {
     match RANGES.iter().find(|(known, ..)| *known == name) {
         Some(&(_, low, high)) => value.clamp(low, high),
@@ -30,7 +31,7 @@ pub fn parameter(name: &str, value: f64) -> f64 {
     }
 }
 
-/// A drawn coefficient, given its estimate.
+/// Limits a drawn coefficient, given its estimate.
 pub fn coefficient(name: &str, drawn: f64, estimate: f64) -> f64 {
     if DAMPING.contains(&name) && estimate < 0.0 {
         return drawn.min(DAMPING_SHARE * estimate);

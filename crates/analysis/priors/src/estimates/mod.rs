@@ -1,9 +1,9 @@
-//! A model of any ship from its particulars alone.
+//! Estimate of a model of any ship from its particulars.
 //!
 //! Published regressions (`models/regressions`) each give some of the coefficients and parameters
 //! of the law `mmg`. They are combined into a mean and a covariance ([`combined`]), which become a
-//! model labelled estimated with its posterior ([`estimate`]), and bands on the standard manoeuvres
-//! ([`bands`]).
+//! model with the status estimated and its posterior, and uncertainty bands of the standard
+//! manoeuvres ([`bands`]).
 
 mod balance;
 pub mod bands;
@@ -24,5 +24,5 @@ pub use estimate::{Estimate, Spread, estimate};
 pub use library::Library;
 pub use regression::{Given, Regression};
 
-/// The law that estimates are of.
+/// Name of the law of estimates.
 pub const LAW: &str = "mmg";

@@ -1,4 +1,5 @@
-//! Particulars that a ship's file does not state, each by the regression that leaves least open.
+//! Estimates of particulars that a ship's file does not state, each by the regression with the
+//! least scatter.
 
 use std::sync::OnceLock;
 
@@ -12,22 +13,22 @@ use crate::estimates::regression::Given;
 /// Acceleration of gravity, m/s2.
 const GRAVITY: f64 = 9.81;
 
-/// Letters that formulas use, with the particular that each stands for.
+/// Letters in formulas, with the particular of each.
 const LETTERS: [(&str, &str); 4] =
     [("L", "lpp_m"), ("B", "beam_m"), ("T", "draught_m"), ("C_b", "block_coefficient")];
 
-/// What a particular that is not stated follows from.
+/// Particulars from which another one follows if it is not stated.
 const PARTS: [(&str, &[&str]); 3] = [
     ("displacement_m3", &["block_coefficient", "water_density_kg_m3"]),
     ("mass_kg", &["block_coefficient", "water_density_kg_m3"]),
     ("rudder_aspect_ratio", &["rudder_area_m2", "rudder_height_m"]),
 ];
 
-/// A regression of a regression at most: the trim of a hull by its fullness by its speed.
+/// Largest depth of nested regressions: the trim of a hull by its fullness by its speed.
 const DEEPEST: usize = 3;
 
-/// Puts in what is needed, is not stated, and can be estimated; the estimates bear their regression
-/// as source and their standard error.
+/// Adds particulars that are needed, are not stated, and can be estimated; the estimates have their
+/// regression as source, and their standard error.
 pub fn complete_particulars<'a>(
     particulars: &mut Particulars,
     needed: impl IntoIterator<Item = &'a str>,
@@ -37,6 +38,7 @@ pub fn complete_particulars<'a>(
             continue;
         }
         let parts = PARTS.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
+        // A value that follows from others is not estimated itself; they are.
         for part in parts.unwrap_or(&[name]) {
             let is_known = particulars::given(particulars, part).is_some();
             let estimate = (!is_known).then(|| estimate_particular(particulars, part)).flatten();
@@ -47,8 +49,8 @@ pub fn complete_particulars<'a>(
     }
 }
 
-/// A particular by the regression with the least scatter among those whose inputs are known; none
-/// where there is none.
+/// Estimates a particular by the regression with the least scatter among those whose inputs are
+/// known; none where there is no such regression.
 pub fn estimate_particular(particulars: &Particulars, name: &str) -> Option<Quantity> {
     let given = estimate(library()?, particulars, name, 0)?;
     let mut quantity = Quantity::new(given.value, format!("{ESTIMATED}{}", given.regression));
@@ -56,7 +58,7 @@ pub fn estimate_particular(particulars: &Particulars, name: &str) -> Option<Quan
     Some(quantity)
 }
 
-/// The embedded regressions, read once.
+/// Embedded regressions, parsed once.
 fn library() -> Option<&'static Library> {
     static LIBRARY: OnceLock<Option<Library>> = OnceLock::new();
     LIBRARY.get_or_init(|| Library::embedded().ok()).as_ref()
@@ -68,14 +70,16 @@ fn estimate(library: &Library, ship: &Particulars, name: &str, depth: usize) -> 
     all.min_by(|a, b| a.scatter.total_cmp(&b.scatter))
 }
 
-/// What a formula asks for: stated, or estimated itself.
+/// Input of a formula: stated, or estimated itself.
 fn input(library: &Library, ship: &Particulars, name: &str, depth: usize) -> Option<f64> {
     let name = LETTERS.iter().find(|(letter, _)| *letter == name).map_or(name, |(_, name)| name);
     if name == "Fn" {
+        // Froude number at the service speed.
         let speed = particulars::value(ship, "service_speed_m_s")?;
         return Some(speed / (GRAVITY * particulars::value(ship, "lpp_m")?).sqrt());
     }
     let estimated = || {
+        // Estimates at the largest depth are discarded.
         let given = estimate(library, ship, name, depth + 1).filter(|_| depth < DEEPEST);
         given.map(|given| given.value)
     };

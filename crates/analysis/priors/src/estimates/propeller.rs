@@ -4,21 +4,21 @@ use serde::Deserialize;
 use sistership_model::FileError;
 use sistership_model::source::Source;
 
-/// A series as its file writes it: `K_T = sum c J^s (P/D)^t (A_E/A_0)^u Z^v`.
+/// A series in the form of its file: `K_T = sum c J^s (P/D)^t (A_E/A_0)^u Z^v`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PropellerSeries {
     #[serde(rename = "kind")]
     _kind: SeriesKind,
-    /// Its name.
+    /// Name of the series.
     pub name: String,
     #[serde(rename = "title")]
     _title: String,
-    /// Where it is published.
+    /// Publication.
     pub source: Source,
     #[serde(rename = "note")]
     _note: String,
-    /// Blades where the ship does not say.
+    /// Default number of blades.
     blades: f64,
     /// Expanded area ratio, which particulars do not have.
     area_ratio: f64,
@@ -31,10 +31,10 @@ enum SeriesKind {
     Series,
 }
 
-/// `K_T = k_0 + k_1 J + k_2 J^2`.
+/// Parabola of thrust: `K_T = k_0 + k_1 J + k_2 J^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thrust {
-    /// At `J = 0`.
+    /// Thrust coefficient at `J = 0`.
     pub k_0: f64,
     /// Slope.
     pub k_1: f64,
@@ -42,14 +42,14 @@ pub struct Thrust {
     pub k_2: f64,
 }
 
-/// Points of the curve that the parabola is laid through.
+/// Number of points of the curve to which the parabola is fitted.
 const POINTS: usize = 24;
 
 impl PropellerSeries {
-    /// Reads a file.
+    /// Parses a file.
     ///
     /// # Errors
-    /// Says what is wrong with it.
+    /// Returns an error that describes what is wrong in the file.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         sistership_model::yaml::read(text).map_err(|error| FileError {
             file: file.to_owned(),
@@ -68,9 +68,10 @@ impl PropellerSeries {
         self.terms.iter().map(term).sum()
     }
 
-    /// The parabola nearest to the curve from `J = 0` to where the thrust ends.
+    /// Fits a parabola to the curve from `J = 0` to the advance ratio at which the thrust ends.
     pub fn thrust(&self, pitch_ratio: f64, blades: Option<f64>) -> Thrust {
         let blades = blades.unwrap_or(self.blades);
+        // Advance ratio at which the thrust ends, in steps of 0.02.
         let mut advance = 0.0;
         while self.k_t(advance, pitch_ratio, blades) > 0.0 && advance < 2.0 {
             advance += 0.02;
@@ -83,7 +84,7 @@ impl PropellerSeries {
     }
 }
 
-/// Least squares of a parabola.
+/// Least-squares fit of a parabola, by the normal equations.
 fn parabola(points: &[(f64, f64)]) -> Thrust {
     let mut normal = nalgebra::Matrix3::<f64>::zeros();
     let mut right = nalgebra::Vector3::<f64>::zeros();

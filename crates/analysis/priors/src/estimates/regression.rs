@@ -1,4 +1,4 @@
-//! A published regression as its file writes it.
+//! A published regression in the form of its file.
 
 use std::collections::BTreeMap;
 
@@ -54,34 +54,34 @@ impl NumberOrFormula {
 /// A published regression.
 #[derive(Debug, Clone)]
 pub struct Regression {
-    /// Its name: author and year.
+    /// Name: author and year.
     pub name: String,
-    /// One line for people.
+    /// Title in one line.
     pub title: String,
-    /// Where it is published, and where it was read.
+    /// Publication, and the text from which it was taken.
     pub source: Source,
-    /// What was chosen where sources disagree.
+    /// Choices where sources differ.
     pub note: String,
     values: BTreeMap<String, Expr>,
     gives: BTreeMap<String, (Expr, Expr)>,
 }
 
-/// One value that a regression gives for a ship.
+/// One value of a regression for a ship.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Given {
-    /// The regression.
+    /// Name of the regression.
     pub regression: String,
-    /// The value, in the unit of the coefficient, parameter or particular.
+    /// Value, in the unit of the coefficient, parameter or particular.
     pub value: f64,
-    /// The standard deviation of what it leaves open, in the same unit.
+    /// Standard deviation of the residuals, in the same unit.
     pub scatter: f64,
 }
 
 impl Regression {
-    /// Reads a file.
+    /// Parses a file.
     ///
     /// # Errors
-    /// Names file and field.
+    /// Returns an error that names file and field.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         let wrong = |field: String, message: String| FileError {
             file: file.to_owned(),
@@ -92,6 +92,7 @@ impl Regression {
         };
         let raw: RegressionFile = sistership_model::yaml::read(text)
             .map_err(|error| wrong(String::new(), error.to_string()))?;
+        // The only kind: the parser has rejected all others.
         let RegressionKind::Regression = raw.kind;
         let formula = |field: &str, name: &str, written: &NumberOrFormula| {
             written.parse().map_err(|message| wrong(format!("{field}.{name}"), message))
@@ -113,15 +114,16 @@ impl Regression {
         })
     }
 
-    /// What it gives.
+    /// Names of its values.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.gives.keys().map(String::as_str)
     }
 
-    /// A value for a ship; none where it does not give that, or needs what is not known.
+    /// Value for a ship; none where the regression does not give it, or an input is unknown.
     pub fn given(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Option<Given> {
         let (value, scatter) = self.gives.get(name)?;
         let lookup = |name: &str| self.lookup(name, known, 0);
+        // A formula outside its range may have no finite value.
         let finite = |expr: &Expr| expr.value(&lookup).filter(|value| value.is_finite());
         Some(Given {
             regression: self.name.clone(),
@@ -131,7 +133,7 @@ impl Regression {
     }
 
     fn lookup(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>, depth: usize) -> Option<f64> {
-        // A value that names itself would go round for ever.
+        // A value that refers to itself would recurse without end.
         if depth > self.values.len() {
             return None;
         }

@@ -20,8 +20,8 @@ pub enum Definition {
 /// A component: its name, and the norm by which it is divided before ships are correlated.
 type Component = (&'static str, f64);
 
-/// Norms of the rows of Mei's Table 4 (Eq. 4). They stay those of its five ships: were they taken
-/// over the ships compared, adding a ship to the zoo would change the correlation of two others.
+/// Norms of the rows of Mei's Table 4 (Eq. 4). They are those of its five ships: with norms over
+/// the ships compared, adding a ship to the zoo would change the correlation of two others.
 const MEI_2019: [Component; 5] = [
     ("C_b", 1.567_947),
     ("L/B", 14.082_16),
@@ -30,8 +30,8 @@ const MEI_2019: [Component; 5] = [
     ("Ar/(LT)", 0.044_075_1),
 ];
 
-/// Norms over the five full-scale ships of the zoo that have every component, for the same reason
-/// held fixed.
+/// Norms over the five full-scale ships of the zoo that have every component, fixed for the same
+/// reason.
 const KANAZAWA_2023: [Component; 6] = [
     ("C_b", 1.56),
     ("L/B", 14.79),
@@ -41,14 +41,14 @@ const KANAZAWA_2023: [Component; 6] = [
     ("Dp/T", 1.419),
 ];
 
-/// The most components that a definition has.
+/// Largest number of components of a definition.
 const MOST_COMPONENTS: usize = 6;
 
 impl Definition {
-    /// Every definition.
+    /// All definitions.
     pub const ALL: [Self; 2] = [Self::Mei2019, Self::Kanazawa2023];
 
-    /// Its name.
+    /// Name of the definition.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mei2019 => "mei-2019",
@@ -56,7 +56,7 @@ impl Definition {
         }
     }
 
-    /// The definition of that name.
+    /// Definition of a given name.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|definition| definition.name() == name)
     }
@@ -69,19 +69,20 @@ impl Definition {
     }
 }
 
-/// A ship's characteristic vector; a component is absent where its particulars do not give it.
+/// Characteristic vector of a ship; a component is absent where its particulars do not give it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicVector {
-    /// The definition it follows.
+    /// Definition of the vector.
     pub definition: Definition,
-    /// The components by name.
+    /// Components by name.
     pub values: BTreeMap<String, f64>,
 }
 
 impl CharacteristicVector {
-    /// A vessel's vector: as a publication prints it where its file quotes it, else from its
+    /// Creates a vessel's vector: published values where its file quotes them, otherwise from its
     /// particulars.
     pub fn of(vessel: &Vessel, definition: Definition) -> Self {
+        // Quoted values take precedence over computed ones.
         let quoted = vessel.quoted_vectors.get(definition.name());
         let computed = |name: &str| component(vessel, name);
         let value = |name: &str| {
@@ -94,13 +95,13 @@ impl CharacteristicVector {
         Self { definition, values: values.collect() }
     }
 
-    /// The components that the ship lacks.
+    /// Components that the ship lacks.
     pub fn missing(&self) -> Vec<&'static str> {
         let components = self.definition.components().iter();
         components.map(|(name, _)| *name).filter(|name| !self.values.contains_key(*name)).collect()
     }
 
-    /// The components divided by their norms (Mei 2019, Eq. 4).
+    /// Components divided by their norms (Mei 2019, Eq. 4).
     pub fn normalised(&self) -> BTreeMap<String, f64> {
         let norms: BTreeMap<&str, f64> = self.definition.components().iter().copied().collect();
         self.values
@@ -110,12 +111,12 @@ impl CharacteristicVector {
     }
 
     /// Pearson's correlation of the normalised components that both have (Mei 2019, Eq. 5); `None`
-    /// below four.
+    /// for fewer than four.
     pub fn correlation(&self, other: &Self) -> Option<f64> {
         self.components().correlation(&other.components())
     }
 
-    /// What is correlated.
+    /// Normalised components for a correlation.
     pub fn components(&self) -> NormalisedComponents {
         // By name: the order of the sums decides their last bits, which versions keep.
         let mut known = self.definition.components().to_vec();
@@ -127,7 +128,7 @@ impl CharacteristicVector {
         NormalisedComponents(all)
     }
 
-    /// The component in which two ships differ most, relative to this one.
+    /// Component in which two ships differ most, relative to this one.
     pub fn largest_difference(&self, other: &Self) -> Option<(String, f64)> {
         let difference = |(name, a): (&String, &f64)| {
             Some((name.clone(), (other.values.get(name)? / a - 1.0).abs()))
@@ -136,15 +137,16 @@ impl CharacteristicVector {
     }
 }
 
-/// The normalised components of a vector: all that a ranking of many ships needs of each.
+/// Normalised components of a vector: sufficient for the ranking of many ships.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalisedComponents([Option<f64>; MOST_COMPONENTS]);
 
 impl NormalisedComponents {
-    /// As [`CharacteristicVector::correlation`]; both must follow the same definition.
+    /// Correlation as [`CharacteristicVector::correlation`]; both must follow the same definition.
     pub fn correlation(&self, other: &Self) -> Option<f64> {
         let both = || self.0.iter().zip(&other.0).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
         let count = both().count();
+        // A correlation of fewer components means little.
         if count < 4 {
             return None;
         }
@@ -165,8 +167,8 @@ fn component(vessel: &Vessel, name: &str) -> Option<f64> {
         "C_b" => of("block_coefficient"),
         "L/B" => Some(l? / b?),
         "B/T" => Some(b? / t?),
-        // A time: a model's is that of its full-scale ship by Froude's law, or models would
-        // resemble nothing but models.
+        // A time: that of a model is scaled to full size by Froude's law, otherwise models would be
+        // similar to models only.
         "L/V0" => Some(l? / of("service_speed_m_s")? * vessel.file.scale.unwrap_or(1.0).sqrt()),
         "L/volume^(1/3)" => Some(l? / of("displacement_m3")?.cbrt()),
         "Ar/(LT)" => Some(of("rudder_area_m2")? / (l? * t?)),

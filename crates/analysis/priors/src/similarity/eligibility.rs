@@ -1,4 +1,4 @@
-//! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023,
+//! Ranking by correlation, and the three steps of the eligibility of a source: Kanazawa 2023,
 //! section 5.1.2.
 
 use rayon::prelude::*;
@@ -9,25 +9,25 @@ use sistership_model::categories::group_of;
 use super::{CharacteristicVector, Definition};
 use crate::trend::TrendError;
 
-/// A ship of the zoo with the model it would give.
+/// A ship of the zoo with its model as a source.
 #[derive(Debug, Clone)]
 pub struct SourceCandidate<'a> {
-    /// The ship.
+    /// Ship.
     pub vessel: &'a Vessel,
-    /// What its model is called, and its law; none for a ship known by particulars only.
+    /// Name and law of its model; none for a ship known by particulars only.
     pub model: Option<ModelHead>,
 }
 
-/// A model by its name and law, without its values: most candidates are judged before those matter.
+/// Name and law of a model, without its values: most candidates are judged before those matter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelHead {
     /// `ship/model`.
     pub name: String,
-    /// The name of its law.
+    /// Name of the law.
     pub law: String,
 }
 
-/// What is asked of a source.
+/// Requirements on a source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EligibilityLimits {
     /// `d_v`: largest relative difference of a component of the vector of Eq. 5.18, dimensionless.
@@ -45,39 +45,38 @@ impl Default for EligibilityLimits {
     }
 }
 
-/// Whether a ship may be a source, and why not.
+/// Eligibility of a ship as a source, with the reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Eligibility {
-    /// Whether every step is passed.
+    /// True if every step is passed.
     pub eligible: bool,
-    /// The outcome of each step, with its figure.
+    /// Outcome of each step, with its figure.
     pub reasons: Vec<String>,
 }
 
 /// One line of the ranking.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RankedSource {
-    /// The ship.
+    /// Name of the ship.
     pub ship: String,
-    /// Its model's name; none for a ship known by particulars only.
+    /// Name of its model; none for a ship known by particulars only.
     pub model: Option<String>,
-    /// The law of that model.
+    /// Law of that model.
     pub law: Option<String>,
     /// Correlation of the characteristic vectors; none where too few components are known.
     pub correlation: Option<f64>,
-    /// Whether it may be the source.
+    /// True if the ship is eligible as the source.
     pub eligible: bool,
-    /// Why, step by step, with figures.
+    /// Outcome of each step, with figures.
     pub reasons: Vec<String>,
 }
 
-/// How well the model that a ship would give captures the trend of the target's trials (a
-/// correlation), none where there are no trials, or why that cannot be told.
+/// Measure of the trend of the target's trials by a ship's model (a correlation): none where there
+/// are no trials, or an error where it cannot be determined.
 pub type Trend<'a> = &'a (dyn Fn(&Vessel) -> Result<Option<f64>, TrendError> + Sync);
 
-/// Ranks the candidates by correlation with the target. `trend` measures how well a source's model
-/// captures the trend of the target's trials; without trials the third step is left open and said
-/// to be.
+/// Ranks the candidates by correlation with the target. `trend` measures the trend of the target's
+/// trials by a source's model; without trials the third step is not checked, and reported so.
 pub fn rank(
     target: &Vessel,
     candidates: &[SourceCandidate<'_>],
@@ -105,6 +104,7 @@ pub fn rank(
         })
         .collect();
     ranking.sort_by(|a, b| {
+        // Ships without a correlation come last; equal ones are ordered by name.
         let key = |r: &RankedSource| r.correlation.unwrap_or(-2.0);
         key(b).total_cmp(&key(a)).then_with(|| a.ship.cmp(&b.ship))
     });
@@ -123,8 +123,8 @@ fn judge(
     ];
     match &candidate.model {
         None => steps.push(StepOutcome::failed("no model: known by particulars only".into())),
-        // A simulation costs more than a comparison of numbers: it is run for those that passed
-        // them.
+        // A simulation costs more than a comparison of numbers: it is run only if the other steps
+        // are passed.
         Some(_) if steps.iter().all(|step| step.passed) => {
             steps.push(captures_trend(trend(candidate.vessel), limits));
         }
@@ -134,7 +134,7 @@ fn judge(
     Eligibility { eligible, reasons: steps.into_iter().map(|step| step.reason).collect() }
 }
 
-/// Whether a step is passed, and why.
+/// Outcome of a step, with its reason.
 struct StepOutcome {
     passed: bool,
     reason: String,
@@ -166,6 +166,7 @@ fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) 
     let here = CharacteristicVector::of(target, definition);
     let there = CharacteristicVector::of(source, definition);
     let shared = here.values.keys().filter(|name| there.values.contains_key(*name)).count();
+    // With fewer than four common components the ships cannot be compared.
     let Some((name, difference)) = here.largest_difference(&there).filter(|_| shared >= 4) else {
         return StepOutcome::failed(format!(
             "characteristic vector unknown: only {shared} components in common"

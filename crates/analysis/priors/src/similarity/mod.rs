@@ -1,4 +1,4 @@
-//! Which ship of the zoo is most like a new one, and whether it may serve as its source.
+//! Similarity of ships of the zoo to a new one, and their eligibility as its source.
 
 mod characteristic;
 mod eligibility;

@@ -1,18 +1,20 @@
-//! What changes within a trial.
+//! Changes within a trial, in words.
 
 use sistership_diagnosis::{Change, ChangeCourse};
 
 use super::figures::with_figures;
 use crate::numbers::list;
 
-/// Each change in a sentence.
+/// Returns one sentence per change.
 pub(crate) fn changes(all: &[Change]) -> Vec<String> {
     all.iter().map(sentence).collect()
 }
 
+/// Sentence of a change, with the effects that are nearly as probable.
 fn sentence(of: &Change) -> String {
     let first = change(of);
     let or: Vec<String> = of.or.iter().map(|name| name.replace('-', " ")).collect();
+    // The sentence starts with a capital letter, the phrase does not.
     let capital = first.chars().take(1).flat_map(char::to_uppercase);
     let first: String = capital.chain(first.chars().skip(1)).collect();
     match or.is_empty() {
@@ -21,10 +23,11 @@ fn sentence(of: &Change) -> String {
     }
 }
 
-/// A change in words: `in turn.csv a rudder damage (share lost 35 %) begins at 412 s`.
+/// Returns a change in words: `in turn.csv a rudder damage (share lost 35 %) begins at 412 s`.
 pub fn change(of: &Change) -> String {
     let name = with_figures(of.effect.replace('-', " "), &of.parameters);
     let time = |t_s: Option<f64>| t_s.map_or_else(String::new, |t_s| format!(" at {t_s:.0} s"));
+    // Interval of the time, if the change is located less sharply.
     let between = of.between_s.map_or_else(String::new, |[first, last]| {
         format!(" (between {first:.0} s and {last:.0} s)")
     });

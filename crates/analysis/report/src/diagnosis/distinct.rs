@@ -1,22 +1,24 @@
-//! Hypotheses as people read them: each set of effects once.
+//! Hypotheses for readers: each set of effects once.
 
 use std::collections::BTreeSet;
 
 use sistership_diagnosis::Hypothesis;
 
-/// Each set of effects once, in the order given: judged several times on the way, it stands where
-/// it was taken, or else where it was most probable.
+/// Returns each set of effects once, in the given order. A set that was evaluated several times is
+/// kept where it was selected, or else at its first place, the most probable.
 pub fn distinct(all: &[Hypothesis]) -> Vec<&Hypothesis> {
     let taken: Vec<Vec<&str>> =
         all.iter().filter(|hypothesis| hypothesis.taken).map(effects).collect();
     let mut seen = BTreeSet::new();
     let kept = all.iter().filter(|hypothesis| {
         let effects = effects(hypothesis);
+        // A set that was selected is shown only as the selected hypothesis.
         (hypothesis.taken || !taken.contains(&effects)) && seen.insert(effects)
     });
     kept.collect()
 }
 
+/// Names of the effects in alphabetical order, so that sets compare equal.
 fn effects(hypothesis: &Hypothesis) -> Vec<&str> {
     let mut effects: Vec<&str> = hypothesis.effects.iter().map(String::as_str).collect();
     effects.sort_unstable();

@@ -1,4 +1,4 @@
-//! ChannelErrors before and after: by channel, by trial, and of the manoeuvres that were sailed.
+//! Errors before and after: by channel, by trial, and of the measured manoeuvres.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,10 @@ use crate::numbers::{fixed, known, signed, significant};
 use crate::tables::{Cell, Column, Row, Table};
 use crate::words::{CHANNELS, ShownChannel};
 
+/// Root mean squared errors by channel, SI units.
 type ChannelErrors = BTreeMap<String, f64>;
 
-/// Every channel of which an error is known.
+/// Returns the errors of every channel that has one.
 pub(crate) fn rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
     let rows = CHANNELS
         .into_iter()
@@ -21,7 +22,7 @@ pub(crate) fn rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
     rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect()
 }
 
-/// ChannelErrors by channel, as they are and divided by the noise.
+/// Table of errors by channel, as they are and divided by the noise.
 pub(crate) fn by_channel(diagnosis: &Diagnosis) -> Table {
     let columns = vec![
         Column::text("channel", ""),
@@ -41,6 +42,7 @@ pub(crate) fn by_channel(diagnosis: &Diagnosis) -> Table {
 
 fn channel(row: &ErrorRow, noise: &ChannelErrors) -> Row {
     let noise = noise_of(noise, &row.quantity);
+    // Errors relative to the noise are the measure of what remains to explain.
     let over = |value: Option<f64>| {
         known(value.zip(noise).map(|(value, noise)| value / noise), |ratio| fixed(ratio, 1))
     };
@@ -62,7 +64,7 @@ fn channel(row: &ErrorRow, noise: &ChannelErrors) -> Row {
     ])
 }
 
-/// The noise in the unit shown; that of the position is put together from north and east.
+/// Noise in the displayed unit; that of the position is combined from north and east.
 fn noise_of(noise: &ChannelErrors, quantity: &ShownChannel) -> Option<f64> {
     let of = |channel: &str| noise.get(channel).copied().filter(|noise| *noise > 0.0);
     let si = if quantity.channel == "position" {
@@ -73,7 +75,7 @@ fn noise_of(noise: &ChannelErrors, quantity: &ShownChannel) -> Option<f64> {
     si.map(|noise| noise * quantity.factor)
 }
 
-/// ChannelErrors trial by trial.
+/// Table of errors by trial.
 pub(crate) fn by_trial(trials: &[TrialErrors]) -> Table {
     let has = |quantity: &ShownChannel| {
         trials.iter().any(|trial| trial.before.contains_key(quantity.channel))
@@ -98,13 +100,14 @@ pub(crate) fn by_trial(trials: &[TrialErrors]) -> Table {
                 .collect(),
         )
     };
+    // Two rows for each trial; the second has no name.
     let both = |trial: &TrialErrors| {
         [side(&trial.trial, "before", &trial.before), side("", "after", &trial.after)]
     };
     Table { columns, rows: trials.iter().flat_map(both).collect() }
 }
 
-/// Figures of the manoeuvres that were sailed, under a heading for each trial.
+/// Table of the figures of measured manoeuvres, under a heading for each trial.
 pub(crate) fn manoeuvres(manoeuvres: &[SailedManoeuvre]) -> Table {
     let columns = vec![
         Column::text("figure", ""),

@@ -1,4 +1,4 @@
-//! What speaks for which hypothesis, and what the parameters of the effects found are.
+//! Evidence for each hypothesis, and parameters of the effects found.
 
 use std::collections::BTreeMap;
 
@@ -10,18 +10,18 @@ use super::parameter::ShownParameter;
 use crate::numbers::{fixed, known, list, signed, significant};
 use crate::tables::{Cell, Column, Row, Table};
 
-/// Hypotheses that are shown at once; the others are folded away.
+/// Number of hypotheses that are visible at first; the others are folded.
 pub(crate) const SHOWN: usize = 12;
-/// A knot, m/s.
+/// One knot, m/s.
 const KNOT_M_S: f64 = 1852.0 / 3600.0;
-/// Most parameters of a cell.
+/// Largest number of parameters in a cell.
 const CELL: usize = 4;
 
-/// Every hypothesis that was tried: the most probable, and the others.
+/// Tables of all evaluated hypotheses: the most probable, and the others.
 pub(crate) fn hypotheses(diagnosis: &Diagnosis) -> (Table, Table) {
     let mut rows: Vec<(usize, &Hypothesis)> =
         distinct(&diagnosis.hypotheses).into_iter().enumerate().collect();
-    // What was taken is shown wherever it ranks.
+    // The selected hypothesis is visible whatever its rank.
     rows.sort_by_key(|(rank, hypothesis)| (*rank >= SHOWN && !hypothesis.taken, *rank));
     let shown = rows.iter().filter(|(rank, hypothesis)| *rank < SHOWN || hypothesis.taken).count();
     let (first, others) = rows.split_at(shown);
@@ -59,7 +59,8 @@ fn hypothesis(hypothesis: &Hypothesis) -> Row {
     Row::of(cells).highlighted(hypothesis.taken)
 }
 
-/// `lever-arm/gnss` as `lever arm (gnss)`; a constant is nothing to tell.
+/// Effect and form in words, `lever-arm/gnss` as `lever arm (gnss)`; the form `constant` is
+/// omitted.
 fn in_words(effect: &str) -> String {
     match effect.split_once('/') {
         Some((name, "constant")) => name.replace('-', " "),
@@ -68,7 +69,7 @@ fn in_words(effect: &str) -> String {
     }
 }
 
-/// The scale of Kass and Raftery (1995).
+/// Strength of evidence on the scale of Kass and Raftery (1995).
 fn strength(evidence: f64) -> &'static str {
     match evidence {
         evidence if evidence < 0.0 => "against it",
@@ -93,14 +94,15 @@ fn parameter_list(parameters: &BTreeMap<String, Value>) -> String {
         .to_owned()
     };
     let mut texts: Vec<String> = parameters.iter().map(one).take(CELL).collect();
+    // Long lists are cut, with the number of omitted parameters.
     if parameters.len() > CELL {
         texts.push(format!("and {} more", parameters.len() - CELL));
     }
     texts.join("; ")
 }
 
-/// The parameters of an effect that was found, and what they are in the new version where they were
-/// fitted there once more.
+/// Table of the parameters of an effect that was found, with their values in the new version if
+/// they were fitted again there.
 pub(crate) fn parameters(found: &Found) -> Table {
     let mut columns = vec![
         Column::text("parameter", ""),
@@ -110,6 +112,7 @@ pub(crate) fn parameters(found: &Found) -> Table {
         Column::text("unit", ""),
         Column::number("value ÷ error", ""),
     ];
+    // The columns of the new version exist only if the parameters were fitted again there.
     if !found.in_model.is_empty() {
         columns.extend([
             Column::number("in the new version", ""),
@@ -124,6 +127,7 @@ fn parameter(
     (name, parameter): &(&str, ShownParameter),
     in_model: &BTreeMap<String, Value>,
 ) -> Row {
+    // No ratio without a standard error.
     let ratio = (parameter.se > 0.0).then(|| (parameter.value / parameter.se).abs());
     let mut cells = vec![
         Cell::new(&parameter.words),
@@ -143,7 +147,7 @@ fn parameter(
     Row::of(cells)
 }
 
-/// What it is confounded with.
+/// Table of the effects that it is confounded with.
 pub(crate) fn confounded(found: &Found) -> Table {
     let columns = vec![
         Column::text("effect", ""),
@@ -152,6 +156,7 @@ pub(crate) fn confounded(found: &Found) -> Table {
         Column::text("", ""),
     ];
     let row = |other: &Confounded| {
+        // Below 3 in the logarithm the evidence does not separate the two.
         let (mark, kind) = if other.behind < 3.0 {
             ("could as well be this", "bad")
         } else {
@@ -167,7 +172,7 @@ pub(crate) fn confounded(found: &Found) -> Table {
     Table { columns, rows: found.confounded_with.iter().map(row).collect() }
 }
 
-/// The next trial as an instruction.
+/// Returns the next trial as an instruction.
 pub(crate) fn next_trial(next: &NextTrial) -> String {
     let names: Vec<String> = next.separates.iter().map(|name| name.replace('-', " ")).collect();
     format!(
@@ -182,7 +187,7 @@ pub(crate) fn next_trial(next: &NextTrial) -> String {
     )
 }
 
-/// Where an effect acts, in words.
+/// Point of action of an effect, in words.
 pub(crate) fn acts_on(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "a force on the ship",

@@ -1,4 +1,4 @@
-//! The page: sentence, tables and plots put into the template.
+//! HTML page: sentence, tables and plots for the template.
 
 use std::collections::BTreeMap;
 
@@ -16,13 +16,13 @@ use crate::tile::Tile;
 use crate::words;
 use sistership_model::version::code_revision;
 
-/// The page as its template sees it.
+/// Page as the template takes it.
 #[derive(Template)]
 #[template(path = "report_diagnosis.html")]
 struct DiagnosisPage<'a> {
     input: &'a DiagnosisInput<'a>,
     sentence: String,
-    /// What to do, and what could not be told.
+    /// Recommended action, and effects that could not be detected.
     advice: [String; 2],
     tiles: Vec<Tile>,
     hypotheses: Table,
@@ -48,7 +48,7 @@ struct DiagnosisPage<'a> {
     settings: Table,
 }
 
-/// An effect that was found.
+/// Effect that was found.
 struct ShownEffect<'a> {
     found: &'a Found,
     sentence: String,
@@ -58,7 +58,7 @@ struct ShownEffect<'a> {
     confounded: Table,
 }
 
-/// The plots of one trial.
+/// Plots of one trial.
 struct DiagnosisTrialPlots<'a> {
     replayed: &'a ReplayedTrial<'a>,
     caption: String,
@@ -67,7 +67,7 @@ struct DiagnosisTrialPlots<'a> {
     residual: Option<Plot>,
 }
 
-/// Writes the page.
+/// Renders the page.
 pub(crate) fn page(
     input: &DiagnosisInput<'_>,
     replayed: &[ReplayedTrial<'_>],
@@ -108,7 +108,7 @@ pub(crate) fn page(
     Ok(page.render()?)
 }
 
-/// Headline figures; none where nothing changed.
+/// Headline figures; none if no effect was found.
 fn tiles(input: &DiagnosisInput<'_>) -> Vec<Tile> {
     if input.diagnosis.effects.is_empty() {
         return Vec::new();
@@ -159,6 +159,7 @@ impl<'a> ShownEffect<'a> {
 impl<'a> DiagnosisTrialPlots<'a> {
     fn of(input: &DiagnosisInput<'_>, replayed: &'a ReplayedTrial<'a>) -> Self {
         let name = &replayed.trial.name;
+        // Only the residuals and segments of this trial.
         let own: Vec<&ResidualSeries> =
             input.diagnosis.residuals.iter().filter(|series| series.trial == *name).collect();
         let stretches: Vec<&Unexplained> =
@@ -173,7 +174,7 @@ impl<'a> DiagnosisTrialPlots<'a> {
     }
 }
 
-/// What the plots of a trial show and how far the models are off there.
+/// Caption of the plots of a trial, with the errors of both models.
 fn caption(replayed: &ReplayedTrial<'_>) -> String {
     let shown = &replayed.shown;
     let error = |quantity: &words::ShownChannel| {

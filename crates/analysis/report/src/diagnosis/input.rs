@@ -1,4 +1,4 @@
-//! What the report of a diagnosis is made of.
+//! Input of the report of a diagnosis.
 
 use sistership_diagnosis::Diagnosis;
 use sistership_model::trial::Trial;
@@ -6,19 +6,19 @@ use sistership_model::{Law, Model};
 
 use crate::rendered::VersionLabel;
 
-/// What the report of a diagnosis is made of.
+/// Input of the report of a diagnosis.
 #[derive(Debug, Clone)]
 pub struct DiagnosisInput<'a> {
-    /// The diagnosis.
+    /// Result of the diagnosis.
     pub diagnosis: &'a Diagnosis,
-    /// The model that was diagnosed.
+    /// Diagnosed model.
     pub model: &'a Model,
-    /// Its law, without effects.
+    /// Law of the model, without effects.
     pub law: &'a Law,
-    /// The trials.
+    /// Trials of the diagnosis.
     pub trials: &'a [&'a Trial],
-    /// The version that was diagnosed, where it is one.
+    /// Diagnosed version, if the model is stored as one.
     pub of: Option<VersionLabel>,
-    /// The version that came of it, where it is kept.
+    /// New version with the effects, if it is stored.
     pub made: Option<VersionLabel>,
 }

@@ -1,4 +1,4 @@
-//! How small an effect would still have been shown, and how common each was taken to be.
+//! Detection limits and prior odds of effects.
 
 use sistership_diagnosis::{DetectionLimit, Diagnosis, LimitedBy, Value};
 
@@ -6,7 +6,7 @@ use super::parameter::ShownParameter;
 use crate::numbers::{known, significant};
 use crate::tables::{Cell, Column, Row, Table};
 
-/// The limits, an effect's forms and parameters one after another.
+/// Table of detection limits by effect, form and parameter.
 pub(crate) fn limits(diagnosis: &Diagnosis) -> Table {
     let columns = vec![
         Column::text("effect", ""),
@@ -21,6 +21,7 @@ pub(crate) fn limits(diagnosis: &Diagnosis) -> Table {
 }
 
 fn row(limit: &DetectionLimit) -> Row {
+    // Converted to the displayed unit, which follows from the parameter's name.
     let shown = |value: f64| ShownParameter::of(&limit.parameter, &Value { value, se: 0.0 });
     let usual = shown(limit.usual);
     let size = known(limit.size, |size| significant(shown(size).value, 2));
@@ -35,6 +36,7 @@ fn row(limit: &DetectionLimit) -> Row {
     ])
 }
 
+/// Reason why an effect cannot be detected.
 fn told(limited_by: LimitedBy) -> &'static str {
     match limited_by {
         LimitedBy::Model => {
@@ -45,7 +47,7 @@ fn told(limited_by: LimitedBy) -> &'static str {
     }
 }
 
-/// The odds that each effect was given beforehand.
+/// Table of the prior odds of each effect.
 pub(crate) fn odds(diagnosis: &Diagnosis) -> Table {
     let columns = vec![Column::text("effect", ""), Column::number("odds beforehand", "")];
     let row = |(name, odds): (&String, &f64)| {

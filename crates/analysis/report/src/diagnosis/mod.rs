@@ -1,10 +1,10 @@
-//! The report of a diagnosis: one HTML page that a stranger can read and print, and the diagnosis
-//! as JSON.
+//! Report of a diagnosis: one self-contained HTML page to read and print, and the diagnosis as
+//! JSON.
 //!
-//! [`render_diagnosis`] says in one sentence what was found (`sentence`), in two more what to do
-//! and what could not be told (`summary`), puts the figures into tables (`evidence`, `errors`,
-//! `limits`, `remaining`, `changes`, `provenance`) and simulates the trials with the model
-//! before and after (`replays`) for the plots. Nothing depends on the clock.
+//! [`render_diagnosis`] states the result in one sentence (`sentence`), the recommended action and
+//! the limits of detection in two more (`summary`), puts the figures into tables (`evidence`,
+//! `errors`, `limits`, `remaining`, `changes`, `provenance`) and simulates the trials with the
+//! model before and after (`replays`) for the plots. Nothing depends on the clock.
 
 mod changes;
 mod distinct;
@@ -35,13 +35,13 @@ use crate::rendered::{Rendered, ReportError};
 /// Renders the report of a diagnosis; the same input gives the same bytes.
 ///
 /// # Errors
-/// A model does not simulate under the law, or the page cannot be written.
+/// Returns an error if a model cannot be simulated under the law, or if the page cannot be written.
 pub fn render_diagnosis(input: &DiagnosisInput<'_>) -> Result<Rendered, ReportError> {
     let replayed = replays::replay_chosen(input)?;
     Ok(Rendered { json: document(input)?, html: html::page(input, &replayed)? })
 }
 
-/// The diagnosis with its place.
+/// Diagnosis as JSON, with its sentences and versions.
 fn document(input: &DiagnosisInput<'_>) -> Result<Value, ReportError> {
     let mut document = serde_json::to_value(input.diagnosis)?;
     document["format"] = json!("sistership-diagnosis/1");

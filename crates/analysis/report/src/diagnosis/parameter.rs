@@ -1,5 +1,4 @@
-//! Parameters of effects as people read them: words, value and unit from a name that carries its
-//! unit.
+//! Parameters of effects for readers: words, value and unit from a name that carries its unit.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +6,7 @@ use sistership_diagnosis::Value;
 
 use crate::numbers::{fixed, significant};
 
-/// Endings of names, the unit shown, and what the value is multiplied by.
+/// Endings of names, displayed units, and factors of the value.
 const UNITS: [(&str, &str, f64); 10] = [
     ("_rad_s", "deg/s", 180.0 / std::f64::consts::PI),
     ("_deg_s", "deg/s", 1.0),
@@ -21,36 +20,39 @@ const UNITS: [(&str, &str, f64); 10] = [
     ("_percent", "%", 1.0),
 ];
 
-/// A parameter as it is shown.
+/// Parameter as it is displayed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ShownParameter {
-    /// Its name without the unit, in words.
+    /// Name without the unit, in words.
     pub words: String,
-    /// Empty where it has none.
+    /// Unit; empty if it has none.
     pub unit: &'static str,
     pub value: f64,
     pub se: f64,
 }
 
 impl ShownParameter {
+    /// Creates a parameter from its name, which carries its unit.
     pub fn of(name: &str, value: &Value) -> Self {
         let known = UNITS
             .into_iter()
             .find_map(|(ending, unit, factor)| Some((name.strip_suffix(ending)?, unit, factor)));
         let (stem, unit, factor) = known.unwrap_or((name, "", 1.0));
+        // A coefficient such as `X_uu` keeps its underscore.
         let is_symbol = stem.starts_with(|first: char| first.is_ascii_uppercase());
         let words = if is_symbol { stem.to_owned() } else { stem.replace('_', " ") };
         Self { words, unit, value: factor * value.value, se: factor * value.se }
     }
 
-    /// All of an effect with their names, but for an angle in radians that is there in degrees too.
+    /// Returns all parameters of an effect with their names, except angles in radians that are also
+    /// given in degrees.
     pub fn all(values: &BTreeMap<String, Value>) -> Vec<(&str, Self)> {
         let in_degrees = |name: &str| values.contains_key(&name.replace("_rad", "_deg"));
         let shown = values.iter().filter(|(name, _)| !name.contains("_rad") || !in_degrees(name));
         shown.map(|(name, value)| (name.as_str(), Self::of(name, value))).collect()
     }
 
-    /// The value as far as its standard error lets it be known.
+    /// Value with the digits that its standard error allows.
     pub fn value_text(&self) -> String {
         match self.decimals() {
             Some(decimals) => fixed(self.value, decimals),
@@ -58,14 +60,16 @@ impl ShownParameter {
         }
     }
 
-    /// The standard error with two digits.
+    /// Standard error with two digits.
     pub fn se_text(&self) -> String {
         if self.se > 0.0 { significant(self.se, 2) } else { "–".into() }
     }
 
-    /// Decimals down to the second digit of the standard error, where both are of everyday size.
+    /// Decimals up to the second digit of the standard error; `None` for very small or large
+    /// numbers.
     fn decimals(&self) -> Option<usize> {
         let everyday = self.se > 1e-4 && self.se < 1e4 && self.value.abs() < 1e5;
+        // The second digit of the standard error is at the decimal 1 - floor(log10 se).
         everyday.then(|| (1.0 - self.se.log10().floor()).clamp(0.0, 5.0) as usize)
     }
 }

@@ -1,4 +1,4 @@
-//! Where the answer comes from: the model that was asked about, and the trials.
+//! Provenance of the diagnosis: the diagnosed model, and the trials.
 
 use sistership_model::Model;
 use sistership_model::effect::AppliedEffect;
@@ -8,7 +8,7 @@ use crate::numbers::{known, significant, stated};
 use crate::tables::{Cell, Column, Row, Table};
 use crate::words;
 
-/// What is known of the model, a line each: a word and what it is.
+/// Facts about the model: a heading and a text for each.
 pub(crate) fn model(model: &Model) -> Vec<(&'static str, String)> {
     let mut lines = vec![(
         "Status",
@@ -39,7 +39,7 @@ fn carried(effect: &AppliedEffect) -> String {
     format!("{} ({})", effect.name, values.collect::<Vec<_>>().join(", "))
 }
 
-/// The trials that were given.
+/// Table of the trials.
 pub(crate) fn trials(trials: &[&Trial]) -> Table {
     let columns = vec![
         Column::text("trial", ""),

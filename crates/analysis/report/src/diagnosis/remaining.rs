@@ -1,5 +1,5 @@
-//! What remains: stretches that nothing explains, the level of the discrepancy, and how the
-//! coefficients moved.
+//! Unexplained remainder: segments that no effect explains, the level of the discrepancy, and
+//! changes of the coefficients.
 
 use sistership_diagnosis::{
     DiscrepancyLevel, OriginKind, RemainderDependence, RemainderOrigin, Settings, Unexplained,
@@ -12,7 +12,7 @@ use crate::numbers::{fixed, known, list, signed, significant};
 use crate::tables::{Cell, Column, Row, Table, setting};
 use crate::words::{acceleration, recorded};
 
-/// Stretches that no effect explains.
+/// Table of the segments that no effect explains.
 pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
     let columns = vec![
         Column::text("trial", ""),
@@ -30,11 +30,12 @@ pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
     Table { columns, rows: stretches.iter().map(row).collect() }
 }
 
-/// Where what is left comes from, in a sentence; none where nothing says it.
+/// Origin of the remainder, as a sentence; `None` if nothing indicates it.
 pub fn origin(all: &[RemainderOrigin]) -> Option<String> {
     let (first, others) = all.split_first()?;
     let evidence = |origin: &RemainderOrigin| fixed(origin.evidence, 0);
     let other = |origin: &RemainderOrigin| format!("{} ({})", of_origin(origin), evidence(origin));
+    // Other possible origins follow in brackets with their evidence.
     let beside: Vec<String> = others.iter().map(other).collect();
     let beside = if beside.is_empty() { String::new() } else { format!("; {}", list(&beside)) };
     let kind = match first.of {
@@ -50,12 +51,12 @@ pub fn origin(all: &[RemainderOrigin]) -> Option<String> {
     ))
 }
 
-/// On what depends what is left, in a sentence each.
+/// Dependence of the remainders on recorded variables, one sentence each.
 pub(crate) fn dependences(all: &[RemainderDependence]) -> Vec<String> {
     all.iter().map(dependence).collect()
 }
 
-/// On what depends what is left of an acceleration, in a sentence.
+/// Dependence of the remainder of an acceleration on recorded variables, as a sentence.
 pub fn dependence(of: &RemainderDependence) -> String {
     let percent = |share: f64| fixed(100.0 * share.min(1.0), 0);
     let one = |variable: &VariableDependence| {
@@ -79,7 +80,7 @@ pub fn dependence(of: &RemainderDependence) -> String {
     }
 }
 
-/// The level of what nothing explains.
+/// Table of the level of the unexplained accelerations.
 pub(crate) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
     let columns = vec![
         Column::text("equation", ""),
@@ -103,7 +104,7 @@ pub(crate) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
     Table { columns, rows: levels.iter().map(row).collect() }
 }
 
-/// The coefficients that changed with the effects; none where all stay.
+/// Table of the coefficients that changed with the effects; `None` if none did.
 pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
     let columns = vec![
         Column::text("coefficient", ""),
@@ -113,6 +114,7 @@ pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
     ];
     let row = |name: &String| {
         let (before, after) = (before.coefficient(name), after.coefficient(name));
+        // A relative change needs a value before.
         let change = (before != 0.0).then(|| 100.0 * (after - before) / before.abs());
         let cells = [
             significant(before, 4),
@@ -129,7 +131,7 @@ pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
     (!rows.is_empty()).then_some(Table { columns, rows })
 }
 
-/// What the settings mean.
+/// Meanings of the settings.
 const MEANINGS: [(&str, &str); 6] = [
     (
         "restart_s",
@@ -150,7 +152,7 @@ const MEANINGS: [(&str, &str); 6] = [
     ("prior_odds", "odds that trials have an effect, where others than the library's are set"),
 ];
 
-/// Every setting with what it means.
+/// Table of all settings with their meaning.
 pub(crate) fn settings(settings: &Settings) -> Table {
     let columns =
         vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];

@@ -1,4 +1,4 @@
-//! The trials that are plotted, simulated by the model before and after.
+//! Plotted trials, simulated by the model before and after.
 
 use sistership_diagnosis::ResidualSeries;
 use sistership_model::Model;
@@ -11,19 +11,21 @@ use super::input::DiagnosisInput;
 use crate::plots::Hull;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
-/// Most trials that are plotted.
+/// Largest number of plotted trials.
 const MOST: usize = 4;
 
-/// Simulates the trials on which the model is most off; those that lack a channel are left out.
-/// What is called source and refined there is the model before and after here.
+/// Simulates the trials with the largest residuals; those that lack a channel are omitted. Here the
+/// source is the model before, and the refined model is the one after.
 pub(crate) fn replay_chosen<'a>(
     input: &DiagnosisInput<'a>,
 ) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
+    // Without a new model both simulations are equal.
     let after = input.diagnosis.model.as_ref().unwrap_or(input.model);
     let (before, after) = (ready(input.model, input)?, ready(after, input)?);
     let settings = ReplaySettings::default();
     let one = |trial: &'a Trial| {
         let (before, after) =
+            // A failed simulation only removes the plot, not the report.
             (replay(&before, trial, &settings).ok()?, replay(&after, trial, &settings).ok()?);
         Some(replayed(input, trial, before, after))
     };
@@ -58,7 +60,7 @@ fn replayed<'a>(
     }
 }
 
-/// A ship whose envelope covers the speeds of the trials.
+/// Ship whose envelope covers the speeds of the trials.
 fn ready(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
     let speeds =
@@ -67,7 +69,7 @@ fn ready(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> 
     Ok(ship)
 }
 
-/// The trials, the one with the largest residual against its noise first.
+/// Trials in order of decreasing residual relative to the noise.
 fn ranked<'a>(input: &DiagnosisInput<'a>) -> Vec<&'a Trial> {
     let size = |trial: &Trial| {
         let own = input.diagnosis.residuals.iter().filter(|series| series.trial == trial.name);
@@ -79,6 +81,7 @@ fn ranked<'a>(input: &DiagnosisInput<'a>) -> Vec<&'a Trial> {
     trials.into_iter().map(|(_, trial)| trial).collect()
 }
 
+/// Root mean squared residual relative to the noise.
 fn over_noise(series: &ResidualSeries) -> f64 {
     let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
     let noise = square(&series.band);

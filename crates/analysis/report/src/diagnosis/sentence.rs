@@ -1,4 +1,4 @@
-//! The answer in one plain sentence.
+//! Result of the diagnosis in one plain sentence.
 
 use sistership_diagnosis::{Diagnosis, Found, OriginKind, RemainderOrigin, Verdict};
 
@@ -6,7 +6,7 @@ use super::changes::change;
 use super::figures::with_figures;
 use crate::numbers::list;
 
-/// What was found, for a stranger.
+/// Result of the diagnosis, as a sentence for readers without further knowledge of it.
 pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
     let lacks = list(&diagnosis.effects.iter().map(effect).collect::<Vec<_>>());
     match (diagnosis.verdict, diagnosis.effects.is_empty()) {
@@ -30,14 +30,15 @@ pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// An effect with what is known of it: `current (0.60 m/s towards 45 deg)`.
+/// Effect with its figures: `current (0.60 m/s towards 45 deg)`.
 pub(crate) fn effect(found: &Found) -> String {
     with_figures(name(found), &found.parameters)
 }
 
-/// What an effect is called: a missing term by the term.
+/// Name of an effect; a missing term is named by the term.
 fn name(found: &Found) -> String {
     let words = found.name.replace('-', " ");
+    // A form that starts with a capital letter is the name of a coefficient.
     if found.form.starts_with(|first: char| first.is_ascii_uppercase()) {
         format!("{words} {}", found.form)
     } else {
@@ -45,8 +46,9 @@ fn name(found: &Found) -> String {
     }
 }
 
-/// Where it is: the change that explains it, or the stretch that the diagnosis puts first.
+/// Place of the remainder: the change that explains it, or the first unexplained segment.
 fn where_(diagnosis: &Diagnosis) -> String {
+    // A change in time takes precedence over an unexplained segment.
     if let Some(first) = diagnosis.changes.first() {
         return format!(" throughout: {}", change(first));
     }
@@ -60,7 +62,7 @@ fn where_(diagnosis: &Diagnosis) -> String {
     })
 }
 
-/// What an origin of the remainder is.
+/// Origin of the remainder in words.
 pub(super) fn of_origin(origin: &RemainderOrigin) -> String {
     let motion = motion(&origin.channel);
     match origin.of {
@@ -69,7 +71,7 @@ pub(super) fn of_origin(origin: &RemainderOrigin) -> String {
     }
 }
 
-/// The motion whose equation a channel stands for.
+/// Motion of the equation of a channel.
 pub(crate) fn motion(channel: &str) -> &str {
     match channel {
         "u" => "surge",

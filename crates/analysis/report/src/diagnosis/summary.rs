@@ -1,5 +1,5 @@
-//! The diagnosis in three sentences for an officer: what was found, what to do, and what these
-//! trials could not tell.
+//! Summary of the diagnosis in three sentences for an officer: the result, the recommended action,
+//! and the effects that these trials could not show.
 
 use sistership_diagnosis::{Diagnosis, LimitedBy, OriginKind, Verdict};
 
@@ -7,7 +7,7 @@ use super::evidence::next_trial;
 use super::sentence::sentence;
 use crate::numbers::list;
 
-/// The three, in this order.
+/// Returns the three sentences, in this order.
 pub(crate) fn summary(diagnosis: &Diagnosis) -> [String; 3] {
     [sentence(diagnosis), advice(diagnosis), open(diagnosis)]
 }
@@ -15,6 +15,7 @@ pub(crate) fn summary(diagnosis: &Diagnosis) -> [String; 3] {
 fn advice(diagnosis: &Diagnosis) -> String {
     match (&diagnosis.next_trial, diagnosis.verdict) {
         (Some(next), _) => next_trial(next),
+        // If the remainder is in the readings, the model is not to blame.
         (None, Verdict::Unexplained) if is_of_readings(diagnosis) => {
             "Look at the instrument that says so before the model is changed.".into()
         }

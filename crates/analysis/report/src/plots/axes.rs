@@ -3,30 +3,31 @@
 use super::Shape;
 use crate::numbers::fixed;
 
-/// A linear scale from values to places along an axis.
+/// Linear scale from values to positions along an axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Scale {
-    /// The value at one end.
+    /// Value at one end.
     pub low: f64,
-    /// The value at the other.
+    /// Value at the other end.
     pub high: f64,
-    /// How long the axis is, in the plot's units.
+    /// Length of the axis, in the plot's units.
     pub length: f64,
-    /// Whether larger values stand at smaller places, as upwards on a screen.
+    /// True if larger values have smaller positions, as upwards on a screen.
     pub reversed: bool,
 }
 
 impl Scale {
-    /// Where a value stands.
+    /// Position of a value along the axis.
     pub fn at(&self, value: f64) -> f64 {
         let share = (value - self.low) / (self.high - self.low);
         self.length * if self.reversed { 1.0 - share } else { share }
     }
 
-    /// Values at which ticks stand, about so many, with their labels.
+    /// Values of about `about` ticks, with their labels.
     pub fn ticks(&self, about: usize) -> Vec<(f64, String)> {
         let step = nice_step((self.high - self.low) / about.max(1) as f64);
         let decimals = (-step.log10().floor()).max(0.0) as usize;
+        // The tolerance keeps ticks at the very ends in spite of rounding.
         let (first, last) =
             ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
         (first..=last)
@@ -36,8 +37,9 @@ impl Scale {
     }
 }
 
-/// The next larger of 1, 2, 5 times a power of ten.
+/// Smallest of 1, 2, 5 times a power of ten that is not below `least`.
 pub fn nice_step(least: f64) -> f64 {
+    // Largest power of ten that does not exceed the value.
     let power = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0]
         .into_iter()
@@ -46,13 +48,14 @@ pub fn nice_step(least: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// The range of values with a margin, never empty.
+/// Range with a margin, never empty.
 pub fn padded((low, high): (f64, f64), share: f64) -> (f64, f64) {
+    // A constant signal gets a margin, too.
     let margin = share * (high - low).max(1e-6 * low.abs().max(high.abs())).max(1e-9);
     (low - margin, high + margin)
 }
 
-/// Least and greatest of some values.
+/// Least and greatest of the finite values.
 pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.filter(|value| value.is_finite()).fold(None, |range, value| {
         let (low, high) = range.unwrap_or((value, value));
@@ -60,12 +63,12 @@ pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// The range shown: that of the measured values, widened for the others by at most its own size on
+/// Displayed range: that of the measured values, extended for the others by at most its own size on
 /// each side.
 pub fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
     match (measured, others) {
         (Some((low, high)), Some((from, to))) => {
-            // What stays the same gets room too: its last digits mean nothing.
+            // A constant signal also gets a range, so that rounding errors do not fill the plot.
             let room = (high - low).max(0.02 * low.abs().max(high.abs())).max(1e-6);
             (low.min(from.max(low - room)), high.max(to.min(high + room)))
         }
@@ -74,11 +77,12 @@ pub fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, 
     }
 }
 
-/// A panel's grid lines across with labels to its left.
+/// Horizontal grid lines of a panel, with labels to its left.
 pub fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for (value, label) in scale.ticks(about) {
         let y = at.1 + scale.at(value);
+        // The zero line is drawn stronger.
         let class = if value == 0.0 { "zero" } else { "grid" };
         shapes.push(Shape::Line { from: (at.0, y), to: (at.0 + width, y), class });
         shapes.push(Shape::Text { at: (at.0 - 6.0, y + 3.6), text: label, class: "tick end" });
@@ -86,7 +90,7 @@ pub fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shap
     shapes
 }
 
-/// A panel's grid lines upwards, with labels below it where asked.
+/// Vertical grid lines of a panel, with labels below it if requested.
 pub fn columns(
     at: (f64, f64),
     height: f64,

@@ -1,19 +1,21 @@
-//! Fewer points, where there are more than a plot can show.
+//! Decimation of lines with more points than a plot can show.
 
-/// Most points of a line.
+/// Largest number of points of a line.
 const MOST: usize = 600;
 
-/// The indices that are drawn: every so many, first and last among them.
+/// Indices of the drawn points: at equal strides, including the first and the last.
 pub fn kept(count: usize) -> Vec<usize> {
+    // One point is reserved for the last sample.
     let stride = count.div_ceil(MOST - 1).max(1);
     let mut kept: Vec<usize> = (0..count).step_by(stride).collect();
+    // The stride may miss the last sample.
     if kept.last().is_some_and(|last| last + 1 < count) {
         kept.push(count - 1);
     }
     kept
 }
 
-/// Path data through points, broken where `jumps` says that a gap lies between two samples.
+/// SVG path data through points, broken where `jumps` returns true for a gap between two samples.
 pub fn path(points: &[(f64, f64)], jumps: impl Fn(usize, usize) -> bool) -> String {
     let mut data = String::new();
     let mut last: Option<usize> = None;

@@ -1,4 +1,4 @@
-//! A chart of the ground: north up, east to the right, metre by metre the same.
+//! Chart of the ground: north up, east to the right, on equal scales.
 
 use super::axes::{Scale, columns, nice_step, rows};
 use super::{Hull, Shape, WIDTH};
@@ -9,10 +9,10 @@ const TOP: f64 = 24.0;
 const BOTTOM: f64 = 36.0;
 const LEAST: f64 = 150.0;
 const MOST: f64 = 446.0;
-/// An outline shorter than this says nothing, in the plot's units.
+/// Outlines shorter than this are not drawn, in the plot's units.
 const LEAST_OUTLINE: f64 = 5.0;
 
-/// North upwards and east to the right.
+/// Chart with north upwards and east to the right.
 #[derive(Debug)]
 pub struct GroundChart {
     east: Scale,
@@ -20,12 +20,15 @@ pub struct GroundChart {
 }
 
 impl GroundChart {
-    /// That holds places in these ranges, m, with a margin, and a ship at each of them.
+    /// Creates a chart of positions in these ranges, m, with a margin, and with room for a ship at
+    /// each of them.
     pub fn of(north: (f64, f64), east: (f64, f64), hull: Option<Hull>) -> Self {
+        // Half a ship length of room around every position.
         let half_m = hull.map_or(0.0, |hull| 0.5 * hull.lpp_m);
         let [north, east] = [north, east].map(|(low, high)| (low - half_m, high + half_m));
         let width = WIDTH - LEFT - RIGHT;
         let span = |range: (f64, f64)| (range.1 - range.0).max(1e-6) * 1.1;
+        // One scale for both directions, m per unit: the tighter of width and largest height.
         let metres = (span(east) / width).max(span(north) / MOST);
         let height = (span(north) / metres).clamp(LEAST, MOST);
         let around = |range: (f64, f64), length: f64, reversed: bool| {
@@ -35,17 +38,17 @@ impl GroundChart {
         Self { east: around(east, width, false), north: around(north, height, true) }
     }
 
-    /// The height of a plot that it fills.
+    /// Height of a plot that holds only this chart.
     pub fn height(&self) -> f64 {
         TOP + self.north.length + BOTTOM
     }
 
-    /// Where a point `(north, east)` stands within the panel.
+    /// Position of a point `(north, east)` within the panel.
     pub fn at(&self, (north, east): (f64, f64)) -> (f64, f64) {
         (self.east.at(east), self.north.at(north))
     }
 
-    /// The grid with its labels, what is inside, cut off at the edges, and the frame.
+    /// Shapes of the chart: grid with labels, content clipped at the edges, and frame.
     pub fn drawn(&self, inside: Vec<Shape>) -> Vec<Shape> {
         let (at, size) = ((LEFT, TOP), (self.east.length, self.north.length));
         let mut shapes = self.grid();
@@ -54,7 +57,7 @@ impl GroundChart {
         shapes
     }
 
-    /// The outline of a ship at a place and heading; none where it would be too small to see.
+    /// Outline of a ship at a position and heading; `None` if it would be too small to see.
     pub fn outline(
         &self,
         hull: Hull,
@@ -97,10 +100,11 @@ impl GroundChart {
         shapes
     }
 
-    /// A ring and a word where a track starts.
+    /// Mark and label of the start of a track.
     pub fn start(&self, place: (f64, f64)) -> Vec<Shape> {
         let (x, y) = self.at(place);
         let (x, y) = (LEFT + x, TOP + y);
+        // Close to the right edge the label is placed to the left of the mark.
         let (side, class) =
             if x > LEFT + 0.75 * self.east.length { (-9.0, "start end") } else { (9.0, "start") };
         let text = Shape::Text {

@@ -1,8 +1,8 @@
-//! The outline of a ship on its track, to scale.
+//! Outline of a ship on its track, to scale.
 
 use sistership_model::particulars::Particulars;
 
-/// The particulars that an outline is drawn from.
+/// Particulars from which an outline is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hull {
     /// Length between perpendiculars, m.
@@ -11,23 +11,23 @@ pub struct Hull {
     pub beam_m: f64,
 }
 
-/// Half of the outline from bow to stern: forward of midship by L, to starboard by B. Only length
-/// and beam are the ship's own.
+/// Half of the outline from bow to stern: forward of midship as a fraction of length, to starboard
+/// as a fraction of beam. Only length and beam are the ship's own.
 const HALF: [(f64, f64); 6] =
     [(0.5, 0.0), (0.42, 0.24), (0.3, 0.44), (0.18, 0.5), (-0.38, 0.5), (-0.5, 0.36)];
 
 impl Hull {
-    /// Of a ship whose length and beam are known.
+    /// Creates the outline of a ship, `None` if length or beam is unknown.
     pub fn of(particulars: &Particulars) -> Option<Self> {
         let known = |name: &str| particulars.get(name).map(|quantity| quantity.value);
         Some(Self { lpp_m: known("lpp_m")?, beam_m: known("beam_m")? })
     }
 
-    /// The corners of the outline at a place `(north, east)` and heading, m: clockwise from the
-    /// bow.
+    /// Corners of the outline at a position `(north, east)` and heading, m: clockwise from the bow.
     pub fn outline(&self, (north, east): (f64, f64), psi_rad: f64) -> Vec<(f64, f64)> {
         let (sin, cos) = psi_rad.sin_cos();
         let starboard = HALF.iter().map(|&(x, y)| (x, y));
+        // The port side is the mirror image, from stern to bow, without the bow itself.
         let port = HALF.iter().skip(1).rev().map(|&(x, y)| (x, -y));
         let placed = |(x, y): (f64, f64)| {
             let (forward, right) = (x * self.lpp_m, y * self.beam_m);

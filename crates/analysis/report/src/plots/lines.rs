@@ -1,4 +1,4 @@
-//! The three lines of a trial: measured, source, refined.
+//! Lines of a trial: measured, source, refined.
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::recorded::Replay;
@@ -6,14 +6,14 @@ use sistership_simulation::state::at;
 
 use crate::replayed::ReplayedTrial;
 
-/// Samples of one line: place in the trial and value.
+/// Samples of one line: index in the trial, and value.
 pub(crate) struct PlottedLine<T> {
     pub class: &'static str,
     pub samples: Vec<usize>,
     pub values: Vec<T>,
 }
 
-/// Where a channel stands in the state.
+/// Index of a channel in the state vector.
 fn place(channel: Channel) -> Option<usize> {
     sistership_simulation::state::RECORDED
         .into_iter()
@@ -21,7 +21,7 @@ fn place(channel: Channel) -> Option<usize> {
         .map(|(_, place)| place)
 }
 
-/// A channel over the samples, measured first, then the source, then the refined model.
+/// Returns the lines of a channel: measured, source and refined model.
 pub(crate) fn channel(
     replayed: &ReplayedTrial<'_>,
     channel: Channel,
@@ -32,7 +32,9 @@ pub(crate) fn channel(
         let values: Vec<f64> = values.iter().map(|value| value * factor).collect();
         lines.push(PlottedLine { class: "measured", samples: (0..values.len()).collect(), values });
     }
+    // Inputs such as the rudder are not part of the state and have one line only.
     let Some(place) = place(channel) else { return lines };
+    // A simulation may stop early, so it has its own list of samples.
     for (class, run) in [("source", &replayed.source), ("refined", &replayed.refined)] {
         let values = run.track.states.iter().map(|state| state[place] * factor).collect();
         lines.push(PlottedLine { class, samples: run.samples.clone(), values });
@@ -40,7 +42,7 @@ pub(crate) fn channel(
     lines
 }
 
-/// Positions `(north, east)`, likewise.
+/// Returns the lines of positions `(north, east)`, in the same order.
 pub(crate) fn positions(replayed: &ReplayedTrial<'_>) -> Vec<PlottedLine<(f64, f64)>> {
     let trial = replayed.trial;
     let mut lines = Vec::new();
@@ -60,12 +62,12 @@ fn track(class: &'static str, run: &Replay) -> PlottedLine<(f64, f64)> {
     PlottedLine { class, samples: run.samples.clone(), values }
 }
 
-/// Whether a gap of the record lies between two of its samples.
+/// True if the record has a gap between two samples.
 pub(crate) fn has_gap(trial: &Trial, starts: &[usize], from: usize, to: usize) -> bool {
     starts.iter().any(|start| from < *start && *start <= to && *start < trial.len())
 }
 
-/// The samples at which gap-free parts start.
+/// Returns the samples at which gap-free segments start.
 pub(crate) fn starts(trial: &Trial) -> Vec<usize> {
     trial.segments().into_iter().map(|segment| segment.start).collect()
 }

@@ -1,4 +1,4 @@
-//! Plots as inline SVG: a few shapes, axes with nice ticks, and what is drawn on them.
+//! Plots as inline SVG: basic shapes, axes with round tick values, and the plots of the reports.
 
 pub mod axes;
 mod decimate;
@@ -24,38 +24,38 @@ pub(crate) use series::series;
 pub use trajectory::mark_interval_s;
 pub(crate) use trajectory::trajectory;
 
-/// Width of every plot in its own units, near that of a phone's screen, so that text stays legible
-/// there.
+/// Width of every plot in its own units, close to that of a phone's screen, so that text stays
+/// legible there.
 pub const WIDTH: f64 = 420.0;
 
-/// A plot.
+/// Plot as shapes in a coordinate system.
 #[derive(Debug, Template)]
 #[template(path = "report_plot.html")]
 pub struct Plot {
-    /// Its width in its own units.
+    /// Width in its own units.
     pub width: f64,
-    /// Its height.
+    /// Height in the same units.
     pub height: f64,
-    /// What it shows, for those who cannot see it.
+    /// Text alternative for screen readers.
     pub label: String,
-    /// What is drawn, in this order.
+    /// Shapes in drawing order.
     pub shapes: Vec<Shape>,
 }
 
-/// What plots are made of. `class` is a style of the page.
+/// Shape of a plot. `class` is a style class of the page.
 #[derive(Debug)]
 #[allow(missing_docs, reason = "from, to, at, size say what they are")]
 pub enum Shape {
-    /// A straight line.
+    /// Straight line.
     Line { from: (f64, f64), to: (f64, f64), class: &'static str },
-    /// A line through many points, as path data.
+    /// Line through many points, as path data.
     Path { d: String, class: &'static str },
-    /// A rectangle.
+    /// Rectangle.
     Rect { at: (f64, f64), size: (f64, f64), class: &'static str },
-    /// A dot.
+    /// Dot.
     Dot { at: (f64, f64), radius: f64, class: &'static str },
     /// Text; `class` also anchors it.
     Text { at: (f64, f64), text: String, class: &'static str },
-    /// Shapes in the coordinates of a panel, cut off at its edges.
+    /// Shapes in the coordinates of a panel, clipped at its edges.
     Panel { at: (f64, f64), size: (f64, f64), shapes: Vec<Shape> },
 }

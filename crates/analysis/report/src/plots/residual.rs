@@ -1,5 +1,5 @@
-//! The residual of each acceleration over time, before and after, with the band of what noise alone
-//! would show.
+//! Residual of each acceleration over time, before and after, with the band of the residual
+//! expected from noise alone.
 
 use sistership_diagnosis::{ResidualSeries, Unexplained};
 
@@ -14,7 +14,7 @@ const TITLE: f64 = 20.0;
 const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
-/// The panels of one trial, one for each acceleration; stretches that nothing explains are shaded.
+/// Returns the panels of one trial, one for each acceleration; unexplained segments are shaded.
 pub(crate) fn residual(
     trial: &str,
     series: &[&ResidualSeries],
@@ -45,6 +45,7 @@ pub(crate) fn residual(
     }
 }
 
+/// Panel of one acceleration.
 fn panel(
     series: &ResidualSeries,
     stretches: &[&Unexplained],
@@ -55,6 +56,7 @@ fn panel(
     let (unit, factor) = acceleration(&series.channel);
     let all = series.before.iter().chain(&series.after).chain(&series.band);
     let (low, high) = extent(all.map(|value| value * factor)).unwrap_or((-1.0, 1.0));
+    // The band is symmetric, so its negative side must also fit.
     let (low, high) = padded((low.min(-high_band(series, factor)), high), 0.06);
     let scale = Scale { low, high, length: HEIGHT, reversed: true };
     let title = format!("d{}/dt: what must be added to the model [{unit}]", series.channel);
@@ -72,6 +74,7 @@ fn panel(
     let line = |values: &[f64], class| Shape::Path { d: path(&place(values), |_, _| false), class };
     let lines = vec![line(&series.before, "source"), line(&series.after, "refined")];
     let size = (time.length, HEIGHT);
+    // Order of drawing: shaded areas below the grid, lines above it.
     shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: areas });
     shapes.extend(rows((LEFT, top), time.length, &scale, 4));
     shapes.extend(columns((LEFT, top), HEIGHT, time, 6, last));
@@ -86,10 +89,11 @@ fn high_band(series: &ResidualSeries, factor: f64) -> f64 {
 
 fn shade(stretch: &Unexplained, time: &Scale) -> Shape {
     let (from, to) = (time.at(stretch.from_s), time.at(stretch.to_s));
+    // Very short segments stay visible.
     Shape::Rect { at: (from, 0.0), size: ((to - from).max(1.0), HEIGHT), class: "stretch" }
 }
 
-/// The area between the band and its mirror image about `zero`.
+/// Area between the band and its mirror image about `zero`.
 fn band(edge: &[(f64, f64)], zero: f64) -> Shape {
     let kept = kept(edge.len());
     let upper = kept.iter().map(|&index| edge[index]);

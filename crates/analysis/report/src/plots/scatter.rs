@@ -1,4 +1,4 @@
-//! The residual of an acceleration against the variable that explains most of it, before and after,
+//! Residual of an acceleration against the variable that explains most of it, before and after, for
 //! all trials together.
 
 use std::collections::BTreeMap;
@@ -12,13 +12,15 @@ use crate::words::{acceleration, recorded};
 
 const HEIGHT: f64 = 190.0;
 
-/// One plot for each acceleration and variable.
+/// Returns one plot for each acceleration and variable.
 pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
     let mut groups: BTreeMap<(usize, &str, &str), Vec<&ResidualSeries>> = BTreeMap::new();
     for series in residuals
         .iter()
+        // Without values of the variable there is nothing to plot against.
         .filter(|series| series.variable.len() == series.t_s.len() && !series.t_s.is_empty())
     {
+        // Order of the plots: surge, sway, yaw, roll.
         let rank =
             ["u", "v", "r", "p"].iter().position(|known| *known == series.channel).unwrap_or(4);
         groups.entry((rank, &series.channel, &series.against)).or_default().push(series);
@@ -48,7 +50,7 @@ fn scatter(channel: &str, against: &str, group: &[&ResidualSeries]) -> Plot {
     )
 }
 
-/// Points as strokes without length: far smaller than as many circles.
+/// Points as strokes of zero length: much smaller in bytes than as many circles.
 fn cloud(points: &[(f64, f64)], plot: &SmallPlot, class: &'static str) -> Shape {
     let dot = |index: usize| {
         let (x, y) = plot.at(&points[index]);

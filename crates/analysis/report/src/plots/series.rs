@@ -1,4 +1,4 @@
-//! Speeds, yaw rate, heading and rudder over time, panel under panel.
+//! Time series of speeds, yaw rate, heading and rudder, one panel each.
 
 use sistership_model::trial::Channel;
 
@@ -15,7 +15,7 @@ const TITLE: f64 = 20.0;
 const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
-/// The panels of one trial.
+/// Returns the panels of one trial.
 pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
     let panels = panels(replayed.rolls);
     let (time, mut shapes) = (time_scale(replayed), Vec::new());
@@ -37,9 +37,10 @@ pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
     }
 }
 
-/// What is shown: motions as they are called, then the rudder.
+/// Displayed channels: the motions, then the rudder.
 fn panels(rolls: bool) -> Vec<(Channel, ShownChannel)> {
     let motions = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::Phi];
+    // Roll is only shown if it is simulated.
     let motions = motions.into_iter().filter(|channel| rolls || *channel != Channel::Phi);
     let mut panels: Vec<_> =
         motions.filter_map(|channel| Some((channel, words::channel(channel.name())?))).collect();
@@ -63,6 +64,7 @@ fn panel(
 ) -> Vec<Shape> {
     let lines = lines::channel(replayed, channel, quantity.factor);
     let range = |measured: bool| {
+        // The measured line determines the range; the others extend it.
         let own = lines.iter().filter(|line| (line.class == "measured") == measured);
         extent(own.flat_map(|line| line.values.iter().copied()))
     };

@@ -1,4 +1,4 @@
-//! Small plots, of which three stand side by side: two scales, a frame, and what is drawn in it.
+//! Small plots, three of them side by side: two scales, a frame, and content.
 
 use super::axes::{Scale, columns, extent, padded, rows};
 use super::{Plot, Shape};
@@ -9,14 +9,14 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 24.0;
 const BOTTOM: f64 = 38.0;
 
-/// A small plot without its content.
+/// Small plot without its content.
 pub(super) struct SmallPlot {
     across: Scale,
     up: Scale,
 }
 
 impl SmallPlot {
-    /// Over the extent of some points, so high.
+    /// Creates a plot over the range of some points, with the given height.
     pub fn over<'a>(points: impl Iterator<Item = &'a (f64, f64)> + Clone, height: f64) -> Self {
         let range = |of: fn(&(f64, f64)) -> f64| {
             padded(extent(points.clone().map(of)).unwrap_or((0.0, 1.0)), 0.05)
@@ -28,12 +28,12 @@ impl SmallPlot {
         }
     }
 
-    /// Where a point is in the frame.
+    /// Position of a point in the frame.
     pub fn at(&self, point: &(f64, f64)) -> (f64, f64) {
         (self.across.at(point.0), self.up.at(point.1))
     }
 
-    /// The plot with its content, a title above and what is below the axis.
+    /// Returns the plot with its content, a title above and a title below the axis.
     pub fn with(&self, content: Vec<Shape>, title: String, below: String, label: String) -> Plot {
         let (size, corner) = ((self.across.length, self.up.length), (LEFT, TOP));
         let mut shapes = vec![Shape::Text { at: (LEFT, TOP - 8.0), text: title, class: "title" }];

@@ -1,4 +1,4 @@
-//! The path over the ground, with the outline of the ship at the same instants on every path.
+//! Track over the ground, with the outline of the ship at the same instants on every track.
 
 use sistership_model::trial::Channel;
 use sistership_simulation::recorded::Replay;
@@ -10,7 +10,7 @@ use super::lines::{self, PlottedLine};
 use super::{GroundChart, Hull, Plot, Shape, WIDTH};
 use crate::replayed::ReplayedTrial;
 
-/// The trajectory of one trial.
+/// Returns the trajectory of one trial.
 pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
     let lines = lines::positions(replayed);
     let chart = chart(&lines, replayed.hull);
@@ -27,7 +27,7 @@ pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
     }
 }
 
-/// Seconds between the marks on a path.
+/// Time between the marks on a track, s.
 pub fn mark_interval_s(duration_s: f64) -> f64 {
     nice_step((duration_s / 8.0).max(1e-3))
 }
@@ -56,7 +56,7 @@ fn curve(
     Shape::Path { d: path(&points, jumps), class: line.class }
 }
 
-/// Outlines where the heading is known, else dots.
+/// Marks of equal time: outlines if the heading is known, otherwise dots.
 fn marks(
     chart: &GroundChart,
     replayed: &ReplayedTrial<'_>,
@@ -65,6 +65,7 @@ fn marks(
     let times = &replayed.trial.t_s;
     let interval = mark_interval_s(replayed.trial.duration_s());
     let number = |index: usize| ((times[line.samples[index]] - times[0]) / interval + 1e-9).floor();
+    // A mark at the first sample of each interval.
     let crossed = |index: &usize| number(*index) > number(*index - 1);
     let mark = |index: usize| {
         let outline = || {
@@ -72,6 +73,7 @@ fn marks(
             chart.outline(replayed.hull?, line.values[index], heading, hull_class(line.class))
         };
         let (at, class) = (chart.at(line.values[index]), dot_class(line.class));
+        // No heading, no hull or too small: a dot.
         outline().unwrap_or(Shape::Dot { at, radius: 2.6, class })
     };
     (1..line.values.len()).filter(crossed).map(mark).collect()
@@ -84,6 +86,8 @@ fn heading(
 ) -> Option<f64> {
     let of = |run: &Replay| run.track.states.get(index).map(|state| state[at::PSI]);
     match line.class {
+        // Simulated headings are indexed by the line's own samples, recorded ones by those of the
+        // trial.
         "source" => of(&replayed.source),
         "refined" => of(&replayed.refined),
         _ => replayed.trial.channel(Channel::Psi)?.get(line.samples[index]).copied(),

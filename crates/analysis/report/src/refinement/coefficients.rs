@@ -1,4 +1,4 @@
-//! Which coefficients moved, and how far.
+//! Changes of the coefficients.
 
 use serde::Serialize;
 use sistership_identification::refine::CoefficientChange;
@@ -6,7 +6,7 @@ use sistership_identification::refine::CoefficientChange;
 use super::input::RefinementInput;
 use super::provenance;
 
-/// Every coefficient by axis, and those that the trials cannot tell apart.
+/// All coefficients by axis, and the groups that the trials cannot distinguish.
 #[derive(Debug, Serialize)]
 pub(crate) struct Coefficients<'a> {
     pub axes: Vec<AxisChanges<'a>>,
@@ -14,28 +14,28 @@ pub(crate) struct Coefficients<'a> {
     pub condition_number: f64,
 }
 
-/// The coefficients of one axis.
+/// Coefficients of one axis.
 #[derive(Debug, Serialize)]
 pub(crate) struct AxisChanges<'a> {
     pub axis: &'a str,
     pub coefficients: Vec<ChangedCoefficient<'a>>,
 }
 
-/// One coefficient with what a reader wants to know of it.
+/// One coefficient with its change.
 #[derive(Debug, Serialize)]
 pub(crate) struct ChangedCoefficient<'a> {
     #[serde(flatten)]
     pub change: &'a CoefficientChange,
-    /// ChangedCoefficient over the size of the source's value, in per cent; none where the source
-    /// has none.
+    /// Change relative to the size of the source's value, in per cent; `None` if that is zero.
     pub moved_percent: Option<f64>,
     /// Number of its collinear group, from 1.
     pub collinear_group: Option<usize>,
-    /// Whether the source's figure is an estimate.
+    /// True if the source's value is an estimate.
     pub source_estimated: bool,
 }
 
 impl<'a> Coefficients<'a> {
+    /// Collects the coefficients of a refinement.
     pub fn of(input: &RefinementInput<'a>) -> Self {
         let refinement = input.refinement;
         let mut axes: Vec<AxisChanges<'a>> = Vec::new();
@@ -54,18 +54,19 @@ impl<'a> Coefficients<'a> {
         }
     }
 
-    /// Every coefficient.
+    /// Returns all coefficients.
     pub fn all(&self) -> impl Iterator<Item = &ChangedCoefficient<'a>> {
         self.axes.iter().flat_map(|axis| &axis.coefficients)
     }
 
-    /// The power of ten in which the values read best: that of prime systems where all are small
-    /// numbers without unit.
+    /// Power of ten of the displayed values: -5, that of the prime system, if all are without unit
+    /// and most are small; otherwise 0.
     pub fn exponent(&self) -> i32 {
         let mut sizes: Vec<f64> =
             self.all().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
         sizes.sort_by(f64::total_cmp);
         let bare = self.all().all(|c| c.change.unit == "1");
+        // Judged by the median, as single coefficients may be large.
         let small = sizes.get(sizes.len() / 2).is_some_and(|median| *median < 0.02);
         if bare && small { -5 } else { 0 }
     }
@@ -75,6 +76,7 @@ impl<'a> ChangedCoefficient<'a> {
     fn of(input: &RefinementInput<'_>, change: &'a CoefficientChange) -> Self {
         let groups = &input.refinement.collinear_groups;
         let in_group = |group: &Vec<String>| {
+            // A name may stand for the same regressor of several axes, separated by a slash.
             group.iter().any(|names| names.split('/').any(|name| name == change.name))
         };
         let quantity = input.refinement.transferred.coefficients.get(&change.name);

@@ -1,4 +1,4 @@
-//! Everything that the report of a refinement says, gathered once.
+//! Content of the report of a refinement, collected once.
 
 use serde::Serialize;
 use sistership_model_selection::Ladder;
@@ -14,7 +14,7 @@ use super::sailed::{self, Sailed};
 use super::summary::{Headline, HeldOutErrors};
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
-/// Everything that a report says.
+/// Content of a report.
 #[derive(Debug, Serialize)]
 pub(crate) struct RefinementContent<'a> {
     pub format: &'static str,

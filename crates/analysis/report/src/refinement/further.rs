@@ -1,4 +1,4 @@
-//! What the refined model says of stopping and of keeping a course.
+//! Stopping and course-keeping ability of the refined model.
 
 use sistership_simulation::manoeuvre::{
     FurtherAsked, FurtherManoeuvres, ManoeuvreSettings, further,
@@ -7,14 +7,14 @@ use sistership_simulation::{PlantError, Ship};
 
 use super::input::RefinementInput;
 
-/// The usual manoeuvres beside the standard ones, sailed by the refined model.
+/// Simulates the usual additional manoeuvres with the refined model.
 pub(crate) fn sailed(input: &RefinementInput<'_>) -> Result<FurtherManoeuvres, PlantError> {
     let (model, law) = (&input.refinement.model, input.law);
     let ship = Ship::new(model, law)?;
     Ok(further(model, law, &ship, &ManoeuvreSettings::default(), &FurtherAsked::usual()))
 }
 
-/// What must be known to read the figures.
+/// Remarks that are needed to read the figures.
 pub(crate) fn remarks(sailed: &FurtherManoeuvres, lpp_m: f64) -> Vec<String> {
     let stable = match sailed.straight_line_stable {
         Some(true) => Some("by pull-outs to both sides the ship is stable on a straight course"),

@@ -1,4 +1,4 @@
-//! The page: content, tables and plots put into the template.
+//! HTML page: content, tables and plots for the template.
 
 use askama::Template;
 use sistership_model::source::Source;
@@ -17,7 +17,7 @@ use crate::tables::Table;
 use crate::tile::Tile;
 use crate::words;
 
-/// The page as its template sees it.
+/// Page as the template takes it.
 #[derive(Template)]
 #[template(path = "report.html")]
 struct RefinementPage<'a> {
@@ -34,17 +34,17 @@ struct RefinementPage<'a> {
     turns: Table,
     zigzags: Table,
     imo: Table,
-    /// Stopping, pull-outs and spirals, where the ship's length is known.
+    /// Stopping, pull-outs and spirals, if the ship's length is known.
     further: Option<Table>,
     further_remarks: Vec<String>,
     sailed: Table,
     why: Option<SourceChoice>,
     ladder: Option<Table>,
-    /// What the most similar ship leaves, refined with the l2 prior.
+    /// Error of the most similar ship, refined with the l2 prior.
     reference: Option<String>,
-    /// Whether a learned branch was taken, and why.
+    /// Reason why a learned correction was selected or not.
     branch: Option<&'a str>,
-    /// What to know first where the trials leave much open.
+    /// Warning that the trials leave wide uncertainty bands.
     wide: Option<String>,
     particulars: Table,
     parameters: Table,
@@ -53,7 +53,7 @@ struct RefinementPage<'a> {
     sources: Vec<(&'static str, Vec<Citation<'a>>)>,
 }
 
-/// The plots of one trial.
+/// Plots of one trial.
 struct RefinementTrialPlots<'a> {
     shown: &'a ReplaySummary<'a>,
     caption: String,
@@ -61,7 +61,7 @@ struct RefinementTrialPlots<'a> {
     series: Plot,
 }
 
-/// SourceChoice this source.
+/// Reasons for the choice of the source.
 struct SourceChoice {
     definition: &'static str,
     vector: String,
@@ -69,13 +69,13 @@ struct SourceChoice {
     table: Table,
 }
 
-/// A publication under its key.
+/// Publication with its key.
 struct Citation<'a> {
     key: &'a str,
     source: &'a Source,
 }
 
-/// Writes the page.
+/// Renders the page.
 pub(crate) fn page(
     content: &RefinementContent<'_>,
     replayed: &[ReplayedTrial<'_>],
@@ -144,7 +144,7 @@ impl<'a> RefinementTrialPlots<'a> {
     }
 }
 
-/// What the plots of a trial show and how far the models are off there.
+/// Caption of the plots of a trial, with the errors of both models.
 fn caption(shown: &ReplaySummary<'_>) -> String {
     let error = |quantity: &words::ShownChannel| {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
@@ -170,7 +170,7 @@ fn caption(shown: &ReplaySummary<'_>) -> String {
     )
 }
 
-/// Each collinear group as a line.
+/// One line for each collinear group.
 fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
     coefficients
         .collinear_groups
@@ -179,10 +179,12 @@ fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
         .collect()
 }
 
+/// Choice of the source; `None` if the source was named without a ranking.
 fn why(content: &RefinementContent<'_>) -> Option<SourceChoice> {
     content.similarity.map(|ranking| SourceChoice {
         definition: similarity::definition(ranking.definition),
         vector: similarity::vector(ranking),
+        // The remark on a named source does not apply to a selection among candidates.
         remark: match content.ladder {
             Some(_) => None,
             None => similarity::remark(ranking, content.headline.source),

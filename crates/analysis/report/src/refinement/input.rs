@@ -1,4 +1,4 @@
-//! What the report of a refinement is made of.
+//! Input of the report of a refinement.
 
 use sistership_identification::refine::Refinement;
 use sistership_model::trial::Trial;
@@ -8,21 +8,21 @@ use sistership_priors::source::Similarity;
 
 use crate::rendered::VersionLabel;
 
-/// What the report of a refinement is made of.
+/// Input of the report of a refinement.
 #[derive(Debug, Clone)]
 pub struct RefinementInput<'a> {
-    /// The refinement.
+    /// Result of the refinement.
     pub refinement: &'a Refinement,
-    /// The law of both models.
+    /// Law of both models.
     pub law: &'a Law,
-    /// The target ship.
+    /// Target ship.
     pub vessel: &'a Vessel,
-    /// The trials that were given, fitted and held out.
+    /// All given trials, fitted and held out.
     pub trials: &'a [&'a Trial],
-    /// How the source was found, where it was not named.
+    /// Ranking by similarity, if the source was not named.
     pub similarity: Option<&'a Similarity>,
-    /// What was tried, where it was searched.
+    /// Selection report, if the model was selected among candidates.
     pub ladder: Option<&'a Ladder>,
-    /// The version under which the model is kept, where it is kept.
+    /// Version of the model, if it is stored.
     pub version: Option<VersionLabel>,
 }

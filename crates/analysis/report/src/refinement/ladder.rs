@@ -1,11 +1,11 @@
-//! What was tried before this model was taken.
+//! Selection report: candidates that were evaluated before this model was selected.
 
 use sistership_model_selection::{Ladder, Line, Rung};
 
 use crate::numbers::{known, significant};
 use crate::tables::{Cell, Column, Row, Table};
 
-/// One line for each source and law on each rung.
+/// Table with one row for each source and law at each stage.
 pub(crate) fn table(ladder: &Ladder) -> Table {
     let columns = vec![
         Column::text("source", ""),
@@ -42,6 +42,7 @@ fn row(line: &Line) -> Row {
     Row::of(cells).highlighted(line.chosen)
 }
 
+/// Estimator of a stage.
 fn estimator(rung: Rung) -> &'static str {
     match rung {
         Rung::CarriedOver => "none: as carried over",

@@ -1,4 +1,4 @@
-//! The standard manoeuvres and the IMO criteria before and after.
+//! Standard manoeuvres and IMO criteria before and after.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 use super::input::RefinementInput;
 use crate::metrics::{TURN, ZIGZAG};
 
-/// The two sides of every figure.
+/// Values of one figure by both models.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub(crate) struct FigurePair {
     pub source: Option<f64>,
@@ -25,11 +25,11 @@ pub(crate) struct ManoeuvreFigure {
     pub unit: &'static str,
     #[serde(flatten)]
     pub pair: FigurePair,
-    /// 95 % of models drawn from the refined one's posterior are between.
+    /// Interval of 95 % of the models drawn from the refined one's posterior.
     pub band: Option<[f64; 2]>,
 }
 
-/// One IMO criterion.
+/// Comparison of one IMO criterion.
 #[derive(Debug, Serialize)]
 pub(crate) struct CriterionComparison<'a> {
     pub criterion: &'a str,
@@ -39,13 +39,13 @@ pub(crate) struct CriterionComparison<'a> {
     pub source_pass: Option<bool>,
     pub refined: Option<f64>,
     pub refined_pass: Option<bool>,
-    /// 95 % of models drawn from the refined one's posterior are between.
+    /// Interval of 95 % of the models drawn from the refined one's posterior.
     pub band: Option<[f64; 2]>,
-    /// Share of them that meet it.
+    /// Share of these models that meet the criterion.
     pub pass_share: Option<f64>,
 }
 
-/// The whole comparison.
+/// Comparison of all manoeuvres and criteria.
 #[derive(Debug, Serialize)]
 pub(crate) struct ManoeuvreComparison<'a> {
     pub lpp_m: Option<f64>,
@@ -55,9 +55,9 @@ pub(crate) struct ManoeuvreComparison<'a> {
     pub imo: Vec<CriterionComparison<'a>>,
     pub source_failures: &'a [String],
     pub refined_failures: &'a [String],
-    /// Manoeuvres in which the refined model leaves what its trials covered.
+    /// Manoeuvres in which the refined model leaves the range covered by trials.
     pub outside: &'a BTreeMap<String, Excursion>,
-    /// The trial that would help most.
+    /// Trial that would reduce the uncertainty most.
     pub next_trial: Option<String>,
 }
 
@@ -79,8 +79,8 @@ impl<'a> ManoeuvreComparison<'a> {
     }
 }
 
-/// The values of one key from both sides, in the order of the first; what only one side sailed is
-/// kept.
+/// Pairs of equal items of both lists, in the order of the first; an item that is only in one list
+/// has no partner.
 fn matched<'t, T>(
     source: &'t [T],
     refined: &'t [T],
@@ -90,16 +90,18 @@ fn matched<'t, T>(
         .iter()
         .map(|one| (Some(one), refined.iter().find(|other| same(one, other))))
         .collect();
+    // Items that only the refined model has come last.
     let alone = refined.iter().filter(|other| !source.iter().any(|one| same(one, other)));
     pairs.extend(alone.map(|other| (None, Some(other))));
     pairs
 }
 
-/// The edges of a figure's band.
+/// Limits of the uncertainty band of a figure.
 fn band(bands: Option<&Bands>, name: &str) -> Option<[f64; 2]> {
     bands?.of(name).map(|band| [band.low, band.high])
 }
 
+/// Figures of the turning circles, paired by rudder angle.
 fn turns(
     source: &[TurningMetrics],
     refined: &[TurningMetrics],
@@ -111,6 +113,7 @@ fn turns(
         let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), side(rudder));
         for (figure, read) in TURN {
             let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
+            // The key is the name under which the bands store a figure.
             let band = band(bands, &format!("turn {rudder} deg: {figure}"));
             figures.push(ManoeuvreFigure {
                 manoeuvre: manoeuvre.clone(),
@@ -124,6 +127,7 @@ fn turns(
     figures
 }
 
+/// Figures of the zigzags, paired by rudder and switching angle.
 fn zigzags(
     source: &[ZigzagMetrics],
     refined: &[ZigzagMetrics],
@@ -164,6 +168,7 @@ fn criteria<'a>(
 ) -> Vec<CriterionComparison<'a>> {
     let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
     let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
+        // Name and limit are the same on both sides.
         let any = after.or(before)?;
         let drawn = bands.and_then(|bands| bands.of(&format!("IMO: {}", any.criterion)));
         Some(CriterionComparison {

@@ -1,9 +1,9 @@
-//! The report of a refinement: one HTML page that a stranger can read and print, and the same
-//! content as JSON.
+//! Report of a refinement: one self-contained HTML page to read and print, and the same content as
+//! JSON.
 //!
-//! [`render_refinement`] gathers the content once (`summary`, `coefficients`, `options`,
-//! `manoeuvres`, `sailed`, `similarity`, `provenance`, `replays`); JSON is that content, the page
-//! shows it with tables and plots. Nothing depends on the clock.
+//! [`render_refinement`] collects the content once (coefficients, tuning options, manoeuvres,
+//! measured figures, similarity, provenance, replays); JSON is that content, the page shows it with
+//! tables and plots. Nothing depends on the clock.
 
 mod coefficients;
 mod content;
@@ -31,7 +31,7 @@ use content::RefinementContent;
 /// Renders the report of a refinement; the same input gives the same bytes.
 ///
 /// # Errors
-/// A model does not simulate under the law, or the page cannot be written.
+/// Returns an error if a model cannot be simulated under the law, or if the page cannot be written.
 pub fn render_refinement(input: &RefinementInput<'_>) -> Result<Rendered, ReportError> {
     let replayed = replays::replay_chosen(input)?;
     let further = further::sailed(input)?;

@@ -1,4 +1,4 @@
-//! How far each coefficient of an axis moved, in standard deviations of the prior.
+//! Change of each coefficient of an axis, in standard deviations of the prior.
 
 use super::coefficients::{AxisChanges, ChangedCoefficient, Coefficients};
 use crate::numbers::signed;
@@ -6,7 +6,7 @@ use crate::plots::axes::{Scale, columns};
 use crate::plots::{Plot, Shape};
 use crate::words;
 
-/// Narrower than other plots: three stand side by side.
+/// Width, smaller than that of other plots: three are side by side.
 const WIDTH: f64 = 350.0;
 const LEFT: f64 = 142.0;
 const RIGHT: f64 = 54.0;
@@ -14,7 +14,7 @@ const TOP: f64 = 10.0;
 const ROW: f64 = 18.0;
 const BOTTOM: f64 = 38.0;
 
-/// One plot an axis, all on the same scale.
+/// Returns one plot for each axis, all on the same scale.
 pub(crate) fn moved(coefficients: &Coefficients<'_>) -> Vec<(&'static str, Plot)> {
     let most = coefficients
         .all()
@@ -32,6 +32,7 @@ pub(crate) fn moved(coefficients: &Coefficients<'_>) -> Vec<(&'static str, Plot)
 
 fn plot(axis: &AxisChanges<'_>, scale: &Scale) -> Plot {
     let inner = ROW * axis.coefficients.len() as f64;
+    // The shaded area is one standard deviation of the prior to either side.
     let one = (scale.at(-1.0), scale.at(1.0));
     let mut shapes =
         vec![Shape::Rect { at: (LEFT + one.0, TOP), size: (one.1 - one.0, inner), class: "prior" }];

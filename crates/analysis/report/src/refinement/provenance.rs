@@ -1,4 +1,4 @@
-//! Where every figure comes from.
+//! Provenance of every figure of a refined model.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use sistership_model::vessel::{Status, Steering};
 use super::input::RefinementInput;
 use crate::words;
 
-/// What the refined model was made of.
+/// Inputs of the refined model.
 #[derive(Debug, Serialize)]
 pub(crate) struct Provenance<'a> {
     pub particulars: Vec<StatedQuantity<'a>>,
@@ -31,7 +31,7 @@ pub(crate) struct Provenance<'a> {
     pub settings: &'a Settings,
 }
 
-/// A figure with where it comes from.
+/// Value with its source.
 #[derive(Debug, Serialize)]
 pub(crate) struct StatedQuantity<'a> {
     pub name: &'a str,
@@ -39,7 +39,7 @@ pub(crate) struct StatedQuantity<'a> {
     pub unit: &'a str,
     #[serde(flatten)]
     pub quantity: &'a Quantity,
-    /// How it came about, where it is not simply stated by a source.
+    /// Kind of derivation, if the value is not simply stated by a source.
     pub kind: Option<&'static str>,
 }
 
@@ -92,7 +92,7 @@ fn parameter<'a>(
     }
 }
 
-/// How a figure came about, by its source.
+/// Kind of derivation of a value, by its source.
 fn kind(source: &str) -> Option<&'static str> {
     match source {
         DERIVED => Some("derived"),
@@ -104,15 +104,16 @@ fn kind(source: &str) -> Option<&'static str> {
     }
 }
 
-/// Whether a source says that its figure is an estimate.
+/// True if a source declares its value an estimate.
 pub(crate) fn is_estimated(source: &str) -> bool {
     source.to_lowercase().contains("estimat")
 }
 
-/// The status of the source model, where the documents at hand tell: a model of the ship itself, or
-/// one not carried over.
+/// Status of the source model, if it is known from the given documents: a model of the ship itself,
+/// or one that was not transferred.
 pub(crate) fn source_status(input: &RefinementInput<'_>) -> Option<Status> {
     let refinement = input.refinement;
+    // A model that was not transferred keeps its status; otherwise the source's file is needed.
     if refinement.transferred.status != Status::Transferred {
         return Some(refinement.transferred.status);
     }

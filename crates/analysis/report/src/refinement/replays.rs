@@ -1,4 +1,4 @@
-//! The trials that are plotted, simulated by the source and by the refined model.
+//! Plotted trials, simulated by the source and by the refined model.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +12,10 @@ use super::input::RefinementInput;
 use crate::plots::Hull;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
-/// Most trials that are plotted.
+/// Largest number of plotted trials.
 const MOST: usize = 4;
 
-/// Simulates the chosen trials; those that lack a channel are left out.
+/// Simulates the most informative trials; those that lack a channel are omitted.
 pub(crate) fn replay_chosen<'a>(
     input: &RefinementInput<'a>,
 ) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
@@ -54,7 +54,7 @@ fn is_fitted(input: &RefinementInput<'_>, trial: &Trial) -> bool {
     !input.refinement.settings.held_out.contains(&trial.name)
 }
 
-/// A ship whose envelope covers the speeds of the trials.
+/// Ship whose envelope covers the speeds of the trials.
 fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
     let speeds =
@@ -63,8 +63,8 @@ fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError>
     Ok(ship)
 }
 
-/// The trials in the order of interest: kinds of manoeuvre in turn, held out before fitted, and
-/// within a kind first one from each half of the list, where names that sort alike stand together.
+/// Trials in order of interest: held-out before fitted, kinds of manoeuvre in turn, and within a
+/// kind first one from each half of the list, as similar names are neighbours.
 fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
     let mut kinds: BTreeMap<(bool, ManoeuvreKind), Vec<&Trial>> = BTreeMap::new();
     for trial in input.trials {
@@ -79,11 +79,12 @@ fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
                 .map(|(turn, trial)| ((fitted, turn, kind), trial)),
         );
     }
+    // Held-out trials first, then the first trial of each kind, the second of each kind, and so on.
     keyed.sort_by_key(|(key, _)| *key);
     keyed.into_iter().map(|(_, trial)| trial).collect()
 }
 
-/// The first and the middle one before the others.
+/// Moves the middle trial to the second place.
 fn spread(mut trials: Vec<&Trial>) -> Vec<&Trial> {
     if trials.len() > 2 {
         let middle = trials.remove(trials.len() / 2);
@@ -92,7 +93,7 @@ fn spread(mut trials: Vec<&Trial>) -> Vec<&Trial> {
     trials
 }
 
-/// What was sailed, as far as its name tells.
+/// Kind of manoeuvre, by the trial's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum ManoeuvreKind {
     Zigzag,
@@ -104,6 +105,7 @@ impl ManoeuvreKind {
     fn of(trial: &Trial) -> Self {
         let text =
             format!("{} {}", trial.manoeuvre.as_deref().unwrap_or(""), trial.name).to_lowercase();
+        // The name of the trial is the only hint if no manoeuvre is stated.
         if text.contains("zigzag") || text.contains("zig-zag") || text.contains("zz") {
             Self::Zigzag
         } else if text.contains("turn") || text.contains("circle") {

@@ -1,4 +1,4 @@
-//! Manoeuvres that were sailed at sea, beside what both models make of the recorded rudder.
+//! Measured manoeuvres, and their simulation by both models with the recorded rudder.
 
 use serde::Serialize;
 use sistership_identification::refine::MeasuredManoeuvre;
@@ -10,7 +10,7 @@ use crate::metrics::{MetricValue, read};
 /// One figure of one trial.
 #[derive(Debug, Serialize)]
 pub(crate) struct Sailed {
-    /// The trial, and whether the fit has seen it.
+    /// Name of the trial, with the remark fitted or held out.
     pub trial: String,
     pub figure: &'static str,
     pub unit: &'static str,
@@ -19,7 +19,7 @@ pub(crate) struct Sailed {
     pub refined: Option<f64>,
 }
 
-/// Every figure of every manoeuvre that was recognised.
+/// Returns the figures of every recognised manoeuvre.
 pub(crate) fn figures(input: &RefinementInput<'_>) -> Vec<Sailed> {
     input.refinement.manoeuvres.measured.iter().flat_map(of_manoeuvre).collect()
 }
@@ -30,6 +30,7 @@ fn of_manoeuvre(manoeuvre: &MeasuredManoeuvre) -> Vec<Sailed> {
     let measured = read(&manoeuvre.measured);
     let of = |metrics: &Option<ManoeuvreMetrics>| metrics.as_ref().map(read).unwrap_or_default();
     let (source, refined) = (of(&manoeuvre.source), of(&manoeuvre.refined));
+    // A model that did not complete the manoeuvre has no figures.
     let value = |all: &[MetricValue], index: usize| all.get(index).and_then(|figure| figure.2);
     let one = |(index, &(figure, unit, measured)): (usize, &MetricValue)| Sailed {
         trial: trial.clone(),

@@ -1,4 +1,4 @@
-//! Why this source: the ranking in a form that reads.
+//! Choice of the source by similarity: the ranking for readers.
 
 use sistership_priors::similarity::{Definition, RankedSource};
 use sistership_priors::source::Similarity;
@@ -6,7 +6,7 @@ use sistership_priors::source::Similarity;
 use crate::numbers::{fixed, known, significant};
 use crate::tables::{Cell, Column, Row, Table};
 
-/// Where the definition of the vector is published.
+/// Publication of the definition of the vector.
 pub(crate) fn definition(definition: Definition) -> &'static str {
     match definition {
         Definition::Mei2019 => "Mei et al. 2019, Eqs. 4 and 5",
@@ -14,13 +14,13 @@ pub(crate) fn definition(definition: Definition) -> &'static str {
     }
 }
 
-/// The target's vector: `C_b 0.56, L/B 6.89`.
+/// Vector of the target ship: `C_b 0.56, L/B 6.89`.
 pub(crate) fn vector(similarity: &Similarity) -> String {
     let one = |(name, value): (&String, &f64)| format!("{name} {}", significant(*value, 3));
     similarity.vector.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// What is to be said where the source is not the first eligible ship of the ranking.
+/// Remark if the source is not the first eligible ship of the ranking.
 pub(crate) fn remark(similarity: &Similarity, chosen: &str) -> Option<String> {
     let first = similarity
         .ranking
@@ -38,7 +38,7 @@ pub(crate) fn remark(similarity: &Similarity, chosen: &str) -> Option<String> {
     }
 }
 
-/// The ranking, the chosen source marked.
+/// Table of the ranking, with the source marked.
 pub(crate) fn table(similarity: &Similarity, chosen: &str) -> Table {
     let columns = vec![
         Column::number("rank", ""),

@@ -1,4 +1,4 @@
-//! The headline and the errors before and after.
+//! Headline, and errors before and after.
 
 use serde::Serialize;
 use sistership_identification::refine::TRIALS_ALONE;
@@ -11,7 +11,7 @@ use crate::numbers::list;
 use crate::rendered::VersionLabel;
 use crate::words::{self, CHANNELS, ShownChannel};
 
-/// What the report is of, and what came out.
+/// Subject and result of the report.
 #[derive(Debug, Serialize)]
 pub(crate) struct Headline<'a> {
     pub ship: &'a str,
@@ -46,15 +46,15 @@ impl<'a> Headline<'a> {
     }
 }
 
-/// HeldOutErrors on manoeuvres left out.
+/// Errors on held-out manoeuvres.
 #[derive(Debug, Serialize)]
 pub(crate) struct HeldOutErrors<'a> {
     pub how: &'a str,
-    /// Whether the errors are of the very trial that was fitted.
+    /// True if the errors are on the fitted trial itself.
     pub on_fitted_trial: bool,
     pub restart_s: Option<f64>,
-    /// Over which the measured motion was smoothed, s; none where trials were kept out, which are
-    /// compared as recorded.
+    /// Time over which the measured motion was smoothed, s; `None` if whole trials were held out,
+    /// which are compared as recorded.
     pub smoothing_s: Option<f64>,
     pub rows: Vec<ErrorRow>,
 }
@@ -62,6 +62,7 @@ pub(crate) struct HeldOutErrors<'a> {
 impl<'a> HeldOutErrors<'a> {
     pub fn of(input: &RefinementInput<'a>) -> Self {
         let (held_out, settings) = (&input.refinement.held_out, &input.refinement.settings);
+        // Roll channels only for laws with roll.
         let rolls = |quantity: &ShownChannel| {
             input.law.has_roll() || !matches!(quantity.channel, "phi" | "p")
         };
@@ -78,7 +79,7 @@ impl<'a> HeldOutErrors<'a> {
         }
     }
 
-    /// The rows of a headline: speeds, yaw rate, heading and position.
+    /// Rows of the headline: speeds, yaw rate, heading and position.
     pub fn headline(&self) -> impl Iterator<Item = &ErrorRow> {
         self.rows
             .iter()
@@ -86,8 +87,8 @@ impl<'a> HeldOutErrors<'a> {
     }
 }
 
-/// What such a comparison is worth: of a law that lists no coefficient a source says something only
-/// where it is fitted.
+/// Remark on a comparison with a law without coefficients: for such a law the source acts as the
+/// prior of the fit only.
 fn without_coefficients(input: &RefinementInput<'_>) -> String {
     let source = &input.refinement.source;
     let who = match source == TRIALS_ALONE {
@@ -100,6 +101,7 @@ fn without_coefficients(input: &RefinementInput<'_>) -> String {
     )
 }
 
+/// Result of the refinement, as a sentence.
 fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.refinement.is_source_kept() {
         return "No refinement beat the source on manoeuvres left out: the source model is kept as \
@@ -119,12 +121,13 @@ fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     format!("{place}, the error {}.{compared}", phrases.join("; it "))
 }
 
-/// Whether what stands for the source is a law without coefficients.
+/// True if the model before the fit is a law without coefficients.
 fn is_blank(input: &RefinementInput<'_>) -> bool {
     input.refinement.transferred.coefficients.values().all(|coefficient| coefficient.value == 0.0)
 }
 
-/// `fell by a factor of 4.2 in surge speed and 1.3 in heading`.
+/// Phrase of the channels with one kind of change: `fell by a factor of 4.2 in surge speed and 1.3
+/// in heading`.
 fn phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
     let rows: Vec<&ErrorRow> = errors.headline().filter(|row| row.change().0 == word).collect();
     let named = |row: &&ErrorRow| match row.change() {
@@ -139,7 +142,7 @@ fn phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
     }
 }
 
-/// The estimator in words.
+/// Estimator in words.
 pub(crate) fn method_text(headline: &Headline<'_>) -> String {
     match words::method(headline.method) {
         "" => headline.method.to_owned(),

@@ -57,20 +57,21 @@ pub struct RestoreArguments {
 /// Runs `sistership backup`.
 ///
 /// # Errors
-/// The store is not there, the folder is not empty, something cannot be read or written, or samples
-/// are lost.
+/// Returns an error if the store does not exist, if the folder is not empty, if something cannot be
+/// read or written, or if samples are missing.
 pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
     let manifest =
         with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
     output::print(backup.json, &manifest, || text("backed up", &manifest))?;
+    // The backup is complete except for the lost samples, which the text above lists.
     if manifest.lost.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
 /// Runs `sistership restore`.
 ///
 /// # Errors
-/// The place is not empty, the backup is damaged or of another kind of database, or something
-/// cannot be written.
+/// Returns an error if the place is not empty, if the backup is damaged or of another kind of
+/// database, or if something cannot be written.
 pub fn restore(restore: &RestoreArguments) -> Result<(), Failure> {
     let RestoreArguments { folder, store, json } = restore;
     let place = store.place(&store.file()?)?;

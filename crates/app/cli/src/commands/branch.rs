@@ -1,4 +1,4 @@
-//! `sistership branch`: a learned branch beside a model, trained on what it leaves of trials.
+//! `sistership branch`: training of a learned correction on the residual accelerations of a model.
 
 use std::path::{Path, PathBuf};
 
@@ -82,7 +82,7 @@ enum Kind {
     Perceptron,
 }
 
-/// How a branch is joined to its foundation.
+/// Combinations of a learned correction with the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 enum Mode {
     /// Adds to the accelerations of the law.
@@ -116,7 +116,7 @@ impl From<Mode> for BranchMode {
     }
 }
 
-/// A branch with what it was trained by and what it is worth.
+/// Learned correction with its training and its cross-validation.
 struct Trained {
     model: Model,
     weights: Vec<u8>,
@@ -127,16 +127,18 @@ struct Trained {
 /// Runs the command.
 ///
 /// # Errors
-/// The model, a trial or a setting is refused, or a file cannot be written.
+/// Returns an error if the model, a trial or a setting is refused, or if a file cannot be written.
 pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     let inputs: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
     let beside = arguments.out.as_deref().map(weights::beside);
+    // Output files are checked before the work, and all faults of the call are reported together.
     let files =
         both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs));
     let asked = both(settings(arguments), named::foundation(zoo, &arguments.model));
     let read = both(files, trials::read(&arguments.trials));
     let ((settings, (model, law)), ((out, beside_file), read)) = both(asked, read)?;
+    // A warning only: a sister ship's trials may be used on purpose.
     trials::remark_other_ship(&read, &model.ship);
     let mut files = WrittenFiles { out: arguments.out.as_deref(), report: None };
     guard(&files, &read)?;
@@ -144,20 +146,21 @@ pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     let (choice, trained) = trained((zoo, &model, &law), &trials::trials(&read), &settings)?;
     match (out, beside_file, &trained) {
         (Some(out), Some(beside), Some(trained)) => {
-            // Weights first: a model that is there has them.
+            // Weights first, so that a model that exists has its weights.
             beside.write(&trained.weights)?;
             out.write(model_file(zoo, &trained.model, "with a learned branch")?.as_bytes())?;
         }
         (Some(_), ..) => note("no branch is taken, and --out writes nothing"),
         _ => {}
     }
+    // The output names only files that were written.
     files.out = files.out.filter(|_| trained.is_some());
     let beside = beside.as_deref().filter(|_| trained.is_some());
     let document = document(&model, choice.as_ref(), trained.as_ref(), files, beside);
     output::print(arguments.json, &document, || branch_text::text(&document))
 }
 
-/// What can be seen in the call alone is a call that is wrong.
+/// Returns the settings. A setting that is wrong regardless of the data is an error of the call.
 fn settings(arguments: &BranchArguments) -> Result<BranchSettings, Failure> {
     let settings = BranchSettings {
         kind: arguments.kind.named(),
@@ -178,7 +181,8 @@ fn refused(error: impl std::fmt::Display) -> Failure {
     Failure::Refused(error.to_string())
 }
 
-/// The branch that is asked for, or the one that trials left out take.
+/// Trains the requested kind, or the one that the comparison on held-out trials selects; `None` if
+/// that selects none.
 fn trained(
     (zoo, model, law): (&Zoo, &Model, &Law),
     trials: &[&Trial],
@@ -189,10 +193,12 @@ fn trained(
             note(&format!("trying {} on trials left out", kind.name()));
             true
         };
+        // The foundation is the same in every fold.
         let folds = HeldOutFold::of_one(model, trials.len());
         let on = HeldOutTrials { law, trials, folds: &folds };
         let choice = choose(model, &on, (settings, Kinds::Every), &told).map_err(refused)?;
         match choice.as_ref().and_then(|choice| choice.taken) {
+            // The comparison is part of the output, also when it selects nothing.
             Some(kind) => (choice, settings.of(kind)),
             None => return Ok((choice, None)),
         }
@@ -205,6 +211,7 @@ fn trained(
     let judgement = judge(model, law, trials, &training).map_err(refused)?;
     let weights = weights.bytes().map_err(refused)?;
     let mut model = with_branch(model, branch);
+    // The calibration simulates the model, so the weights must be attached before it.
     attach(&mut model, &weights).map_err(refused)?;
     note("learning what these trials leave open beside it");
     let effects: Vec<_> = zoo.effects().cloned().collect();

@@ -1,4 +1,4 @@
-//! What `sistership branch` prints.
+//! Output of `sistership branch`.
 
 use std::path::Path;
 
@@ -8,23 +8,23 @@ use sistership_learned::{BranchChoice, Judgement, Training};
 use super::written::WrittenFiles;
 use crate::weights::BranchWords;
 
-/// What is printed.
+/// Output document.
 #[derive(Serialize)]
 pub struct BranchDocument<'a> {
     /// The foundation.
     pub model: &'a str,
-    /// What was tried, where no kind was named.
+    /// Comparison of the kinds, if none was named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<&'a BranchChoice>,
-    /// What was trained; none where no branch is taken.
+    /// The learned correction; null if none is used.
     pub branch: Option<BranchWords<'a>>,
     /// Every setting of the training.
     pub training: Option<&'a Training>,
     /// The hash of the weights.
     pub weights_sha256: Option<&'a str>,
-    /// What trials left out said; none where there is only one.
+    /// Cross-validation on held-out trials; null if there is only one trial.
     pub judgement: Option<&'a Judgement>,
-    /// Whether the branch is better there by more than one standard error.
+    /// True if the correction is better there by more than one standard error.
     pub wins: Option<bool>,
     /// The model written.
     #[serde(flatten)]

@@ -1,11 +1,11 @@
-//! What `sistership branch` prints for people.
+//! Text output of `sistership branch`.
 
 use sistership_learned::{BranchChoice, Judgement};
 
 use super::branch_document::BranchDocument;
 use crate::table::{TextTable, number};
 
-/// The result as text.
+/// Formats the result as text.
 pub(super) fn text(document: &BranchDocument<'_>) -> String {
     let tried = document.choice.map_or(String::new(), choice);
     let Some(branch) = &document.branch else {

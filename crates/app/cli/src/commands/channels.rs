@@ -1,6 +1,6 @@
-//! Channels as the tables of errors show them.
+//! Channels of the tables of errors.
 
-/// Channels in the order of the table: name, unit, and the factor to it from SI.
+/// Channels in the order of the table: name, unit, and factor from SI to that unit.
 pub const CHANNELS: [(&str, &str, f64); 8] = [
     ("u", "m/s", 1.0),
     ("v", "m/s", 1.0),

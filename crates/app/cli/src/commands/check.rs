@@ -1,4 +1,4 @@
-//! `sistership check`: what is wrong with trial files, by row and column.
+//! `sistership check`: faults of trial files, by row and column.
 
 use std::path::PathBuf;
 
@@ -38,11 +38,12 @@ struct CheckedTrials {
 /// Runs the command.
 ///
 /// # Errors
-/// A path cannot be read, or a trial is refused.
+/// Returns an error if a path cannot be read, or if a trial is refused.
 pub fn run(check: &CheckArguments) -> Result<(), Failure> {
     let each = check.trials.iter().map(|path| check_path(path).map_err(Failure::from));
     let checked = CheckedTrials { trials: all(each)?.concat() };
     output::print(check.json, &checked, || text(&checked.trials))?;
+    // The reasons are in the output already; only the exit status is left.
     if checked.trials.iter().all(CheckOutcome::accepted) { Ok(()) } else { Err(Failure::Told) }
 }
 

@@ -1,4 +1,4 @@
-//! `sistership compare`: models side by side.
+//! `sistership compare`: comparison of models.
 
 use std::path::PathBuf;
 
@@ -39,11 +39,12 @@ pub struct CompareArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// A model or a trial is refused.
+/// Returns an error if a model or a trial is refused.
 pub fn run(zoo: &Zoo, asked: &CompareArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let names: Vec<&str> = asked.models.iter().map(String::as_str).collect();
     check(&names).map_err(|error| Failure::Call(error.to_string()))?;
+    // All unknown names and faulty trials are reported together.
     let models = all(names.iter().map(|name| named::model(zoo, name)));
     let (models, read) = both(models, trials::read(&asked.trials))?;
     let compared: Vec<Compared<'_>> = names
@@ -60,6 +61,7 @@ pub fn run(zoo: &Zoo, asked: &CompareArguments) -> Result<(), Failure> {
 fn text(comparison: &Comparison) -> String {
     let mut parts = vec![models(comparison), coefficients(comparison)];
     if !comparison.trials.is_empty() {
+        // Without trials there is no table of errors.
         parts.push(errors(comparison));
     }
     parts.push(figures(comparison));
@@ -70,7 +72,7 @@ fn text(comparison: &Comparison) -> String {
     parts.join("\n")
 }
 
-/// A table with a column for each model.
+/// Creates a table with a column for each model.
 fn table(comparison: &Comparison, first: &[&str]) -> TextTable {
     let names = comparison.models.iter().map(|model| model.name.as_str());
     TextTable::of(first.iter().copied().chain(names))
@@ -89,6 +91,7 @@ fn coefficients(comparison: &Comparison) -> String {
     let mut table = table(comparison, &["coefficient"]);
     for row in &comparison.coefficients {
         let cell = |value: &Option<sistership_jobs::comparison::Estimate>| match value {
+            // The model does not have this coefficient.
             None => "-".to_owned(),
             Some(estimate) => {
                 let error = estimate.standard_error;
@@ -101,7 +104,7 @@ fn coefficients(comparison: &Comparison) -> String {
     table.to_string()
 }
 
-/// Channels of the table of errors, with the factor to the unit that is shown.
+/// Channels of the table of errors, with unit and factor from SI to that unit.
 const SHOWN: [(Channel, &str, f64); 6] = [
     (Channel::U, "u m/s", 1.0),
     (Channel::V, "v m/s", 1.0),
@@ -122,10 +125,12 @@ fn errors(comparison: &Comparison) -> String {
         }
         table.row(error_row(trial, "std. MSE", |error| optional(error.standardised_mse)));
     }
+    // For a single trial the total would repeat its row.
     if comparison.trials.len() > 1 {
         let all = comparison.models.iter().map(|model| optional(model.standardised_mse));
         table.row(["all".to_owned(), "std. MSE".to_owned()].into_iter().chain(all));
     }
+    // A missing error has a reason, which follows the table.
     let reasons = comparison.trials.iter().flat_map(|trial| {
         let models = comparison.models.iter().zip(&trial.errors);
         models.filter_map(|(model, error)| {
@@ -146,6 +151,7 @@ fn figures(comparison: &Comparison) -> String {
         let cell = |value: &Option<sistership_jobs::comparison::FigureValue>| match value {
             None => "-".to_owned(),
             Some(figure) => {
+                // Only criteria have a verdict; other figures are values.
                 let met = match figure.pass {
                     Some(true) => " met",
                     Some(false) => " NOT met",

@@ -1,5 +1,4 @@
-//! The configuration file: what the flags of `serve`, `work` and the commands on a store may be
-//! instead of flags.
+//! Configuration file, which can replace the flags of `serve`, `work` and the commands on a store.
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -11,7 +10,7 @@ use super::log_format::LogFormat;
 use crate::failure::{Failure, about_file};
 use crate::zoo::text_of;
 
-/// The settings of a file; each has the name and the meaning of a flag.
+/// Settings of a file; each has the name and the meaning of a flag.
 #[derive(Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConfigFile {
@@ -58,13 +57,14 @@ pub struct ConfigFile {
     pub log_format: Option<LogFormat>,
 }
 
-/// Reads a file, where one is named. Relative paths in it start at its folder.
+/// Reads a file, if one is named. Relative paths in it start at its folder.
 ///
 /// # Errors
-/// Names file, line and setting.
+/// Returns an error that names file, line and setting.
 pub fn read(path: Option<&Path>) -> Result<ConfigFile, Failure> {
     let Some(path) = path else { return Ok(ConfigFile::default()) };
     let text = text_of(path)?;
+    // A file of comments only is valid, but no YAML mapping.
     if text.lines().all(|line| line.trim().is_empty() || line.trim_start().starts_with('#')) {
         return Ok(ConfigFile::default());
     }

@@ -1,4 +1,4 @@
-//! `sistership derive`: a law of motion from a list of actuators.
+//! `sistership derive`: derivation of a law of motion from a list of actuators.
 
 use std::path::{Path, PathBuf};
 
@@ -50,9 +50,10 @@ struct DeriveDocument<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// The declaration is refused, or the law cannot be written.
+/// Returns an error if the declaration is refused, or if the law cannot be written.
 pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
     let path = &asked.declaration;
+    // The output file is checked before the work.
     let promised = asked
         .out
         .as_deref()
@@ -63,6 +64,7 @@ pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
     let derived = derive(&path.display().to_string(), &text)?;
     let unknowns =
         derived.unknowns(zoo).map_err(|(field, message)| blamed(path, field, message))?;
+    // Written after all checks, so that a refused declaration leaves no law.
     if let Some(promised) = promised {
         promised.write(derived.text.as_bytes())?;
     }
@@ -96,9 +98,10 @@ fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> Stri
     )
 }
 
-/// `60 coefficients in 3 sets (shared, stalled, astern): 180`, and what comes on top.
+/// Formats the number of unknowns: coefficients by set, inertia and effects.
 fn sum(derived: &Derivation, unknowns: &Unknowns) -> String {
     let mut table = TextTable::new(["unknowns", "of", "number"]);
+    // The shared set first, then one for each regime.
     let sets: Vec<&str> =
         std::iter::once("shared").chain(derived.law.submodels.keys().map(String::as_str)).collect();
     let mut row =

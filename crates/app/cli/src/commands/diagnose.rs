@@ -1,4 +1,5 @@
-//! `sistership diagnose`: what a model lacks, by the trials that it has not seen.
+//! `sistership diagnose`: physical effects that a model lacks, from trials that it was not fitted
+//! on.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -83,11 +84,12 @@ struct DiagnoseDocument<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// The model, a trial or a setting is refused, or a file cannot be written.
+/// Returns an error if the model, a trial or a setting is refused, or if a file cannot be written.
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let named: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
     let beside = arguments.out.as_deref().map(weights::beside);
+    // Output files are checked before the work, and all faults of the call are reported together.
     let files = both(
         both(promised(arguments.out.as_deref(), &named), promised(beside.as_deref(), &named)),
         promised(arguments.report.as_deref(), &named),
@@ -102,7 +104,7 @@ pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     guard(&files, &read)?;
     let diagnosis = diagnosed(zoo, &model, &law, &settings, &read)?;
     if let (Some(found), Some(_), Some(file)) = (&diagnosis.model, &out, beside) {
-        // Weights first: a model that is there has them.
+        // Weights first, so that a model that exists has its weights.
         let kept = weights::read_beside(Path::new(&arguments.model), found)?;
         kept.map_or(Ok(()), |bytes| file.write(&bytes))?;
     }
@@ -110,13 +112,15 @@ pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     if let Some(report) = report {
         report.write(&report_html(&model, &law, &diagnosis, &read)?)?;
     }
+    // The output names only files that were written.
     files.out = files.out.filter(|_| kept);
     let document = DiagnoseDocument { diagnosis: printed(&diagnosis)?, files };
     output::print(arguments.json, &document, || diagnose_text::text(&diagnosis, &model, &files))
 }
 
-/// What can be seen in the call alone is a call that is wrong.
+/// Returns the settings. A setting that is wrong regardless of the data is an error of the call.
 fn settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
+    // The zoo of the call counts: it may have effects of the folders in --zoo.
     let unknown = |(name, _): &&(String, f64)| zoo.effect(name).is_none();
     if let Some((name, _)) = arguments.prior_odds.iter().find(unknown) {
         let known: Vec<&str> = zoo.effects().map(|effect| effect.name.as_str()).collect();
@@ -156,7 +160,7 @@ fn diagnosed(
     diagnose(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
 }
 
-/// Writes the model with the effects; whether there was one to write.
+/// Writes the model with the effects; returns true if there was one to write.
 fn written(zoo: &Zoo, out: Option<PromisedFile>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
     match (out, &diagnosis.model) {
         (Some(out), Some(model)) => out
@@ -183,14 +187,15 @@ fn report_html(
     Ok(rendered.html.into_bytes())
 }
 
-/// The diagnosis without the model, which `--out` writes, and without the series that only plots
-/// need.
+/// Returns the diagnosis without the model, which `--out` writes, and without the series that only
+/// plots need.
 fn printed(diagnosis: &Diagnosis) -> Result<Value, Failure> {
     let document = serde_json::to_value(diagnosis);
     let mut document = document
         .map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?;
     if let Some(fields) = document.as_object_mut() {
         fields.remove("model");
+        // Series of all trials would make up most of the document.
         fields.remove("residuals");
     }
     Ok(document)

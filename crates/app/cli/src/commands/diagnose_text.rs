@@ -1,4 +1,4 @@
-//! A diagnosis in words and tables.
+//! Text output of a diagnosis.
 
 use std::collections::BTreeMap;
 
@@ -13,11 +13,12 @@ use super::worth;
 use super::written::WrittenFiles;
 use crate::table::{TextTable, number, optional};
 
-/// Most hypotheses that are listed.
+/// Largest number of hypotheses that are listed.
 const MOST: usize = 8;
 
-/// Everything that came of a diagnosis.
+/// Formats a diagnosis as text.
 pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
+    // From the verdict to the details: a reader may stop after any part.
     let mut parts = vec![format!(
         "{} ({})\n{}\n",
         diagnosis.diagnosed,
@@ -42,7 +43,7 @@ pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> S
     parts.join("\n")
 }
 
-/// The answer for a stranger.
+/// Formats the verdict for a reader who knows nothing of the method.
 fn verdict(diagnosis: &Diagnosis) -> String {
     let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect();
     match diagnosis.verdict {
@@ -50,6 +51,7 @@ fn verdict(diagnosis: &Diagnosis) -> String {
             "COMPLETE: nothing is missing above the sizes that these trials would show".to_owned()
         }
         Verdict::Effects => format!("EFFECTS: the model lacks {}", names.join(" and ")),
+        // Effects may be found and forces remain unexplained at the same time.
         Verdict::Unexplained if names.is_empty() => {
             "UNEXPLAINED: something is missing that no known effect explains".to_owned()
         }
@@ -62,7 +64,8 @@ fn verdict(diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// An effect with its parameters, whose names carry their units, and what it is confounded with.
+/// Formats an effect with its parameters, whose names carry their units, and with the effects from
+/// which it can hardly be distinguished.
 fn effect(found: &Found) -> String {
     let mut table = TextTable::new(["parameter", "value", "standard error"]);
     for (name, value) in &found.parameters {
@@ -93,7 +96,7 @@ fn unexplained(stretches: &[Unexplained]) -> TextTable {
     table
 }
 
-/// What begins, ends or drifts within trials; none where nothing does.
+/// Formats the changes within trials (begin, end, drift); `None` if there are none.
 fn changed(diagnosis: &Diagnosis) -> Option<String> {
     let lines: Vec<String> =
         diagnosis.changes.iter().map(|one| format!("  {}\n", change(one))).collect();
@@ -110,10 +113,11 @@ fn next_trial(next: &NextTrial) -> String {
     )
 }
 
-/// How small an effect would have been shown; none where nothing says it.
+/// Formats the detection limits of effects; `None` if there are none.
 fn limits(diagnosis: &Diagnosis) -> Option<String> {
     let mut table = TextTable::new(["effect", "form", "parameter", "shown from", "usual", "told"]);
     for limit in &diagnosis.limits {
+        // The cause says what would lower the limit.
         let told = limit.limited_by.map_or("yes", |cause| match cause {
             LimitedBy::Model => "cannot tell: refine the model first",
             LimitedBy::Trials => "cannot tell: other trials are needed",
@@ -127,7 +131,7 @@ fn limits(diagnosis: &Diagnosis) -> Option<String> {
         .then(|| format!("The smallest sizes that would have been shown (90 %)\n{table}"))
 }
 
-/// The errors on trials left out, before and after, and what they are by the noise.
+/// Formats the errors on held-out trials, before and after, also relative to the noise.
 fn errors(diagnosis: &Diagnosis) -> TextTable {
     let mut table = TextTable::new([
         "channel",
@@ -141,12 +145,14 @@ fn errors(diagnosis: &Diagnosis) -> TextTable {
     ]);
     for (name, unit, factor) in CHANNELS {
         let of =
+            // `f64::MAX` marks the error of a simulation that left the physical range.
             |all: &BTreeMap<String, f64>| all.get(name).copied().filter(|value| *value != f64::MAX);
         let (before, after, noise) = (
             of(&diagnosis.before),
             of(&diagnosis.after),
             of(&diagnosis.noise).filter(|n| *n > 0.0),
         );
+        // Neither simulation has an error of this channel.
         if before.is_none() && after.is_none() {
             continue;
         }

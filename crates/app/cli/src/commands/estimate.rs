@@ -1,4 +1,4 @@
-//! `sistership estimate`: a model of any ship from its particulars alone.
+//! `sistership estimate`: model of a ship from its particulars alone.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -76,9 +76,10 @@ struct EstimateDocument<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// Names the particulars that are missing; the model cannot be written.
+/// Returns an error that names the missing particulars, or if the model cannot be written.
 pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
     let vessel = named::ship(zoo, &asked.ship)?;
+    // Before the estimate: the regressions need a speed.
     let vessel = with_speed(&vessel, asked.speed_m_s);
     let inputs = [PathBuf::from(&asked.ship)];
     let file = promised(asked.out.as_deref(), &inputs)?;
@@ -90,6 +91,7 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
         let text = model_file(zoo, &estimate.model, "estimated from particulars")?;
         file.write(text.as_bytes())?;
     }
+    // Every value of the model with its deviation and the particulars that it was estimated from.
     let values = estimate.spreads();
     let document = EstimateDocument {
         ship: vessel.name(),
@@ -109,21 +111,22 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
     output::print(asked.json, &document, || text(&vessel, &document, &bands))
 }
 
-/// The ship with a service speed that is estimated where nothing says how fast it sails.
+/// Returns the ship with an estimated service speed if none is known.
 pub(super) fn with_speed(vessel: &Vessel, asked: Option<f64>) -> Vessel {
     let mut vessel = vessel.clone();
     let own = vessel.file.models.first().and_then(|model| model.speed_m_s);
     if asked.or(own).is_none() {
+        // Both are completed, because the estimate of the speed may need the block coefficient.
         let needed = ["block_coefficient", "service_speed_m_s"];
         complete_particulars(&mut vessel.particulars, needed);
     }
     vessel
 }
 
-/// The estimate of a ship, and its law.
+/// Estimates a model of a ship; returns it with its law.
 ///
 /// # Errors
-/// Names the particulars that are missing.
+/// Returns an error that names the missing particulars.
 pub(super) fn estimate_of(
     zoo: &Zoo,
     vessel: &Vessel,
@@ -142,6 +145,7 @@ fn speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {
     let own = || vessel.file.models.first().and_then(|model| model.speed_m_s);
     let speed = asked.or_else(own).or_else(|| vessel.particular("service_speed_m_s"));
     match speed {
+        // Speed of the call, of the ship's first model, or its service speed, in this order.
         Some(speed) if speed > 0.0 && speed < 50.0 => Ok(speed),
         Some(speed) => {
             Err(Failure::Call(format!("--speed-m-s {speed} should be above 0 and below 50 m/s")))
@@ -177,6 +181,7 @@ fn text(vessel: &Vessel, document: &EstimateDocument<'_>, bands: &EstimateBands)
 
 fn manoeuvres(bands: &EstimateBands) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "estimate", "low", "high"]);
+    // Figures and bands are matched by name; one without a band gets empty cells.
     let band = |name: &str| bands.figures.iter().find(|band| band.figure == name);
     for Figure { name, unit, value, .. } in bands.manoeuvres.figures() {
         let (low, high) = band(&name)

@@ -1,4 +1,4 @@
-//! `sistership export`: a model written down for another tool.
+//! `sistership export`: export of a model to another tool, or of a ship to another store.
 
 use std::path::{Path, PathBuf};
 
@@ -53,10 +53,11 @@ pub struct ExportArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The model cannot be exported, or the file cannot be written.
+/// Returns an error if the model cannot be exported, or if the file cannot be written.
 pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
     let format = match asked.format {
         ExportFormat::Bundle => return bundle(asked),
+        // Refused instead of ignored: the user expects a signed file.
         ExportFormat::Model(_) if asked.sign_key.is_some() => {
             return Err(Failure::Call("--sign-key: only a bundle is signed".to_owned()));
         }
@@ -65,6 +66,7 @@ pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
     let (model, law) = named::model(zoo, &asked.model)?;
     let file = PromisedFile::new(&asked.out, &[PathBuf::from(&asked.model)])?;
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
+    // The hash identifies the model in the exported file; a model outside a store has no version.
     let sha256 = hash(&model)?;
     let subject = Subject { model: &model, law: &law, version: None, sha256 };
     let plan = Plan::new(&subject).map_err(|error| refused(&error))?;
@@ -86,7 +88,7 @@ fn bundle(asked: &ExportArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads a key.
+/// Reads a key from a PEM file.
 pub(super) fn key<T>(
     path: &Path,
     from_pem: fn(&[u8]) -> Result<T, BundleError>,
@@ -95,7 +97,7 @@ pub(super) fn key<T>(
     from_pem(&text).map_err(|error| about_file(path, error))
 }
 
-/// The hash of the model's document, as JSON without spaces.
+/// Returns the SHA-256 of the model's document, as JSON without spaces.
 fn hash(model: &Model) -> Result<String, Failure> {
     let document = serde_json::to_vec(model)
         .map_err(|error| Failure::Refused(format!("{}: {error}", model.name)))?;

@@ -1,5 +1,5 @@
-//! `sistership family`: ships whose models share a foundation. What takes long is queued, and
-//! workers do it.
+//! `sistership family`: families of ships whose models share a foundation. Long work is queued for
+//! workers.
 
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
@@ -110,14 +110,14 @@ enum PriorArgument {
 /// Runs the command.
 ///
 /// # Errors
-/// What is named is not there, or the store says no.
+/// Returns an error if something that is named does not exist, or if the store refuses it.
 pub fn run(family: &FamilyArguments) -> Result<(), Failure> {
     let (document, text) =
         with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
     output::print(family.json, &document, || text)
 }
 
-/// Why what was asked of a family is not done.
+/// Error of a command on a family.
 #[derive(Debug, thiserror::Error)]
 enum FamilyError {
     #[error(transparent)]
@@ -132,13 +132,15 @@ enum FamilyError {
     Json(#[from] serde_json::Error),
 }
 
-/// What was done, as a document and in words.
+/// Result as a document and as text.
 type FamilyResult = Result<(Value, String), FamilyError>;
 
 async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
     let families = archive.store.families();
     match what {
         FamilyAction::Create { family, foundation, ship } => {
+            // The foundation is resolved to an id, so that a later move of the champion does not
+            // change it.
             let version = version(archive, foundation).await?;
             let family = families.create(family, family, &version).await?.name;
             added(archive, &family, ship).await
@@ -166,6 +168,7 @@ async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
             archive.store.bulks().request_cancel(id).await?;
             status(archive, id).await
         }
+        // Ships that are done keep their outcome; only failed or cancelled jobs are queued again.
         FamilyAction::Retry { id } => {
             archive.store.bulks().retry(id).await?;
             status(archive, id).await
@@ -173,9 +176,10 @@ async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
     }
 }
 
-/// The id of the version that a name stands for.
+/// Returns the id of the version with this name.
 async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
     let (ship, rest) = name.split_once('/').unwrap_or((name, "champion"));
+    // What is no number is an alias; without either it is the champion.
     let number = match rest.parse() {
         Ok(number) => number,
         Err(_) => archive.store.aliases().get(ship, rest).await?.version_number,
@@ -184,6 +188,7 @@ async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
 }
 
 async fn added(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
+    // Ships that are members already do not count as new.
     let new = archive.store.families().add(family, ships).await?;
     let members = archive.store.families().count(family).await?;
     let text = format!(
@@ -198,9 +203,11 @@ async fn learned(archive: &Archive, family: &str) -> FamilyResult {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
+    // Estimated in this process; the server queues the same work as a job.
     let prior = learn(archive, family, &told).await?;
     let document = serde_json::to_string(&prior)?;
     let kept = archive.store.families().teach(family, &document).await?;
+    // One row for each coefficient of each axis.
     let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
     for axis in &prior.axes {
         for (j, name) in axis.names.iter().enumerate() {

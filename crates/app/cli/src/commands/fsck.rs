@@ -1,4 +1,4 @@
-//! `sistership fsck`: whether a store is whole.
+//! `sistership fsck`: integrity check of a store.
 
 use clap::Args;
 use sistership_jobs::upkeep::{self, Checked, Fault, Findings};
@@ -30,7 +30,7 @@ pub struct FsckArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The store is not there, does not answer, or has faults.
+/// Returns an error if the store does not exist, does not answer, or has faults.
 pub fn run(fsck: &FsckArguments) -> Result<(), Failure> {
     let findings = with_archive(&fsck.store, async |archive| upkeep::fsck(archive).await)?;
     output::print(fsck.json, &findings, || text(&findings))?;
@@ -48,6 +48,7 @@ fn text(findings: &Findings) -> String {
          audit: {}\n",
         if faults.is_empty() { "clean".to_owned() } else { count(faults.len(), "fault") }
     );
+    // Unreferenced objects are no fault: `gc` removes them.
     if unreferred.objects > 0 {
         let (objects, bytes) = (count(unreferred.objects, "object"), unreferred.bytes);
         text += &format!(

@@ -1,4 +1,4 @@
-//! `sistership gc`: objects that nobody needs.
+//! `sistership gc`: removal of unreferenced objects.
 
 use std::time::Duration;
 
@@ -38,7 +38,7 @@ pub struct GcArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The store is not there, or does not answer.
+/// Returns an error if the store does not exist or does not answer.
 pub fn run(gc: &GcArguments) -> Result<(), Failure> {
     let collected =
         with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;

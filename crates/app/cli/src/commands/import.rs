@@ -1,4 +1,4 @@
-//! `sistership import`: looks at files and writes the manifest that reads them.
+//! `sistership import`: identification of the columns of trial files, and their manifest.
 
 use std::path::{Path, PathBuf};
 
@@ -38,34 +38,35 @@ trials, each with the reason; the table also says what is left, steady course ke
 
 Exit status 1 when a file cannot be read, or is refused by the manifest that was written.";
 
-/// Look at trial files and write a manifest that reads them.
+/// Identify the columns of trial files and write a manifest that reads them.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ImportArguments {
-    /// Files: CSV and its kin, Parquet, Excel, MATLAB 5, NMEA 0183.
+    /// Files: CSV and similar text, Parquet, Excel, MATLAB 5, NMEA 0183.
     #[arg(required_unless_present = "bundle")]
     files: Vec<PathBuf>,
-    /// The ship that the trials are of; `refine --ship` may name it instead.
+    /// Ship of the trials; `refine --ship` may name it instead.
     #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true)]
     ship: String,
-    /// Where the manifest goes; by default `trials.yaml` in the folder that all files are in.
+    /// Write the manifest to this file; by default `trials.yaml` in the common folder of all files.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// What a column is, where import asks or errs: HEADER=CHANNEL[:UNIT[:reversed]], nothing after
-    /// `=` for a column that is left out; `#3` is the third column of a file without a header.
+    /// Meaning of a column, to answer a question or correct a guess:
+    /// HEADER=CHANNEL[:UNIT[:reversed]], nothing after `=` to leave the column out; `#3` is the
+    /// third column of a file without a header.
     #[arg(long = "column", value_name = "COLUMN", value_parser = given_column)]
     columns: Vec<GivenColumn>,
-    /// Every column of every file with its reason.
+    /// List every column of every file with the reason for its reading.
     #[arg(long)]
     explain: bool,
-    /// The ship's length between perpendiculars: stretches of a long log are told by lengths
-    /// sailed. By default that of the zoo's ship of this name, or else one that suits the speed.
+    /// Length between perpendiculars, which scales the segmentation of a long log. By default that
+    /// of the zoo's ship of this name, or else one that suits the speed.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     length: Option<f64>,
-    /// Take a ship that `sistership export --format bundle` wrote into a store.
+    /// Import a ship from a bundle of `sistership export --format bundle` into a store.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "ship", "out", "length"])]
     bundle: Option<PathBuf>,
-    /// Take a bundle only if one of these keys has signed it (Ed25519, PEM).
+    /// Import a bundle only if it is signed with one of these keys (Ed25519, PEM).
     #[arg(long, value_name = "FILE", requires = "bundle")]
     signed_by: Vec<PathBuf>,
     #[command(flatten)]
@@ -75,7 +76,7 @@ pub struct ImportArguments {
     json: bool,
 }
 
-/// A column as the user settles it.
+/// Parses a column that the user defines.
 fn given_column(text: &str) -> Result<GivenColumn, String> {
     let (header, rest) = text
         .rsplit_once('=')
@@ -86,6 +87,7 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
         "" => None,
         name => Some(Role::by_name(name).ok_or_else(|| format!("`{name}` is not a channel"))?),
     };
+    // An empty unit leaves the unit to the identification.
     let unit = parts.next().map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty());
     if let (Some(role), Some(unit)) = (role, &unit) {
         let known: Vec<&str> = role.kind().units().iter().map(|unit| unit.name).collect();
@@ -94,6 +96,7 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
         }
     }
     let is_reversed = match parts.next() {
+        // A given unit settles the sign, too; without one the sign stays open.
         None => unit.as_ref().map(|_| false),
         Some("reversed") => Some(true),
         Some(other) => return Err(format!("`{other}` is not known; write `reversed` or nothing")),
@@ -104,12 +107,13 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
 /// Runs the command.
 ///
 /// # Errors
-/// Each file that cannot be read, or that the manifest cannot be written.
+/// Returns an error that lists each file that cannot be read, or if the manifest cannot be written.
 pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     if let Some(bundle) = &arguments.bundle {
         return import_bundle::run(bundle, &arguments.signed_by, &arguments.store, arguments.json);
     }
     let out = arguments.out.clone().unwrap_or_else(|| beside(&arguments.files));
+    // A manifest may have been edited by hand; only an explicit --out replaces it.
     if arguments.out.is_none() && out.exists() {
         return Err(about_file(&out, "is there already; name another place with --out"));
     }
@@ -123,6 +127,7 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
         given: &arguments.columns,
     };
     let mut proposal = propose_files(&request).map_err(all)?;
+    // Segmentation first: faults are then searched only in the segments that become trials.
     let logs = searched(&mut proposal.manifest, folder, length(zoo, arguments));
     let excluded = cleaned(&mut proposal.manifest, folder)?;
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
@@ -135,10 +140,11 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     if import.errors.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
-/// Faults of the files, which the manifest then excludes. They are looked for in a copy beside its
-/// place, as the files are read from there.
+/// Finds faults of the files and excludes them in the manifest. A temporary manifest in the same
+/// folder is read, so that relative paths stay valid.
 fn cleaned(manifest: &mut ManifestFile, folder: &Path) -> Result<Vec<Exclusion>, Failure> {
     let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    // Removed when it is dropped, also after an error.
     let draft = tempfile::Builder::new().prefix(".import").suffix(".yaml").tempfile_in(place);
     let draft = draft.map_err(|error| about_file(place, error))?;
     let text = manifest.to_yaml().map_err(|error| about_file(draft.path(), error))?;
@@ -152,7 +158,7 @@ fn beside(files: &[PathBuf]) -> PathBuf {
     folder(files).join("trials.yaml")
 }
 
-/// The folder that all files are in, at some depth.
+/// Returns the deepest folder that contains all files.
 fn folder(files: &[PathBuf]) -> PathBuf {
     let mut folders = files.iter().map(|file| file.parent().unwrap_or(Path::new("")));
     let first = folders.next().unwrap_or(Path::new("")).to_path_buf();
@@ -162,7 +168,7 @@ fn folder(files: &[PathBuf]) -> PathBuf {
     })
 }
 
-/// The ship's length: as given, or of the ship of that name in the zoo.
+/// Returns the ship's length: as given, or of the ship with that name in the zoo.
 fn length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
     let known =
         || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
@@ -174,7 +180,7 @@ fn all(errors: Vec<FileError>) -> Failure {
     Failure::Refused(lines.join("\n"))
 }
 
-/// The manifest held against its files, and their trials against the laws.
+/// Reads the files by the manifest, and checks which laws the trials can identify.
 fn checked(zoo: &Zoo, manifest: PathBuf) -> Result<Import, Failure> {
     let Loaded { trials: read, .. } = load_path(&manifest)?;
     let (mut trials, mut errors) = (Vec::new(), Vec::new());
@@ -189,6 +195,7 @@ fn checked(zoo: &Zoo, manifest: PathBuf) -> Result<Import, Failure> {
             ),
         }
     }
+    // The files of one manifest usually have the same channels: the first trial stands for all.
     let needs = trials.first().map_or_else(Vec::new, |trial| needs(zoo, trial));
     let names = trials.into_iter().map(|trial| trial.name).collect();
     Ok(Import {

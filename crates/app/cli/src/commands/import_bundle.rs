@@ -1,4 +1,4 @@
-//! `sistership import --bundle`: a ship of another store.
+//! `sistership import --bundle`: import of a ship from another store.
 
 use std::path::{Path, PathBuf};
 
@@ -10,22 +10,22 @@ use super::store::{StoreArguments, with_archive};
 use crate::failure::{Failure, about_file};
 use crate::output::{self, count};
 
-/// What was new, and who says so.
+/// Result of the import, with the signer.
 #[derive(Serialize)]
 struct Import {
     #[serde(flatten)]
     taken: Taken,
-    /// The SHA-256 of the key that has signed the bundle.
+    /// SHA-256 of the key that signed the bundle.
     signed_by: Option<String>,
-    /// Whether that key was among those that were asked for.
+    /// True if that key was one of the required ones.
     known_signer: bool,
 }
 
-/// Takes a bundle into a store.
+/// Imports a bundle into a store.
 ///
 /// # Errors
-/// The file is no bundle, is not signed by a key that is asked for, or the store contradicts it;
-/// then nothing is taken.
+/// Returns an error if the file is no bundle, is not signed by a required key, or contradicts the
+/// store; nothing is written then.
 pub fn run(
     path: &Path,
     signed_by: &[PathBuf],
@@ -39,6 +39,7 @@ pub fn run(
     trusted(signer.as_ref(), &keys).map_err(|error| about_file(path, error))?;
     let taken = with_archive(store, async |archive| take(archive, &bundle).await)?;
     let signed_by = signer.map(|signer| signer.to_string());
+    // With keys given, an unknown signer was refused above.
     let import = Import { taken, signed_by, known_signer: !keys.is_empty() };
     output::print(json, &import, || text(&import))
 }

@@ -1,4 +1,4 @@
-//! Long logs: the stretches that become trials, and what is left.
+//! Segmentation of long logs: the segments that become trials, and the rest.
 
 use std::fmt;
 use std::path::Path;
@@ -11,10 +11,10 @@ use sistership_trials::{ManifestFile, Steering, scan};
 use crate::output::{count, note};
 use crate::table::TextTable;
 
-/// Times are written to so many parts of a second.
+/// Resolution of written times, parts of a second.
 const PARTS: f64 = 10.0;
 
-/// A file of which stretches were taken.
+/// Log with its segments.
 #[derive(Serialize)]
 pub struct SearchedLog {
     file: String,
@@ -25,11 +25,11 @@ pub struct SearchedLog {
     /// Scatter of the rudder in course keeping.
     rudder_scatter_deg: f64,
     stretches: Vec<Stretch>,
-    /// Steady course keeping: nothing to fit, but what a model's drift shows in.
+    /// Steady course keeping: not used for the fit, but a model's drift shows in it.
     steady: Vec<Span>,
 }
 
-/// Puts stretches in the place of each file that is a log rather than a trial.
+/// Replaces each file that is a log, and no single trial, by its segments.
 pub fn searched(
     manifest: &mut ManifestFile,
     folder: &Path,
@@ -44,6 +44,7 @@ pub fn searched(
                 trials.extend(entries);
                 logs.push(SearchedLog::of(&trial.file, found));
             }
+            // A log without manoeuvres stays one trial, with a note.
             Some(found) if found.is_log() => {
                 let hours = found.whole.duration_s() / 3600.0;
                 note(&format!(
@@ -55,19 +56,21 @@ pub fn searched(
             }
             _ => trials.push(trial.clone()),
         }
+        // Every segment has the sensors of its file.
         sensors.resize(trials.len(), own);
     }
     (manifest.manifest.trials, manifest.sensors) = (trials, sensors);
     logs
 }
 
-/// What is found in a file; what is wrong with it is told when it is read for good.
+/// Segments a file; `None` if it cannot be read, which is reported later when the manifest is read.
 fn found(
     manifest: &ManifestFile,
     trial: &ManifestTrial,
     folder: &Path,
     length_m: Option<f64>,
 ) -> Option<Found> {
+    // One pass over the rows: a log may be larger than the memory.
     let mut finder = Finder::new(length_m);
     let each = |steering: &Steering| finder.push(&sample(steering));
     scan(&folder.join(&trial.file), &manifest.mapping(trial), each).ok()?;
@@ -80,20 +83,21 @@ fn sample(steering: &Steering) -> Sample {
     Sample { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s }
 }
 
-/// The entry of a stretch; a time that is the file's own first or last is left out.
+/// Returns the manifest entry of a segment; begin or end are omitted if they are those of the file.
 fn entry(trial: &ManifestTrial, stretch: &Stretch, whole: Span) -> ManifestTrial {
     let (from_s, to_s) = ends(stretch.span);
     let time = |time_s: f64, is_inside: bool| is_inside.then_some(FileTime::Seconds(time_s));
     ManifestTrial {
         from: time(from_s, from_s > whole.from_s),
         to: time(to_s, to_s < whole.to_s),
-        // A name without angles: figures are taken of manoeuvres that are named with theirs.
+        // A name without angles: only manoeuvres named with their angles are evaluated as standard
+        // ones.
         manoeuvre: Some(format!("found: {}", stretch.kind)),
         ..trial.clone()
     }
 }
 
-/// Both rounded down, so that neighbours meet and do not overlap.
+/// Rounds both ends down, so that neighbouring segments meet and do not overlap.
 fn ends(span: Span) -> (f64, f64) {
     let down = |time_s: f64| (time_s * PARTS).floor() / PARTS;
     (down(span.from_s), down(span.to_s))

@@ -1,4 +1,4 @@
-//! What `sistership import` says of the files.
+//! Output document of `sistership import`.
 
 use std::path::PathBuf;
 
@@ -7,22 +7,22 @@ use sistership_trials::{Exclusion, Guess};
 
 use super::import_log::SearchedLog;
 
-/// What was made of the files.
+/// Result of an import.
 #[derive(Serialize)]
 pub(super) struct Import {
     pub manifest: PathBuf,
     pub guesses: Vec<GuessRow>,
-    /// Remarks on columns together.
+    /// Remarks that concern several columns.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// Files of which stretches were taken.
+    /// Logs that were segmented.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub logs: Vec<SearchedLog>,
-    /// What is left out of the files as faulty.
+    /// Faulty values that are excluded.
     pub excluded: Vec<Exclusion>,
     pub trials: Vec<String>,
     pub errors: Vec<String>,
-    /// By law, what the trials do not have; laws for which nothing is missing are empty.
+    /// Missing channels by law; empty for laws that the trials can identify.
     pub lacking: Vec<LawNeeds>,
     #[serde(skip)]
     pub explain: bool,

@@ -1,13 +1,13 @@
-//! What `sistership import` prints: a summary, and every column where it is asked for.
+//! Text output of `sistership import`: a summary, or every column on request.
 
 use super::import_outcome::{GuessRow, Import, LawNeeds};
 use crate::output::count;
 use crate::table::TextTable;
 
-/// Files that are named before they are counted.
+/// Number of files that are named; the rest is counted.
 const NAMED: usize = 3;
 
-/// The whole answer.
+/// Formats the result as text.
 pub(super) fn text(import: &Import) -> String {
     let columns = if import.explain { table(&import.guesses) } else { summary(&import.guesses) };
     let logs: String = import.logs.iter().map(ToString::to_string).collect();
@@ -42,13 +42,14 @@ fn unit(guess: &GuessRow) -> String {
     if guess.reversed { format!("{unit}, reversed") } else { unit }
 }
 
-/// One paragraph for the files that have the same columns.
+/// Formats one paragraph for each group of files with the same columns.
 fn summary(guesses: &[GuessRow]) -> String {
     let mut groups: Vec<(Vec<&str>, Vec<&GuessRow>)> = Vec::new();
     for rows in guesses.chunk_by(|a, b| a.file == b.file) {
         let same = |group: &Vec<&GuessRow>| {
             group.len() == rows.len() && group.iter().zip(rows).all(|(a, b)| alike(a, b))
         };
+        // Logs of one recorder have the same columns; one paragraph is enough for them.
         match groups.iter_mut().find(|(_, group)| same(group)) {
             Some((files, _)) => files.push(&rows[0].file),
             None => groups.push((vec![&rows[0].file], rows.iter().collect())),
@@ -86,6 +87,7 @@ fn paragraph(files: &[&str], rows: &[&GuessRow]) -> String {
 
 fn questions<'a>(rows: impl Iterator<Item = &'a GuessRow>) -> String {
     let mut all: Vec<&str> = rows.filter_map(|row| row.question.as_deref()).collect();
+    // Adjacent duplicates only: the same question about several columns of a file.
     all.dedup();
     all.into_iter().map(|question| format!("  {question}\n")).collect()
 }
@@ -98,7 +100,7 @@ fn excluded(import: &Import) -> String {
         .collect()
 }
 
-/// Which laws can be fitted, and what the others lack.
+/// Formats the laws that can be fitted, and what is missing for the others.
 fn laws(needs: &[LawNeeds]) -> String {
     let (ready, lacking): (Vec<&LawNeeds>, Vec<&LawNeeds>) =
         needs.iter().partition(|need| need.lacks.is_empty());

@@ -1,4 +1,4 @@
-//! `sistership keys`: service keys of programs, on the archive's own files.
+//! `sistership keys`: service keys of programs, directly in the store.
 
 use clap::{Args, Subcommand};
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ Examples:
 
 A key is printed once; only its hash is kept. A program sends it as `Authorization: Bearer KEY`.";
 
-/// A day, µs.
+/// One day, µs.
 const DAY: i64 = 86_400_000_000;
 
 /// Manage the service keys of programs: add, list, revoke.
@@ -64,8 +64,9 @@ enum KeysAction {
 /// Runs the command.
 ///
 /// # Errors
-/// The store is not there, or it says no.
+/// Returns an error if the store does not exist, or if it refuses the command.
 pub fn run(keys: &KeysArguments) -> Result<(), Failure> {
+    // Drawn before the store is opened.
     let text = KeyText::new().map_err(|error| Failure::Refused(error.to_string()))?;
     let work = async |archive: &Archive| done(&keys.what, &text, archive).await;
     let (document, text) = with_archive(&keys.store, work)?;
@@ -81,6 +82,7 @@ async fn done(
     match what {
         KeysAction::Add { title, roles, user, days } => {
             let kept = text.kept();
+            // The clock of the store, which also decides whether a key is valid.
             let ends = days.map(|days| archive.store.now_us().saturating_add(days * DAY));
             let (title, user) = (title.clone(), user.clone());
             let new =

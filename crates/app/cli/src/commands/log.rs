@@ -1,4 +1,4 @@
-//! The log of the commands that run until they are told to stop, on standard error.
+//! Log of the commands that run until they are stopped, on standard error.
 
 use std::io::IsTerminal as _;
 
@@ -11,23 +11,24 @@ use super::config_file::ConfigFile;
 use super::log_format::LogFormat;
 use crate::failure::Failure;
 
-/// What is logged, and how.
+/// Arguments of the log.
 #[derive(Debug, Args)]
 pub struct LogArguments {
-    /// What is logged on standard error: a level, or levels by module (`info,sqlx=debug`).
+    /// Filter of the log on standard error: a level, or levels by module (`info,sqlx=debug`).
     #[arg(long, value_name = "FILTER", env = "SISTERSHIP_LOG")]
     log: Option<String>,
-    /// How it is written.
+    /// Format of the log.
     #[arg(long, value_name = "FORMAT", env = "SISTERSHIP_LOG_FORMAT", value_enum)]
     log_format: Option<LogFormat>,
 }
 
 impl LogArguments {
-    /// Begins to log.
+    /// Starts the log.
     ///
     /// # Errors
-    /// The filter does not read.
+    /// Returns an error if the filter cannot be parsed.
     pub fn begin(&self, file: &ConfigFile) -> Result<(), Failure> {
+        // The flag and its environment variable have precedence over the file.
         let filter = self.log.as_deref().or(file.log.as_deref()).unwrap_or("info");
         let filter: Targets = filter
             .parse()

@@ -1,15 +1,15 @@
-//! The forms of the log.
+//! Formats of the log.
 
 use clap::ValueEnum;
 use serde::Deserialize;
 
-/// How a line of the log is written.
+/// Format of a line of the log.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LogFormat {
-    /// For people.
+    /// Text for people.
     #[default]
     Text,
-    /// One JSON object a line, for machines.
+    /// One JSON object a line, for programs.
     Json,
 }

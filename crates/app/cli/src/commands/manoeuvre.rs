@@ -86,7 +86,7 @@ pub struct ManoeuvreArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The model is refused or a manoeuvre leaves the physical range.
+/// Returns an error if the model is refused, or if a manoeuvre leaves the physical range.
 pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     check_single(manoeuvre)?;
     let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
@@ -97,11 +97,14 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     remarks.extend(environment.uncovered(&model).into_iter().map(|one| one.message));
     let ship = ship(manoeuvre, &model, &law)?;
     let settings = settings(manoeuvre);
+    // Without any manoeuvre in the call the standard set is simulated.
     let usual = manoeuvre.turn.is_empty() && manoeuvre.zigzag.is_empty();
     let usual = usual && !manoeuvre.further.any();
     let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, usual, &settings);
     let asked = manoeuvre.further.asked(usual);
     let mut further = further(&model, &law, &ship, &settings, &asked);
+    // In the standard set a law without a reversed propeller is a remark; on request it is a
+    // failure.
     if !usual && let Some(reason) = further.no_stopping.take() {
         further.failures.push(format!("stopping: {reason}"));
     }
@@ -117,7 +120,7 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
-/// A file of a track is that of one manoeuvre.
+/// Checks that a track is written for a single manoeuvre only.
 fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     let tracks = manoeuvre.turn.len() + manoeuvre.zigzag.len() + manoeuvre.further.tracks();
     if manoeuvre.out.is_some() && tracks != 1 {
@@ -130,7 +133,8 @@ fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Moves a law that is expanded about a speed to the speed asked for, and says so.
+/// Moves a law that is expanded about an approach speed to the requested speed; returns remarks on
+/// this and on the rudder limit.
 fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
     let mut remarks = Vec::new();
     if let (Some(speed), Some(own), Some(_)) =
@@ -138,6 +142,7 @@ fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<
         && speed != own
     {
         model.set_approach_speed(law, speed);
+        // Revolutions in proportion to speed: the advance ratio of the propeller stays.
         model.revolutions_rps = model.revolutions_rps.map(|n| n * speed / own);
         remarks.push(format!(
             "the law is expanded about {speed} m/s here; the model belongs to {own} m/s"
@@ -148,6 +153,7 @@ fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<
         .iter()
         .chain(manoeuvre.zigzag.iter().map(|(rudder, _)| rudder))
         .fold(manoeuvre.further.largest_deg(), |a, b| a.max(b.abs()));
+    // The standard set orders 35 deg.
     let ordered = if largest == 0.0 { 35.0 } else { largest };
     if ordered > model.steering.limit_deg {
         remarks.push(format!(
@@ -186,7 +192,7 @@ fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
     }
 }
 
-/// The bands that are asked for.
+/// Draws the requested bands.
 fn drawn(
     manoeuvre: &ManoeuvreArguments,
     model: &Model,

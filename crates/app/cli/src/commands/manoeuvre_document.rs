@@ -1,4 +1,4 @@
-//! What `sistership manoeuvre` prints.
+//! Output document of `sistership manoeuvre`.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{FurtherManoeuvres, StandardManoeuvres};
 use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 
-/// What is printed.
+/// Output document.
 #[derive(Debug, Serialize)]
 pub struct ManoeuvreDocument {
     /// The model.
     pub model: String,
     /// Its law.
     pub law: String,
-    /// Whether its figures are published, estimated, transferred or refined.
+    /// Status of its figures: published, estimated, transferred or refined.
     pub status: sistership_model::vessel::Status,
     /// The approach speed, m/s.
     pub speed_m_s: f64,
@@ -34,21 +34,21 @@ pub struct ManoeuvreDocument {
     pub imo: Vec<Criterion>,
     /// Manoeuvres that left the physical range.
     pub failures: Vec<String>,
-    /// Manoeuvres that left what the model's trials covered.
+    /// Manoeuvres that left the range covered by the model's trials.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub outside: BTreeMap<String, Excursion>,
-    /// What a learned branch counted for in each manoeuvre, 0 to 1.
+    /// Share of the learned correction in each manoeuvre, 0 to 1.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub branch_share: BTreeMap<String, f64>,
-    /// Confidence bands, where they were asked for.
+    /// Confidence bands, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
-    /// What must be known to read the figures.
+    /// Remarks that are needed to read the figures.
     pub remarks: Vec<String>,
 }
 
 impl ManoeuvreDocument {
-    /// Puts together what was sailed.
+    /// Combines the results of all manoeuvres.
     pub fn of(
         model: &Model,
         ship: &Ship,
@@ -58,7 +58,7 @@ impl ManoeuvreDocument {
         mut remarks: Vec<String>,
     ) -> Self {
         let mut failures = sailed.failures;
-        // One list says what failed.
+        // Failures of all manoeuvres are in one list.
         failures.append(&mut further.failures);
         remarks.extend(further.remarks(ship.lpp_m()));
         let stopping = further.criterion(ship.lpp_m());

@@ -28,23 +28,24 @@ pub struct FurtherArguments {
 }
 
 impl FurtherArguments {
-    /// How many tracks there will be.
+    /// Number of tracks that the manoeuvres give.
     pub fn tracks(&self) -> usize {
         usize::from(self.stop) + self.pull_out.len()
     }
 
-    /// Whether one of them was asked for.
+    /// True if one of them is requested.
     pub fn any(&self) -> bool {
         self.tracks() > 0 || self.spiral
     }
 
-    /// The largest rudder angle that is ordered, deg.
+    /// Largest rudder angle that is ordered, deg.
     pub fn largest_deg(&self) -> f64 {
         self.pull_out.iter().fold(0.0, |most, angle| most.max(angle.abs()))
     }
 
-    /// What is sailed; the usual ones where `usual` says so.
+    /// Returns the manoeuvres to simulate; with `usual` those of the standard set.
     pub fn asked(&self, usual: bool) -> FurtherAsked {
+        // The settings of a stop also apply to the stop of the standard set.
         let order = AsternOrder { astern_rps: self.astern_rps, reversal_s: self.reversal_s };
         if usual {
             return FurtherAsked { stop: Some(order), ..FurtherAsked::usual() };
@@ -57,12 +58,14 @@ impl FurtherArguments {
     }
 }
 
-/// The tables of what was sailed, each under its title.
+/// Formats the results as tables with titles.
 pub fn tables(further: &FurtherManoeuvres, lpp_m: f64) -> Vec<(String, TextTable)> {
     let mut tables = Vec::new();
     if let Some(stop) = &further.stopping {
         tables.push(("Full astern stop".to_owned(), stopping(stop, lpp_m)));
     }
+    // The residual rates after pull-outs to both sides tell whether the ship is straight-line
+    // stable.
     if !further.pull_outs.is_empty() {
         let verdict = match further.straight_line_stable {
             Some(true) => ": stable on a straight course",
@@ -137,6 +140,7 @@ fn points(spiral: &SpiralMetrics) -> TextTable {
     let cells = |point: Option<&SpiralPoint>| {
         [point.map(|point| point.rudder_deg), point.map(|point| point.rate_deg_s)].map(optional)
     };
+    // The two spirals have different numbers of points: the shorter column ends in empty cells.
     for k in 0..spiral.direct.len().max(spiral.reverse.len()) {
         let (direct, reverse) = (spiral.direct.get(k), spiral.reverse.get(k));
         let moving = [(direct, "direct"), (reverse, "reverse")]

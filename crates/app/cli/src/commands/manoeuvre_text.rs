@@ -1,4 +1,4 @@
-//! The manoeuvres of a model in words and tables.
+//! Text output of the manoeuvres of a model.
 
 use sistership_assessment::uncertainty::Bands;
 use sistership_model::{Law, Model};
@@ -10,7 +10,7 @@ use super::manoeuvre_further::tables;
 use super::model_line;
 use crate::table::{TextTable, number, optional};
 
-/// Everything that was sailed.
+/// Formats all results as text.
 pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship) -> String {
     let head = format!(
         "{}\nlength {} m, approach at {} m/s\n",
@@ -21,6 +21,7 @@ pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship)
     let further = tables(&document.further, ship.lpp_m());
     let further =
         further.into_iter().map(|(title, table)| section(&title, false, || table)).collect();
+    // A section without rows is omitted with its title.
     let parts: [String; 5] = [
         section("Turning circles", document.turns.is_empty(), || {
             turns(&document.turns, ship.lpp_m())
@@ -38,6 +39,7 @@ pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship)
     };
     let outside: Vec<String> =
         document.outside.iter().map(|(name, how)| format!("{name}: {}", how.words())).collect();
+    // Failures come last, next to the exit status.
     let end = lines("OUTSIDE", &outside)
         + &lines("remark", &document.remarks)
         + &lines("FAILED", &document.failures);
@@ -65,6 +67,7 @@ fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
     ]);
     for turn in turns {
         let mut cells = vec![number(turn.rudder_deg)];
+        // Lengths in metres and in ship lengths, as in the IMO criteria.
         for length in [turn.advance_m, turn.transfer_m, turn.tactical_diameter_m] {
             cells.extend([
                 optional(length),
@@ -116,6 +119,7 @@ fn banded(bands: &Bands) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "from", "to", "reached", "met"]);
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     for band in &bands.figures {
+        // Share of the draws that meet the criterion.
         let met = band.pass.map_or_else(|| "-".to_owned(), percent);
         table.row([
             band.figure.clone(),

@@ -1,4 +1,4 @@
-//! One file for each command, and what they share.
+//! Commands, one file for each, and their common functions.
 
 pub mod backup;
 pub mod branch;
@@ -60,18 +60,18 @@ use sistership_simulation::Ship;
 
 use crate::failure::Failure;
 
-/// A model ready to sail.
+/// Binds a model to its law for simulation.
 ///
 /// # Errors
-/// Names what the model does not give.
+/// Returns an error that names what the model lacks.
 fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
     Ship::new(model, law).map_err(|error| Failure::Refused(error.to_string()))
 }
 
-/// Puts the ship into shallow water.
+/// Sets the water depth.
 ///
 /// # Errors
-/// Its law does not know water depth, or the water is too shallow for it.
+/// Returns an error if the law has no water depth, or if the water is too shallow for the ship.
 fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
     if !knows_depth(law) {
         return Err(Failure::Refused(format!(
@@ -84,11 +84,12 @@ fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<
     Ok(())
 }
 
-/// The ship floats in water of a depth.
+/// Checks that the ship floats in water of this depth.
 ///
 /// # Errors
-/// The water is too shallow for it.
+/// Returns an error if the water is too shallow.
 fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
+    // Without a known draught every depth is accepted.
     let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
     if depth_m <= draught_m {
         return Err(Failure::Refused(format!(
@@ -99,21 +100,22 @@ fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether a law sails in shallow water.
+/// True if a law covers shallow water.
 fn knows_depth(law: &Law) -> bool {
     law.inputs.contains_key("depth")
 }
 
-/// A model with what its figures are worth.
+/// Describes a model with the status of its figures.
 fn model_line(model: &Model, law: &Law) -> String {
     let note = model.note.as_ref().map_or(String::new(), |note| format!("\nnote: {note}"));
     format!("{}, law {}: {}{note}", model.name, law.name, worth(model.status))
 }
 
-/// What a model's figures are worth.
+/// Describes the status of a model's figures.
 fn worth(status: Status) -> &'static str {
     match status {
         Status::Published => "as published",
+        // Capitals warn: these figures are no measurements of the ship.
         Status::Estimated => "ESTIMATED from particulars: a stopgap, not measured",
         Status::Transferred => "TRANSFERRED from another ship, not fitted to it",
         Status::Refined => "refined against trials",

@@ -1,4 +1,5 @@
-//! `sistership plan`: the trials that narrow the bands of the IMO criteria most in a given time.
+//! `sistership plan`: design of the trials that narrow the bands of the IMO criteria most in a
+//! given time.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -50,7 +51,8 @@ pub struct PlanArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The ship, a trial or an effect is refused, or nothing fits into the time.
+/// Returns an error if the ship, a trial or an effect is refused, or if no trial fits into the
+/// time.
 pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
     let ((model, law), read) = both(model(zoo, &asked.ship), trials::read(&asked.trials))?;
     trials::remark_other_ship(&read, &model.ship);
@@ -58,7 +60,7 @@ pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
     output::print(asked.json, &plan, || plan_text::text(&plan))
 }
 
-/// The model that a name stands for; of a ship without one, an estimate.
+/// Returns the model with this name; for a ship without a model, an estimate.
 fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     match named::ship(zoo, name) {
         Ok(vessel) if vessel.file.models.is_empty() => {
@@ -85,6 +87,7 @@ fn planned(
         budget_s: 60.0 * asked.budget_min,
         apart: &asked.apart,
         sailed: &trials::trials(read),
+        // Without a length the instruments of a large ship are assumed.
         instruments: Instruments::of(lpp_m.unwrap_or(f64::INFINITY)),
     };
     plan(&request).map_err(|error| match error {

@@ -1,10 +1,10 @@
-//! A plan in words and tables.
+//! Text output of a trial design.
 
 use sistership_trial_design::{ExpectedBand, Plan, PlannedTrial};
 
 use crate::table::{TextTable, number};
 
-/// Everything that came of it.
+/// Formats the trial design as text.
 pub fn text(plan: &Plan) -> String {
     let mut parts = vec![format!("{}\n{}\n", plan.model, summary(plan))];
     parts.push(format!("Most informative first\n{}", trials(&plan.trials)));
@@ -13,7 +13,7 @@ pub fn text(plan: &Plan) -> String {
     parts.join("\n")
 }
 
-/// For whoever has to decide.
+/// Summary for the decision, compared with the standard manoeuvres of IMO.
 fn summary(plan: &Plan) -> String {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     let standard: Vec<&str> =
@@ -41,6 +41,7 @@ fn trials(trials: &[PlannedTrial]) -> TextTable {
         "narrower so far",
     ]);
     for trial in trials {
+        // Without a heading, any one serves.
         let heading = trial.heading_deg.map_or("any".to_owned(), number);
         let times = [trial.manoeuvre_min, trial.takes_min].map(|min| format!("{min:.1}"));
         let narrower = format!("{:.0} %", 100.0 * trial.narrower);

@@ -1,4 +1,4 @@
-//! `sistership predict`: a model over a horizon from now on, under orders to come.
+//! `sistership predict`: prediction over a horizon from now on, under given orders.
 
 use std::path::PathBuf;
 
@@ -98,7 +98,8 @@ pub struct PredictArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The model or an order is refused, or the motion leaves the physical range.
+/// Returns an error if the model or an order is refused, or if the motion leaves the physical
+/// range.
 pub fn run(zoo: &Zoo, asked: &PredictArguments) -> Result<(), Failure> {
     let orders = orders(asked)?;
     let (model, law) = model(zoo, asked)?;
@@ -108,7 +109,7 @@ pub fn run(zoo: &Zoo, asked: &PredictArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let request: PredictionRequest =
         serde_json::from_value(request(asked, &orders)).map_err(|error| refused(&error))?;
-    // As much work as a server takes on for a request.
+    // The same limit as for a request to a server.
     let most = Limits::default().prediction_samples;
     let mut answer = predict(&request, &model, &law, most).map_err(|error| refused(&error))?;
     answer["model"] = json!(model.name);
@@ -130,8 +131,9 @@ fn orders(asked: &PredictArguments) -> Result<Vec<Orders>, Failure> {
     }
 }
 
-/// The request that a server would be sent.
+/// Builds the request as for a server.
 fn request(asked: &PredictArguments, orders: &[Orders]) -> Value {
+    // Speed and direction come together or not at all, which the flags require.
     let steady = |speed: Option<f64>, key: &str, degrees: Option<f64>| {
         let (speed, degrees) = speed.zip(degrees)?;
         Some(json!({ "speed_m_s": speed, key: degrees.to_radians() }))
@@ -150,11 +152,12 @@ fn request(asked: &PredictArguments, orders: &[Orders]) -> Value {
     } })
 }
 
-/// A model of the zoo or of a file; else one of the store, where that is there.
+/// Returns a model of the zoo or of a file; else one of the store, if that exists.
 fn model(zoo: &Zoo, asked: &PredictArguments) -> Result<(Model, Law), Failure> {
     match named::model(zoo, &asked.model) {
         Ok((model, law)) => Ok((model, (*law).clone())),
         Err(unknown) if !asked.store.is_there() => Err(unknown),
+        // The fault of a file that exists is more useful than a search in the store.
         Err(unknown) if std::path::Path::new(&asked.model).is_file() => Err(unknown),
         Err(_) => stored(asked),
     }

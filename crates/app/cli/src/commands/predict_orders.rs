@@ -1,4 +1,4 @@
-//! Orders to come, as a CSV file.
+//! Orders over time from a CSV file.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use serde::Serialize;
 use crate::failure::{Failure, about_file};
 use crate::zoo::text_of;
 
-/// Most faults that are told of a file.
+/// Largest number of faults that are reported for a file.
 const FAULTS: usize = 20;
 
-/// Orders from a time on; what is not given stays.
+/// Orders from a time on; those not given stay unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Orders {
     pub t_s: f64,
@@ -21,7 +21,7 @@ pub(super) struct Orders {
     pub n_rps: Option<f64>,
 }
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Column {
     Time,
@@ -30,10 +30,10 @@ enum Column {
     Revolutions,
 }
 
-/// The orders of a file.
+/// Reads the orders of a file.
 ///
 /// # Errors
-/// Names every row and column that is at fault.
+/// Returns an error that names every faulty row and column.
 pub(super) fn read(path: &Path) -> Result<Vec<Orders>, Failure> {
     parse(&text_of(path)?).map_err(|faults| about_file(path, faults.join("\n")))
 }
@@ -42,6 +42,7 @@ fn parse(text: &str) -> Result<Vec<Orders>, Vec<String>> {
     let mut reader = ReaderBuilder::new()
         .trim(Trim::All)
         .flexible(true)
+        // Spreadsheets write a byte order mark, which would become part of the first name.
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
     let header = reader.headers().map_err(|error| vec![error.to_string()])?;
     let columns = columns(header).map_err(|fault| vec![fault])?;
@@ -63,7 +64,7 @@ fn parse(text: &str) -> Result<Vec<Orders>, Vec<String>> {
     if faults.is_empty() { Ok(orders) } else { Err(few(faults)) }
 }
 
-/// As many as a person reads.
+/// Limits the faults to a readable number.
 fn few(mut faults: Vec<String>) -> Vec<String> {
     let further = faults.len().saturating_sub(FAULTS);
     faults.truncate(FAULTS);
@@ -108,6 +109,7 @@ fn row(cells: &StringRecord, columns: &[Column]) -> Result<Orders, Vec<String>> 
     for (place, (cell, column)) in cells.iter().zip(columns).enumerate() {
         let value = match cell.parse::<f64>() {
             Ok(value) if value.is_finite() => value,
+            // An empty cell keeps the previous order.
             _ if cell.is_empty() && *column != Column::Time => continue,
             _ => {
                 faults.push(format!("column {}: `{cell}` is not a finite number", place + 1));

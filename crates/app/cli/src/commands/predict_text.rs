@@ -1,19 +1,19 @@
-//! What a prediction over a horizon answers, as text and as a CSV file.
+//! Output of a prediction over a horizon, as text and as a CSV file.
 
 use serde_json::Value;
 use sistership_model::Law;
 
 use crate::table::{TextTable, number};
 
-/// Rows of the table, at most.
+/// Largest number of rows of the table.
 const ROWS: usize = 13;
 
-/// Columns of a track as a file has them; those of roll last, for laws that have it.
+/// Columns of a track in a file; the columns of roll come last, for laws with roll.
 const COLUMNS: [&str; 9] =
     ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "delta_rad", "n_rps"];
 const ROLL: [&str; 2] = ["phi_rad", "p_rad_s"];
 
-/// The track, row by row.
+/// Formats the track as CSV.
 pub(super) fn csv(answer: &Value, law: &Law) -> String {
     let roll = if law.has_roll() { ROLL.as_slice() } else { &[] };
     let columns: Vec<&str> = COLUMNS.iter().chain(roll).copied().collect();
@@ -25,11 +25,12 @@ pub(super) fn csv(answer: &Value, law: &Law) -> String {
     [columns.join(",")].into_iter().chain(rows).map(|line| line + "\n").collect()
 }
 
-/// Where the ship is at some instants, and how sure that is.
+/// Formats positions at some instants, and the prediction interval.
 pub(super) fn text(answer: &Value) -> String {
     let words = |key: &str| answer[key].as_str().unwrap_or_default();
     let head = format!("{}, law {}\n\n", words("model"), words("law"));
     let mut table = TextTable::new(["t s", "x m", "y m", "heading deg", "u m/s", "rudder deg"]);
+    // Evenly spaced rows; the step is rounded up, so that the limit holds.
     let every = samples(answer).saturating_sub(1).div_ceil(ROWS - 1).max(1);
     for at in (0..samples(answer)).step_by(every) {
         table.row(cells(&answer["trajectory"], at));
@@ -61,6 +62,7 @@ fn band(answer: &Value) -> String {
     let Some(last) = samples(answer).checked_sub(1).filter(|_| !band.is_null()) else {
         return String::new();
     };
+    // Null if no draw has reached the end of the horizon.
     let ends = |column: &str| ["low", "high"].map(|end| band[end][column][last].as_f64());
     let words = |name: &str, [low, high]: [Option<f64>; 2]| match (low, high) {
         (Some(low), Some(high)) => format!("{name} {low:.1} to {high:.1}"),
@@ -84,7 +86,7 @@ fn stopped(answer: &Value) -> String {
     }
 }
 
-/// A line for each of wind, current and depth that the model's trials did not have.
+/// Formats a line for each of wind, current and depth that the model's trials do not cover.
 fn outside_trials(answer: &Value) -> String {
     let inputs = answer["outside_trials"].as_array().into_iter().flatten();
     let line =

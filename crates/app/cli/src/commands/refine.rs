@@ -1,4 +1,4 @@
-//! `sistership refine`: a source model fitted to a ship's trials.
+//! `sistership refine`: refinement of a source model against a ship's trials.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -142,7 +142,7 @@ struct RefineDocument<'a> {
     ladder: Option<&'a Ladder>,
     #[serde(flatten)]
     files: WrittenFiles<'a>,
-    /// The weights of the model's learned branch, where it has one.
+    /// Weights of the model's learned correction, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     weights: Option<&'a Path>,
 }
@@ -150,13 +150,16 @@ struct RefineDocument<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// The ship, the source, a trial or the refinement is refused, or a file cannot be written.
+/// Returns an error if the ship, the source, a trial or the refinement is refused, or if a file
+/// cannot be written.
 pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
+    // Everything that may be refused by the call alone is collected in `all` before any work.
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
     let given = named.map(|source| named::foundation(zoo, source)).transpose();
     let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose();
     let inputs = named_files(arguments);
     let beside = arguments.out.as_deref().map(weights::beside);
+    // Output files are checked before the work, and all faults of the call are reported together.
     let files = both(
         both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs)),
         promised(arguments.report.as_deref(), &inputs),
@@ -174,22 +177,26 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let started = start(zoo, arguments, (given, law), &target, &mut settings, &read)?;
     let Start { source, law, similarity, ladder, made } = started;
     let source_law = named::law_of(zoo, &source)?;
+    // Without a named law the coefficients of the source are refined in its own law.
     let law = law.unwrap_or_else(|| source_law.clone());
     let laws = (&*source_law, &*law);
     let refinement = match made {
         Some(made) => made,
+        // A model selection has refined its best candidate already.
         None => refined(zoo, (&target, &source), laws, &settings, &read)?,
     };
     let refinement = calibrated(zoo, refinement, &law, &read);
+    // After the calibration: the correction is trained on residuals of the final coefficients.
     let branch = TrainedBeside::new((zoo, &law), &refinement, ladder.as_ref(), &read)?;
     if let Some(out) = out {
         let model = branch.as_ref().map_or(&refinement.model, |branch| &branch.model);
-        // Weights first: a model that is there has them.
+        // Weights first, so that a model that exists has its weights.
         branch.iter().zip(weights).try_for_each(|(branch, file)| branch.write(file))?;
         let how = format!("method {}", refinement.method);
         out.write(model_file(zoo, model, &how)?.as_bytes())?;
     }
     if let Some(report) = report {
+        // The report shows the ranking and the selection only if there were any.
         let chosen = (similarity.as_ref(), ladder.as_ref());
         report.write(&report_html(zoo, &target, &refinement, chosen, &read)?)?;
     }
@@ -212,7 +219,8 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     })
 }
 
-/// Where the refinement starts; where nothing is named, the search settles the settings, too.
+/// Returns the start of the refinement; if nothing is named, the model selection also sets the
+/// settings.
 fn start(
     zoo: &Zoo,
     arguments: &RefineArguments,
@@ -223,11 +231,13 @@ fn start(
 ) -> Result<Start, Failure> {
     match (given, law) {
         (Some(source), law) => Ok(Start::of(source, law)),
+        // A default call: sources, laws and estimators are compared.
         (None, None) if is_plain(arguments, settings) => {
             let (start, explicit) = searched(zoo, target, settings, read)?;
             *settings = explicit;
             Ok(start)
         }
+        // A law alone is identified from the trials, without a prior.
         (None, Some(law)) if arguments.source.is_none() => {
             Ok(Start::of(of_law(&law, target, settings, read)?, Some(law)))
         }
@@ -238,9 +248,10 @@ fn start(
     }
 }
 
-/// Whether neither source, law, method nor another prior is named, and nothing that only some
-/// methods keep.
+/// True if neither source, law, method nor another prior is named, and no setting that only some
+/// methods support.
 fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
+    // `--source auto` alone is the same as no source.
     let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
     unnamed
         && arguments.method.is_none()
@@ -272,7 +283,7 @@ fn report_html(
     Ok(rendered.html.into_bytes())
 }
 
-/// Settings from the file, if any, and the flags.
+/// Returns the settings of the file, if any, overridden by the flags.
 fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     let mut settings =
         arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
@@ -282,6 +293,7 @@ fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     settings.difference_s = arguments.difference_s.or(settings.difference_s);
     arguments.constrain.iter().for_each(|constrain| constrain.add_to(&mut settings.constraints));
     settings.constraints.trust_sd = arguments.trust_sd.or(settings.constraints.trust_sd);
+    // Held-out trials of file and flags add up; every other flag replaces the value of the file.
     settings.held_out.extend(arguments.held_out.iter().cloned());
     Ok(settings.as_ordered())
 }
@@ -298,7 +310,7 @@ fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
     zoo.law(name).cloned().ok_or_else(missing)
 }
 
-/// A law without coefficients, for the approach of the trials that are fitted.
+/// Returns a model without coefficients, with the approach speed of the fitted trials.
 fn of_law(
     law: &Law,
     target: &Vessel,
@@ -311,7 +323,7 @@ fn of_law(
     blank(law, target, approach).map_err(|error| Failure::Refused(error.to_string()))
 }
 
-/// The best eligible source; trials kept out have no say in it.
+/// Selects the best eligible source; held-out trials do not influence it.
 fn chosen(
     zoo: &Zoo,
     target: &Vessel,

@@ -1,4 +1,4 @@
-//! The learned branch beside a refinement that names nothing, where one wins on trials left out.
+//! Learned correction of a refinement with model selection, if one is better on held-out trials.
 
 use sistership_identification::refine::Refinement;
 use sistership_jobs::derive::corrected_with_uncertainty;
@@ -11,7 +11,7 @@ use crate::files::PromisedFile;
 use crate::output::note;
 use crate::trials::{self, ReadTrial};
 
-/// A refined model with a branch.
+/// Refined model with a learned correction.
 pub struct TrainedBeside {
     /// The model.
     pub model: Model,
@@ -19,10 +19,10 @@ pub struct TrainedBeside {
 }
 
 impl TrainedBeside {
-    /// Trains the kind that the search took, if it took one, on what the refinement was fitted to.
+    /// Trains the kind that the model selection chose, if any, on the fitted trials.
     ///
     /// # Errors
-    /// It cannot be trained.
+    /// Returns an error if it cannot be trained.
     pub fn new(
         (zoo, law): (&Zoo, &Law),
         refinement: &Refinement,
@@ -32,6 +32,7 @@ impl TrainedBeside {
         let choice = ladder.and_then(|ladder| ladder.branch.as_ref());
         let Some(kind) = choice.and_then(|choice| choice.taken) else { return Ok(None) };
         note(&format!("training a branch of {}", kind.name()));
+        // Held-out trials judge the final model, so the correction must not be trained on them.
         let held_out = &refinement.settings.held_out;
         let fitted: Vec<&Trial> = trials::trials(read)
             .into_iter()
@@ -48,7 +49,7 @@ impl TrainedBeside {
         Ok(Some(Self { model, weights: beside.weights }))
     }
 
-    /// A model with the weights that it names.
+    /// Attaches the weights that a model names.
     fn attached(mut model: Model, weights: &Weights) -> Result<Self, Failure> {
         let weights = weights.bytes().map_err(refused)?;
         attach(&mut model, &weights).map_err(refused)?;
@@ -58,7 +59,7 @@ impl TrainedBeside {
     /// Writes the weights.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn write(&self, file: PromisedFile) -> Result<(), Failure> {
         file.write(&self.weights)
     }

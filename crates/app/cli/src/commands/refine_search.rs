@@ -1,4 +1,4 @@
-//! The source, law and method of a refinement that names none of them.
+//! Model selection of a refinement without source, law and method.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,36 +13,37 @@ use crate::failure::Failure;
 use crate::output::note;
 use crate::trials::{self, ReadTrial};
 
-/// From one note of progress to the next.
+/// Interval between notes of progress.
 const BETWEEN: Duration = Duration::from_secs(1);
-/// Share of the work before which the time left is not told: the first rung is not like the others.
+/// Share of the work before which no remaining time is given: the first stage is not
+/// representative.
 const TELLING: f64 = 0.1;
 
-/// Where a refinement starts, and how that was found.
+/// Start of a refinement, with its selection.
 pub struct Start {
-    /// The source; a law without coefficients where there is none.
+    /// The source; a law without coefficients if there is none.
     pub source: Model,
-    /// The law to fit; the source's where absent.
+    /// The law to fit; by default the source's.
     pub law: Option<Arc<Law>>,
-    /// The ranking, where ships were compared.
+    /// Ranking of the ships, if they were compared.
     pub similarity: Option<Similarity>,
-    /// What was tried, where it was searched.
+    /// Selection report, if there was a model selection.
     pub ladder: Option<Ladder>,
-    /// The refinement, where the search has made it already.
+    /// The refinement, if the model selection has made it already.
     pub made: Option<Refinement>,
 }
 
 impl Start {
-    /// As a person named it.
+    /// Creates the start that a person named.
     pub fn of(source: Model, law: Option<Arc<Law>>) -> Self {
         Self { source, law, similarity: None, ladder: None, made: None }
     }
 }
 
-/// The best start, with settings that name its method; trials kept out have no say in it.
+/// Selects the best start, with settings that name its method; held-out trials do not influence it.
 ///
 /// # Errors
-/// No entrant could be simulated to its end.
+/// Returns an error if no candidate could be simulated to the end.
 pub fn searched(
     zoo: &Zoo,
     target: &Vessel,
@@ -54,6 +55,7 @@ pub fn searched(
     let asked = Asked { zoo, target, champions: &champions, trials: &trials, settings };
     let (begun, last) = (Instant::now(), Mutex::new(None));
     let told = |fraction: f64, what: &str| {
+        // Candidates run in parallel and all report their progress here.
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.is_none_or(|last: Instant| last.elapsed() >= BETWEEN) {
             *last = Some(Instant::now());
@@ -76,7 +78,7 @@ pub fn searched(
     Ok((start, found.settings))
 }
 
-/// How long it will take, as far as what is done tells.
+/// Extrapolates the remaining time from the work done so far.
 fn time_left(elapsed_s: f64, fraction: f64) -> String {
     if fraction < TELLING {
         return String::new();

@@ -1,4 +1,4 @@
-//! Settings of a refinement from a file, and the trials that they name.
+//! Settings of a refinement from a file, and the held-out trials that they name.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use crate::failure::Failure;
 use crate::trials::ReadTrial;
 use crate::zoo;
 
-/// Settings read from a file and checked.
+/// Reads and checks settings from a file.
 ///
 /// # Errors
-/// Names line and field of what is wrong.
+/// Returns an error that names line and field of each fault.
 pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     let text = zoo::text_of(path)?;
     let refuse = |line: Option<usize>, field: String, message: String| FileError {
@@ -24,6 +24,7 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     };
     let read: Result<Settings, _> = sistership_model::yaml::read(&text);
     let settings = read.map_err(|error| FileError::of_yaml(&path.display().to_string(), error))?;
+    // The check knows only the field; its line is the first that begins with the name.
     let line_of = |field: &str| {
         text.lines().position(|line| line.trim_start().starts_with(field)).map(|index| index + 1)
     };
@@ -32,11 +33,11 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     FileError::of_all(refused).map_or(Ok(settings), |refused| Err(refused.into()))
 }
 
-/// The trials to be kept out by their names: each may be given as the trial is called or as its
-/// file is written.
+/// Resolves the names of held-out trials: each may be given as the trial's name, as the file in the
+/// manifest, or as the path.
 ///
 /// # Errors
-/// Lists the trials there are.
+/// Returns an error that lists the known trials.
 pub fn held_out(names: &[String], read: &[ReadTrial]) -> Result<Vec<String>, Failure> {
     let one = |name: &String| {
         let is_meant = |read: &&ReadTrial| {

@@ -1,4 +1,4 @@
-//! A refinement in words and tables.
+//! Text output of a refinement.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use super::written::WrittenFiles;
 use super::{similar, worth};
 use crate::table::{TextTable, number, optional};
 
-/// Everything that came of a refinement.
+/// Formats a refinement as text.
 pub fn text(
     refinement: &Refinement,
     source: &Model,
@@ -25,6 +25,7 @@ pub fn text(
 ) -> String {
     let ranked = ranking
         .map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
+    // Another name than the source's: there is no single status to show.
     let from = match refinement.source == source.name {
         true => format!("{} ({})", source.name, worth(source.status)),
         false => refinement.source.clone(),
@@ -48,18 +49,18 @@ pub fn text(
     format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
 }
 
-/// What stands in the first line where the trials leave much open.
+/// Returns a warning for the first line if the trials leave a wide band.
 pub fn warning(refinement: &Refinement) -> String {
     let wide = refinement.manoeuvres.wide_band();
     wide.map_or_else(String::new, |wide| format!("WARNING: {wide}\n\n"))
 }
 
-/// Where the weights of the model's learned branch are.
+/// Names the file with the weights of the model's learned correction.
 pub fn weights(file: &Path) -> String {
     format!("with a learned branch, weights written to {}\n", file.display())
 }
 
-/// What was tried before the model was chosen.
+/// Formats the selection report.
 pub fn ladder(ladder: &Ladder) -> String {
     let mut table = TextTable::new([
         "source",
@@ -91,23 +92,25 @@ pub fn ladder(ladder: &Ladder) -> String {
         table.row(names.into_iter().chain(figures).chain(end));
     }
     let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
+    // Empty if no learned correction was considered.
     let branch = ladder.branch.as_ref().map_or("", |choice| &choice.reason);
     let reference = ladder.reference();
     format!("Tried: {what}\n{table}\n{reference}\n\nLearned branch: {branch}\n\n")
 }
 
-/// A law without roll leaves roll where it was: its errors would say nothing.
+/// True if the model has roll; without it the errors of roll say nothing.
 fn has_roll(model: &Model) -> bool {
     model.coefficients.keys().any(|name| name.starts_with("K_"))
 }
 
-/// The errors on manoeuvres left out, before and after.
+/// Formats the errors on held-out manoeuvres, before and after.
 pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
     let mut table = TextTable::new(["channel", "unit", "source", "refined", "change"]);
     for (name, unit, factor) in
         CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p"))
     {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
+            // `f64::MAX` marks the error of a simulation that left the physical range.
             errors.get(name).filter(|rmse| **rmse != f64::MAX).map(|rmse| rmse * factor)
         };
         let (before, after) = (of(&held_out.source), of(&held_out.refined));
@@ -155,7 +158,7 @@ fn coefficients(coefficients: &[CoefficientChange]) -> TextTable {
     table
 }
 
-/// Figures of the standard manoeuvres that are shown.
+/// Figures of the standard manoeuvres in the table.
 const SHOWN: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
 
 fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
@@ -163,11 +166,13 @@ fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
     let (source, refined) = (manoeuvres.source.figures(), manoeuvres.refined.figures());
     let shown =
         |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
+    // The longer list names every figure that one of the two models reaches.
     let all = if refined.len() < source.len() { &source } else { &refined };
     for Figure { name, unit, .. } in all.iter().filter(|figure| shown(&figure.name)) {
         let of = |figures: &[Figure]| {
             optional(figures.iter().find(|other| other.name == *name).and_then(|other| other.value))
         };
+        // Bands exist only with a posterior.
         let band = manoeuvres.bands.as_ref().and_then(|bands| bands.of(name));
         let edge = |of: fn(&Band) -> f64| optional(band.map(of));
         table.row([
@@ -204,10 +209,10 @@ fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
     lines.join("\n")
 }
 
-/// Groups of coefficients that are listed one by one; more would bury what stands beside them.
+/// Largest number of groups that are listed; more would hide the other remarks.
 const LISTED: usize = 5;
 
-/// What the trials cannot tell apart.
+/// Formats the groups of coefficients that the trials cannot distinguish.
 fn inseparable(groups: &[Vec<String>]) -> Vec<String> {
     let line =
         |group: &Vec<String>| format!("cannot be told apart by these trials: {}", group.join(", "));

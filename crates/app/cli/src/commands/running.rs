@@ -1,5 +1,5 @@
-//! What the commands that run until they are told to stop have in common: how they hold their jobs,
-//! and how they stop.
+//! Common parts of the commands that run until they are stopped: limits of workers and memory,
+//! leases, and the stop by a signal.
 
 use std::time::Duration;
 
@@ -12,15 +12,15 @@ use super::store::runtime;
 use crate::failure::Failure;
 use crate::output;
 
-/// Jobs worked on at a time when nobody says otherwise, and at most.
+/// Default and largest number of concurrent jobs.
 const WORKERS: u16 = 1;
 const MOST_WORKERS: u16 = 64;
 
-/// Memory that requests or jobs may be given, MB.
+/// Limits of the memory of requests or jobs, MB.
 const LEAST_MEMORY_MB: u64 = 32;
 const MOST_MEMORY_MB: u64 = 1 << 20;
 
-/// How workers hold their jobs.
+/// Arguments of the leases of workers on jobs.
 #[derive(Debug, Args)]
 pub struct LeaseArguments {
     /// Seconds without renewal of a lease after which a job passes to another worker, 0.5 to 3600
@@ -34,10 +34,10 @@ pub struct LeaseArguments {
 }
 
 impl LeaseArguments {
-    /// The leases that they and the file ask for.
+    /// Returns the leases of the flags and the file.
     ///
     /// # Errors
-    /// Names the setting that is out of bounds.
+    /// Returns an error that names the setting out of range.
     pub fn leases(&self, file: &ConfigFile) -> Result<Leases, Failure> {
         let mut leases = Leases::default();
         if let Some(lease_s) = self.lease_s.or(file.lease_s) {
@@ -60,10 +60,10 @@ fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duratio
     }
 }
 
-/// Memory in MB, as the flag or the file asks for, in bytes.
+/// Returns the memory of the flag (MB), the file (MB) or the default (bytes), in bytes.
 ///
 /// # Errors
-/// Names the setting that is out of bounds.
+/// Returns an error that names the setting out of range.
 pub fn memory(
     name: &str,
     given: Option<u64>,
@@ -79,10 +79,10 @@ pub fn memory(
     }
 }
 
-/// Jobs worked on at a time, as the flag or the file asks for.
+/// Returns the number of concurrent jobs of the flag, the file or the default.
 ///
 /// # Errors
-/// The number is out of bounds.
+/// Returns an error if the number is out of range.
 pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usize, Failure> {
     let workers = given.or(file.workers).unwrap_or(WORKERS);
     match (least..=MOST_WORKERS).contains(&workers) {
@@ -93,15 +93,14 @@ pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usiz
     }
 }
 
-/// Runs something until a signal tells it to stop, then `stop`s it; has ended within `bound` after
-/// the signal.
+/// Runs `start` until a signal arrives, then `stop`; ends within `bound` after the signal.
 ///
-/// The signal is heard on a thread of its own, and that thread ends the process (exit status 1)
-/// when `bound` has passed or a second signal comes: whatever holds the other threads holds
-/// neither. Computations that nothing waits for any more end with the process.
+/// Signals are received on a separate thread, which ends the process (exit status 1) when `bound`
+/// has passed or a second signal arrives, even if all other threads are blocked. Computations that
+/// nothing waits for any more end with the process.
 ///
 /// # Errors
-/// What `start` says, or that signals cannot be heard.
+/// Returns the error of `start`, or an error if signals cannot be received.
 pub fn run_until_stopped<T>(
     bound: Duration,
     start: impl Future<Output = Result<T, Failure>>,
@@ -112,6 +111,7 @@ pub fn run_until_stopped<T>(
     let ended = runtime.block_on(async {
         let unheard = || Failure::Refused("signals cannot be heard".into());
         let mut told = told;
+        // A signal during the start must end the command, too.
         let running = tokio::select! {
             running = start => running?,
             told = &mut told => return told.map_err(|_| unheard()),
@@ -120,21 +120,23 @@ pub fn run_until_stopped<T>(
         stop(running).await;
         Ok(())
     });
+    // Blocking threads may compute for minutes; the end of the process must not wait for them.
     runtime.shutdown_background();
     ended
 }
 
-/// Begins to hear signals, on a thread of its own; tells of the first.
+/// Starts to receive signals on a separate thread; the receiver gets the first one.
 fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     let (tell, told) = oneshot::channel();
     let none = |error| Failure::Refused(format!("no threads: {error}"));
     let runtime =
+        // A runtime of its own: the main one may have no free thread when a signal arrives.
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
     let mut signals = runtime.block_on(async { StopSignals::hear() })?;
     let heard = move || {
         runtime.block_on(async {
             signals.next().await;
-            // Nobody listens where starting has failed meanwhile.
+            // The receiver is gone if the start has failed meanwhile; the process is ending then.
             tell.send(()).ok();
             output::note("stopping; once more to stop at once");
             if tokio::time::timeout(bound, signals.next()).await.is_err() {
@@ -150,7 +152,7 @@ fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     Ok(told)
 }
 
-/// Ctrl-C, and SIGTERM where there is one.
+/// Signals that stop the process: Ctrl-C, and SIGTERM on Unix.
 struct StopSignals {
     #[cfg(unix)]
     interrupt: tokio::signal::unix::Signal,

@@ -1,12 +1,12 @@
-//! Sailing what a call asks for.
+//! Simulation of the requested manoeuvres.
 
 use sistership_simulation::manoeuvre::{
     ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag,
 };
 use sistership_simulation::{Ship, Trajectory};
 
-/// Sails the turns and zigzags asked for, or the standard set where that is; what diverges is a
-/// failure in the result.
+/// Simulates the requested turns and zigzags, or the standard set if `usual`; a manoeuvre that
+/// diverges is a failure in the result.
 pub fn sail(
     ship: &Ship,
     turns: &[f64],
@@ -15,6 +15,7 @@ pub fn sail(
     settings: &ManoeuvreSettings,
 ) -> (StandardManoeuvres, Vec<Trajectory>) {
     if usual {
+        // Tracks are written for a single requested manoeuvre only.
         return (standard(ship, settings), Vec::new());
     }
     let (mut sailed, mut tracks) = (StandardManoeuvres::default(), Vec::new());

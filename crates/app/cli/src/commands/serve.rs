@@ -18,7 +18,7 @@ use crate::output;
 use crate::values::address;
 use crate::zoo::text_of;
 
-/// Holds the API key.
+/// Environment variable with the API key.
 const KEY: &str = "SISTERSHIP_API_KEY";
 
 const EXAMPLES: &str = "\
@@ -36,7 +36,7 @@ then go back to the queue.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ServeArguments {
-    /// Address and port; port 0 takes a free one [default: 127.0.0.1:8080].
+    /// Address and port; port 0 selects a free one [default: 127.0.0.1:8080].
     #[arg(long, value_name = "ADDRESS:PORT", env = "SISTERSHIP_LISTEN", value_parser = address)]
     listen: Option<SocketAddr>,
     #[command(flatten)]
@@ -44,7 +44,7 @@ pub struct ServeArguments {
     /// File with the API key; overrides SISTERSHIP_API_KEY.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
     api_key_file: Option<PathBuf>,
-    /// Require everybody to sign in with name and password (`sistership users`) or a key.
+    /// Require users to sign in with name and password (`sistership users`) or a key.
     #[arg(long, env = "SISTERSHIP_ACCOUNTS")]
     accounts: bool,
     /// Number of concurrent jobs, 0 to 64; with 0 jobs are left to other processes on the same
@@ -68,11 +68,12 @@ pub struct ServeArguments {
     /// connections].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
     connections_per_address: Option<u32>,
-    /// A proxy, by its address or network such as 10.0.0.0/8, whose word for the address of a client
-    /// is taken; may be given several times. Limits and the audit then know the client's.
+    /// Trusted proxy, by address or network such as 10.0.0.0/8, whose header gives the address of a
+    /// client for limits and the audit; repeatable.
     #[arg(long, value_name = "CIDR", env = "SISTERSHIP_TRUSTED_PROXIES", value_delimiter = ',')]
     trusted_proxy: Vec<String>,
-    /// The header in which these write it, x-forwarded-for or forwarded [default: x-forwarded-for].
+    /// Header with the address of the client, x-forwarded-for or forwarded [default:
+    /// x-forwarded-for].
     #[arg(long, value_name = "NAME", env = "SISTERSHIP_FORWARDED_HEADER")]
     forwarded_header: Option<String>,
     /// Allow webhooks to addresses of private networks and over plain http; administrators set the
@@ -87,12 +88,13 @@ pub struct ServeArguments {
     log: LogArguments,
 }
 
-/// Runs the command until it is told to stop.
+/// Runs the command until it is stopped.
 ///
 /// # Errors
-/// The configuration is refused, or the store or the address cannot be used.
+/// Returns an error if the configuration is refused, or if the store or the address cannot be used.
 pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
     if !zoo.is_empty() {
+        // Folders of a zoo would make versions depend on files outside of the store.
         return Err(Failure::Call(
             "a server keeps its ships and laws in its database: send them to /v1/ships and \
              /v1/laws, not by --zoo; it diagnoses with the effects of the program"
@@ -101,6 +103,7 @@ pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
     }
     let file = serve.store.file()?;
     let config = config(serve, &file)?;
+    // After the configuration: its faults are printed as errors of the call, not logged.
     serve.log.begin(&file)?;
     let start = async {
         let running = Server::start(config.clone()).await.map_err(refused)?;
@@ -117,6 +120,7 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
     config.objects = place.objects;
     config.listen = serve.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN);
     config.database_url = place.database_url;
+    // Flags and environment variables come before the file.
     config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };
     config.leases = serve.lease.leases(file)?;
     config.limits = limits(serve, file)?;
@@ -134,11 +138,12 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
     config.accounts = serve.accounts || file.accounts.unwrap_or(false);
     config.openid =
         serve.openid.settings(&file.oidc).map_err(|error| Failure::Call(error.to_string()))?;
+    // Without a key or accounts only a loopback address is allowed.
     config.check().map_err(refused)?;
     Ok(config)
 }
 
-/// The proxies of the flags, else of the file.
+/// Returns the trusted proxies of the flags, else of the file.
 fn proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, Failure> {
     let named = match serve.trusted_proxy.is_empty() {
         true => file.trusted_proxies.as_deref().unwrap_or_default(),
@@ -155,8 +160,9 @@ fn proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, 
     })
 }
 
-/// Bounds on connections.
+/// Returns the limits of connections.
 fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
+    // Checked here, with the name of the setting; the server takes the numbers as they are.
     let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most)
         .contains(&value)
     {
@@ -166,6 +172,7 @@ fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> 
     let mut limits = Limits { webhooks_private: serve.webhooks_private, ..Limits::default() };
     if let Some(connections) = serve.connections.or(file.connections) {
         limits.connections = within("connections", connections, 16, 1 << 16)?;
+        // The default of one address follows the total, unless it is set below.
         limits.connections_per_address = limits.connections / 2;
     }
     if let Some(share) = serve.connections_per_address.or(file.connections_per_address) {
@@ -175,10 +182,10 @@ fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> 
     Ok(limits)
 }
 
-/// The key from the flag's file, from the environment, or from the file that the configuration
-/// names.
+/// Returns the key from the flag's file, the environment, or the file that the configuration names.
 fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, Failure> {
     if let Some(path) = &serve.api_key_file {
+        // A flag comes before the environment, the environment before the configuration file.
         return key_of(path).map(Some);
     }
     match std::env::var(KEY).ok().filter(|key| !key.is_empty()) {
@@ -192,13 +199,14 @@ fn key_of(file: &Path) -> Result<String, Failure> {
     if key.is_empty() { Err(about_file(file, "holds no API key")) } else { Ok(key) }
 }
 
-/// What can be seen in the call alone is a call that is wrong.
+/// Converts an error; one that concerns only the call gives the exit status of a wrong call.
 fn refused(error: StartError) -> Failure {
     match error {
         StartError::OpenWithoutKey(listen) => Failure::Call(format!(
             "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let \
              people sign in with --accounts, or listen on 127.0.0.1"
         )),
+        // Errors of the call, which the user can correct without looking at the data.
         StartError::Key | StartError::OpenIdWithoutAccounts => Failure::Call(error.to_string()),
         other => Failure::Refused(other.to_string()),
     }

@@ -1,4 +1,4 @@
-//! `sistership ships`: the ships of a store, found by what is known of them.
+//! `sistership ships`: search for ships of a store.
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -49,7 +49,7 @@ pub struct ShipsArguments {
     /// components.
     #[arg(long, value_name = "NAME", value_parser = definition, requires = "similar_to")]
     vector: Option<Definition>,
-    /// The most ships to print.
+    /// Largest number of ships to print.
     #[arg(long, value_name = "N", default_value = "100", value_parser = clap::value_parser!(u32).range(1..=1000))]
     limit: u32,
     /// Print one JSON document.
@@ -60,7 +60,8 @@ pub struct ShipsArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The store is not there or does not answer, or there is no ship to be similar to.
+/// Returns an error if the store does not exist or does not answer, or if the ship of --similar-to
+/// is unknown.
 pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
     let ranges: Vec<FactRange> = ships.particular.iter().chain(&ships.metric).cloned().collect();
     if ranges.len() > MAX_RANGES {
@@ -70,10 +71,12 @@ pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
     let search =
         Search { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
     let found = with_archive(&ships.store, async |archive: &Archive| {
+        // Without a server nothing else updates the index.
         search::catch_up(archive).await?;
         let page = Page::first(i64::from(ships.limit));
         search::ships(archive, &KnownVectors::default(), &search, &page).await
     })?;
+    // No paging on the command line: --limit is raised instead.
     let more = found.next.is_some();
     output::print(ships.json, &document(&found.items, more), || text(&found.items, more))
 }

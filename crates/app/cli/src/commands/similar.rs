@@ -1,4 +1,4 @@
-//! `sistership similar`: the ships of the zoo or of a store, ranked by similarity to a ship.
+//! `sistership similar`: ranking of the ships of the zoo or of a store by similarity to a ship.
 
 use std::path::PathBuf;
 
@@ -52,7 +52,7 @@ pub struct SimilarArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The ship or a trial is refused.
+/// Returns an error if the ship or a trial is refused.
 pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
     if similar_to.store.is_named() {
         return of_store(zoo, similar_to);
@@ -70,6 +70,7 @@ fn of_store(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
     let fitted = trials::trials(&read);
     let (target, similarity) = with_archive(&similar_to.store, async |archive| {
         let target = stored_ship(zoo, archive, &similar_to.ship).await?;
+        // A limited number of ships: a store may have thousands.
         let near = Catalogue::default().around(archive, &target, MOST).await.map_err(in_words)?;
         let models = SourceModels::read(archive, &near).await.map_err(in_words)?;
         let similarity = models.rank(&near, &target, similar_to.vector, &fitted);
@@ -79,10 +80,11 @@ fn of_store(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
     output::print(similar_to.json, &similarity, || text(&target, &similarity))
 }
 
-/// The ship of a store, else of a file.
+/// Returns the ship of a store, else of the zoo or a file.
 async fn stored_ship(zoo: &Zoo, archive: &Archive, name: &str) -> Result<Vessel, String> {
     match archive.store.ships().get(name).await {
         Ok(ship) => vessel(&ship.name, &ship.document).map_err(in_words),
+        // A ship that is not in the store may be compared with those that are.
         Err(StoreError::NotFound { .. }) => named::ship(zoo, name)
             .map(|vessel| Vessel::clone(&vessel))
             .map_err(|failure| failure.message().unwrap_or_default().to_owned()),
@@ -110,7 +112,7 @@ fn text(target: &Vessel, similarity: &Similarity) -> String {
     format!("{head}{vector}{}", ranking(&similarity.ranking))
 }
 
-/// The ranking as a table; each step of eligibility has a line of its own.
+/// Formats the ranking as a table; each reason of eligibility has its own line.
 pub fn ranking(ranking: &[RankedSource]) -> TextTable {
     let mut table = TextTable::new(["ship", "model", "correlation", "eligible", "why"]);
     for ranked in ranking {
@@ -122,6 +124,7 @@ pub fn ranking(ranking: &[RankedSource]) -> TextTable {
             .map_or("-", |model| model.split_once('/').map_or(model, |(_, name)| name));
         let eligible = if ranked.eligible { "yes" } else { "no" };
         let mut cells = [ranked.ship.as_str(), model, &correlation, eligible].map(str::to_owned);
+        // `take` leaves empty cells: only the first line of a ship names it.
         for reason in &ranked.reasons {
             table.row(std::mem::take(&mut cells).into_iter().chain([reason.clone()]));
         }

@@ -1,4 +1,4 @@
-//! `sistership simulate`: recorded trials against a model driven by their rudder and revolutions.
+//! `sistership simulate`: simulation of recorded trials with their rudder and revolutions.
 
 use std::path::PathBuf;
 
@@ -70,12 +70,13 @@ struct SimulateDocument<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// The model or a trial is refused, a channel is missing, or a simulation leaves the physical
-/// range.
+/// Returns an error if the model or a trial is refused, if a channel is missing, or if a simulation
+/// leaves the physical range.
 pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let asked = both(named::model(zoo, &simulate.model), trials::read(&simulate.trials));
     let ((model, law), read) = asked?;
     trials::remark_other_ship(&read, &model.ship);
+    // Output files are checked before the simulations.
     let files = promised(simulate, &read)?;
     let runs = simulate_all(simulate, &model, &law, &read)?;
     let simulated = written(runs, files, &law, &read)?;
@@ -110,13 +111,14 @@ fn simulate_all(
         method: simulate.method.into(),
         step_s: simulate.step_s,
     };
+    // One scale for each channel over all trials, so that errors are comparable.
     let deviations = standard_deviations(&trials::trials(read));
     let simulator = TrialSimulator { model, law, settings, deviations };
     note(&format!("simulating {} with {}", count(read.len(), "trial"), model.name));
     read.iter().map(|read| simulator.run(read)).collect()
 }
 
-/// Writes the states of each trial where files are promised.
+/// Writes the states of each trial, if an output folder is given.
 fn written(
     runs: Vec<(SimulatedTrial, Replay)>,
     files: Vec<folder::PromisedTrack>,
@@ -124,6 +126,7 @@ fn written(
     read: &[ReadTrial],
 ) -> Result<Vec<SimulatedTrial>, Failure> {
     let mut files = files.into_iter();
+    // There is either one file for each trial or none.
     let one = |((mut simulated, run), read): ((SimulatedTrial, Replay), &ReadTrial)| {
         if let Some(promised) = files.next() {
             promised.file.write(&track::csv(
@@ -155,6 +158,7 @@ fn text(
     document
         .trials
         .iter()
+        // For a single trial the total would repeat its row.
         .chain(document.all.as_ref().filter(|_| document.trials.len() > 1))
         .for_each(|trial| table.row(trial.cells()));
     let diverged = document.trials.iter().filter_map(|trial| {

@@ -1,4 +1,4 @@
-//! One recorded trial simulated by a model, and how far off it is.
+//! Simulation of a recorded trial, and its errors.
 
 use std::collections::BTreeMap;
 
@@ -16,31 +16,31 @@ use crate::output::note;
 use crate::table::{number, optional};
 use crate::trials::ReadTrial;
 
-/// The channels whose errors every document holds, null where they are unknown.
+/// Channels whose errors are in every document, null if unknown.
 const CHANNELS: [Channel; 6] =
     [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y];
 
 /// Errors of one trial as the `simulate` command prints them.
 #[derive(Debug, Clone, Serialize)]
 pub struct SimulatedTrial {
-    /// The file as it was given.
+    /// The file as given in the call or the manifest.
     pub file: String,
-    /// From the first to the last sample, s.
+    /// Time from the first to the last sample, s.
     pub duration_s: f64,
-    /// Root mean square errors by channel, SI; null where the trial lacks the channel or the
+    /// Root mean square errors by channel, SI; null if the trial lacks the channel or the
     /// simulation diverged.
     pub rmse: BTreeMap<&'static str, Option<f64>>,
-    /// Standardised mean squared error; null where the simulation diverged.
+    /// Standardised mean squared error; null if the simulation diverged.
     pub standardised_mse: Option<f64>,
-    /// Whether the simulation left the physical range.
+    /// True if the simulation left the physical range.
     pub diverged: bool,
-    /// When and why it did.
+    /// Time and reason of the divergence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// How the motion left what the model's trials covered, if it did.
+    /// Excursion outside the range covered by the model's trials, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<Excursion>,
-    /// What a learned branch counted for in the mean over the simulation, 0 to 1.
+    /// Mean share of the learned correction over the simulation, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch_share: Option<f64>,
     /// The file of simulated states.
@@ -50,13 +50,13 @@ pub struct SimulatedTrial {
     samples: usize,
 }
 
-/// What is the same for every trial.
+/// Common parts of the simulations of all trials.
 pub struct TrialSimulator<'a> {
     /// The model.
     pub model: &'a Model,
     /// Its law.
     pub law: &'a Law,
-    /// How to simulate.
+    /// Settings of the simulation.
     pub settings: ReplaySettings,
     /// Standard deviations of the channels over all trials.
     pub deviations: BTreeMap<Channel, f64>,
@@ -66,7 +66,7 @@ impl TrialSimulator<'_> {
     /// Simulates a trial.
     ///
     /// # Errors
-    /// The model cannot sail, or the trial lacks a channel.
+    /// Returns an error if the model cannot be simulated, or if the trial lacks a channel.
     pub fn run(&self, read: &ReadTrial) -> Result<(SimulatedTrial, Replay), Failure> {
         let ship = self.ship(&read.trial)?;
         let run = replay(&ship, &read.trial, &self.settings);
@@ -77,13 +77,14 @@ impl TrialSimulator<'_> {
         Ok((SimulatedTrial { branch_share: ship.branch_share(&run.track), ..errors }, run))
     }
 
-    /// The ship with a range that covers the speeds of a trial; its water depth is an input that
-    /// the replay reads.
+    /// Returns the ship with a physical range that covers the speeds of a trial; its water depth is
+    /// an input that the replay reads.
     fn ship(&self, trial: &Trial) -> Result<Ship, Failure> {
         let mut ship = commands::ready(self.model, self.law)?;
         let speeds = trial.channel(Channel::U).into_iter().flatten();
         ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
         match trial.depth_m.or_else(|| mean(trial.channel(Channel::Depth)?)) {
+            // The mean of a recorded depth is enough to see whether the ship floats.
             Some(depth_m) if commands::knows_depth(self.law) => {
                 commands::check_floats(self.model, depth_m)?
             }
@@ -103,6 +104,7 @@ impl TrialSimulator<'_> {
     fn errors(&self, file: &str, trial: &Trial, run: &Replay) -> SimulatedTrial {
         let error = SquaredError::of(trial, run);
         let reason = run.stopped.as_ref().map(ToString::to_string);
+        // Errors until a divergence would look better than those of a complete simulation.
         let known = |value: Option<f64>| value.filter(|_| reason.is_none());
         let rmse = CHANNELS.map(|channel| (channel.name(), known(error.channel_rmse(channel))));
         SimulatedTrial {
@@ -121,10 +123,11 @@ impl TrialSimulator<'_> {
 }
 
 impl SimulatedTrial {
-    /// A row of the table.
+    /// Formats the errors as cells of the table.
     pub fn cells(&self) -> Vec<String> {
         let value = |channel: Channel| {
             let scale =
+                // Angles are printed in degrees, JSON has SI.
                 if matches!(channel, Channel::R | Channel::Psi) { 1_f64.to_degrees() } else { 1.0 };
             optional(self.rmse.get(channel.name()).copied().flatten().map(|value| value * scale))
         };
@@ -135,12 +138,13 @@ impl SimulatedTrial {
     }
 }
 
-/// The errors over all samples of all trials; none where one diverged.
+/// Returns the errors over all samples of all trials; `None` if one diverged.
 pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
     if trials.iter().any(|trial| trial.diverged) {
         return None;
     }
     let mean = |of: &dyn Fn(&SimulatedTrial) -> Option<f64>| {
+        // Mean squares are weighted with the number of samples, as if all trials were one.
         let pairs = trials.iter().filter_map(|trial| Some((of(trial)?, trial.samples as f64)));
         let (sum, samples) = pairs.fold((0.0, 0.0), |(sum, all), (value, samples)| {
             (sum + value * samples, all + samples)

@@ -45,30 +45,30 @@ pub struct StoreArguments {
     objects_region: Option<String>,
 }
 
-/// Where the store is.
+/// Location of the store.
 #[derive(Debug)]
 pub struct StorePlace {
     /// The database's URL.
     pub database_url: String,
-    /// The folder of uploads under way, and of what has no other place.
+    /// Folder of unfinished uploads, and of files without another place.
     pub data_dir: PathBuf,
-    /// Where the samples are.
+    /// Place of the samples.
     pub objects: ObjectsPlace,
 }
 
 impl StoreArguments {
-    /// The configuration file, or an empty one where none is named.
+    /// Reads the configuration file; empty if none is named.
     ///
     /// # Errors
-    /// It does not read.
+    /// Returns an error if the file cannot be parsed.
     pub fn file(&self) -> Result<ConfigFile, Failure> {
         config_file::read(self.config.as_deref())
     }
 
-    /// Where they and the file say that the store is.
+    /// Returns the location of the store by the flags and the file.
     ///
     /// # Errors
-    /// The samples cannot be where they say.
+    /// Returns an error if the place of the samples is not valid.
     pub fn place(&self, file: &ConfigFile) -> Result<StorePlace, Failure> {
         let data_dir = self
             .data_dir
@@ -99,23 +99,23 @@ impl StoreArguments {
 }
 
 impl StoreArguments {
-    /// Whether somebody named a store, or there is one where it would be.
+    /// True if a store is named, or if one exists at the default place.
     pub fn is_there(&self) -> bool {
         let place = self.file().and_then(|file| self.place(&file));
         self.is_named() || place.is_ok_and(|place| place.must_exist().is_ok())
     }
 
-    /// Whether somebody named a store.
+    /// True if a store is named.
     pub fn is_named(&self) -> bool {
         self.database_url.is_some() || self.data_dir.is_some() || self.config.is_some()
     }
 }
 
 impl StorePlace {
-    /// Makes sure that there is a store: opening one that is not there would make it.
+    /// Checks that the store exists: opening a missing one would create it.
     ///
     /// # Errors
-    /// Names the file or folder that is missing.
+    /// Returns an error that names the missing file or folder.
     pub fn must_exist(&self) -> Result<(), Failure> {
         if let Some(file) = sqlite_file(&self.database_url).filter(|file| !file.is_file()) {
             return Err(Failure::Refused(format!(
@@ -133,17 +133,17 @@ impl StorePlace {
     }
 }
 
-/// The file of an SQLite URL; none for another database.
+/// Returns the file of an SQLite URL; `None` for another database.
 fn sqlite_file(url: &str) -> Option<&Path> {
     let rest = url.strip_prefix("sqlite:")?;
     let path = rest.strip_prefix("//").unwrap_or(rest);
     Some(Path::new(path.split_once('?').map_or(path, |(path, _)| path)))
 }
 
-/// Does something with a store that is there, and closes it.
+/// Runs `work` on an existing store, and closes it.
 ///
 /// # Errors
-/// The store is not there or cannot be opened, or what is done with it fails.
+/// Returns an error if the store does not exist or cannot be opened, or the error of `work`.
 pub fn with_archive<T, E: std::fmt::Display>(
     store: &StoreArguments,
     work: impl AsyncFnOnce(&Archive) -> Result<T, E>,
@@ -154,7 +154,9 @@ pub fn with_archive<T, E: std::fmt::Display>(
         let archive = Archive::open_at(&place.database_url, &place.objects).await;
         let archive =
             archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
+        // Every change is entered into the audit in the name of the command line.
         let done = Actor::command_line().acting(work(&archive)).await;
+        // Also after an error, so that the store is left closed.
         archive.store.close().await;
         done.map_err(|error| Failure::Refused(error.to_string()))
     })
@@ -163,15 +165,15 @@ pub fn with_archive<T, E: std::fmt::Display>(
 /// Runs asynchronous work to its end.
 ///
 /// # Errors
-/// The work's own, or that no threads can be had.
+/// Returns the error of the work, or an error if no threads can be started.
 pub fn block_on<T>(work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
     runtime()?.block_on(work)
 }
 
-/// Threads for asynchronous work.
+/// Creates the threads of asynchronous work.
 ///
 /// # Errors
-/// None can be had.
+/// Returns an error if no threads can be started.
 pub fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     runtime.map_err(|error| Failure::Refused(format!("no threads: {error}")))

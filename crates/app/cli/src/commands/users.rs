@@ -1,4 +1,4 @@
-//! `sistership users`: who signs in, and what they may do, on the archive's own files.
+//! `sistership users`: users and their roles, directly in the store.
 
 use std::path::{Path, PathBuf};
 
@@ -92,7 +92,7 @@ enum UsersAction {
         /// The user.
         name: String,
     },
-    /// Require that champions are approved by somebody other than their author.
+    /// Require that champions are approved by a person other than their author.
     SecondPerson {
         /// New value; by default the present value is shown.
         set: Option<Switch>,
@@ -105,7 +105,7 @@ enum Switch {
     Off,
 }
 
-/// Why what was asked is not done.
+/// Error of a command on users.
 #[derive(Debug, thiserror::Error)]
 enum UsersError {
     #[error(transparent)]
@@ -116,7 +116,7 @@ enum UsersError {
 
 type UsersResult = Result<(Value, String), UsersError>;
 
-/// A password as it is to be kept, and as it is to be told where nobody knows it yet.
+/// New password, given or generated; a generated one is printed.
 struct Chosen {
     text: String,
     drawn: bool,
@@ -125,10 +125,12 @@ struct Chosen {
 /// Runs the command.
 ///
 /// # Errors
-/// The call is wrong, the store is not there, or it says no.
+/// Returns an error if the call is wrong, if the store does not exist, or if it refuses the
+/// command.
 pub fn run(users: &UsersArguments) -> Result<(), Failure> {
     let chosen = match &users.what {
         UsersAction::Add { name, password_file, .. } => {
+            // Checked before the store is opened: a wrong name is a wrong call.
             check_name(name).map_err(|message| Failure::Call(format!("name: {message}")))?;
             Some(chosen(password_file.as_deref())?)
         }
@@ -145,6 +147,7 @@ fn chosen(file: Option<&Path>) -> Result<Chosen, Failure> {
         let text = secret().map_err(|error| Failure::Refused(error.to_string()))?;
         return Ok(Chosen { text, drawn: true });
     };
+    // Editors end a file with a newline, which is no part of the password.
     let text = text_of(path)?.trim_end_matches(['\r', '\n']).to_owned();
     check_password(&text).map_err(|message| crate::failure::about_file(path, message))?;
     Ok(Chosen { text, drawn: false })
@@ -154,6 +157,7 @@ async fn done(what: &UsersAction, chosen: Option<&Chosen>, archive: &Archive) ->
     let users = archive.store.users();
     match what {
         UsersAction::Add { name, title, roles, .. } => {
+            // Hashed before the row is written: the store never sees the password itself.
             let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;
             let title = title.as_deref().unwrap_or(name);
             users.create(name, title, hash.as_deref(), &rows(roles)).await?;
@@ -166,6 +170,7 @@ async fn done(what: &UsersAction, chosen: Option<&Chosen>, archive: &Archive) ->
         }
         UsersAction::Identity { name, identity } => {
             let pair = |pair: &[String]| (pair[0].clone(), pair[1].clone());
+            // An empty list removes the link to a provider.
             let those: Vec<_> = identity.chunks_exact(2).map(pair).collect();
             archive.store.identities().replace(name, &those).await?;
             told(name, "is known so by providers now", None)
@@ -181,8 +186,9 @@ async fn done(what: &UsersAction, chosen: Option<&Chosen>, archive: &Archive) ->
     }
 }
 
-/// What was done to a user; the password where it was drawn.
+/// Describes what was done to a user, with the password if it was generated.
 fn told(name: &str, what: &str, chosen: Option<&Chosen>) -> UsersResult {
+    // A given password is never printed.
     let drawn = chosen.filter(|chosen| chosen.drawn).map(|chosen| &chosen.text);
     let secret = drawn.map_or_else(String::new, |text| format!("; the password is {text}"));
     Ok((
@@ -201,7 +207,7 @@ async fn second_person(archive: &Archive, set: Option<Switch>) -> UsersResult {
     Ok((json!({ "second_person": on }), text.to_owned()))
 }
 
-/// Roles as they are kept.
+/// Converts roles to rows of the store.
 pub(super) fn rows(roles: &[Grant]) -> Vec<GrantRow> {
     let row = |grant: &Grant| {
         let (kind, name) = grant.scope.parts();
@@ -211,7 +217,7 @@ pub(super) fn rows(roles: &[Grant]) -> Vec<GrantRow> {
     roles.iter().map(row).collect()
 }
 
-/// Roles as they are written.
+/// Converts rows of the store to the text form of roles.
 pub(super) fn words(rows: &[GrantRow]) -> Vec<String> {
     let word = |row: &GrantRow| match row.scope_kind.as_str() {
         "server" => row.role.clone(),
@@ -226,6 +232,7 @@ async fn list(archive: &Archive) -> UsersResult {
     loop {
         let users = archive.store.users().list(&page).await?;
         for user in users.items {
+            // One query for each user: a store has few users.
             let roles = words(&archive.store.grants().of(&User::principal(&user.name)).await?);
             let state = if user.is_enabled() { "enabled" } else { "disabled" };
             table.row([user.name.clone(), user.title.clone(), roles.join(" "), state.to_owned()]);

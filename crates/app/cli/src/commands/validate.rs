@@ -1,4 +1,4 @@
-//! `sistership validate`: a model held against what its ship has sailed, by ITTC 7.5-02-06-03.
+//! `sistership validate`: validation of a model against trials of its ship, by ITTC 7.5-02-06-03.
 
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ pub struct ValidateArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The model, the ship or a trial is refused.
+/// Returns an error if the model, the ship or a trial is refused.
 pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let inputs: Vec<PathBuf> = [&asked.model, &asked.ship].map(PathBuf::from).to_vec();
@@ -61,8 +61,10 @@ pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
     let (((model, law), vessel), ((page, ()), read)) = both(model, given)?;
     let of_ship: Vec<TrialOfShip<'_>> = read
         .iter()
+        // The call asserts that the model was not fitted on these trials, as the help text says.
         .map(|read| TrialOfShip { name: &read.trial.name, trial: &read.trial, fitted: false })
         .collect();
+    // A model without posterior is validated without the uncertainty of its parameters.
     let drawn = draws(&model, sampling).unwrap_or_default();
     let done = validate(&vessel, &model, &law, &drawn, &of_ship).map_err(|e| refused(&e))?;
     if let Some(file) = page {

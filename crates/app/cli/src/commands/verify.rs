@@ -1,4 +1,4 @@
-//! `sistership verify`: a version derived again from its recipe.
+//! `sistership verify`: derivation of a version again from its recipe, and comparison of the bytes.
 
 use std::sync::Arc;
 
@@ -36,15 +36,17 @@ pub struct VerifyArguments {
 /// Runs the command.
 ///
 /// # Errors
-/// The store or the version is not there, or the version is not what its recipe gives.
+/// Returns an error if the store or the version does not exist, or if the version differs from what
+/// its recipe gives.
 pub fn run(verify: &VerifyArguments) -> Result<(), Failure> {
     let verification =
         with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
     output::print(verify.json, &verification, || text(&verification))?;
+    // The differences are in the output already; only the exit status is left.
     if verification.identical { Ok(()) } else { Err(Failure::Told) }
 }
 
-/// Why a version could not be derived again.
+/// Error of a version that cannot be derived again.
 #[derive(Debug, thiserror::Error)]
 #[error("{ship}/{number}: {error}")]
 struct VerifyError {

@@ -20,16 +20,16 @@ Any number of such processes may run beside `sistership serve` (which leaves all
 one of them at a time; when that one dies, its job goes to another after --lease-s. Stop it with
 Ctrl-C or SIGTERM: jobs under way get --drain-s to end and then go back to the queue.";
 
-/// Work on the jobs that servers queue, without serving.
+/// Run a worker for the jobs that servers have queued.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct WorkArguments {
     #[command(flatten)]
     store: StoreArguments,
-    /// Jobs worked on at a time, 1 to 64 [default: 1].
+    /// Number of concurrent jobs, 1 to 64 [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
     workers: Option<u16>,
-    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
+    /// Memory for all jobs together, MB, at least 32 [default: 1024].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
     job_memory_mb: Option<u64>,
     #[command(flatten)]
@@ -38,10 +38,10 @@ pub struct WorkArguments {
     log: LogArguments,
 }
 
-/// Runs the command until it is told to stop.
+/// Runs the command until it is stopped.
 ///
 /// # Errors
-/// The configuration is refused, or the store cannot be used.
+/// Returns an error if the configuration is refused, or if the store cannot be used.
 pub fn run(work: &WorkArguments) -> Result<(), Failure> {
     let file = work.store.file()?;
     let config = config(work, &file)?;
@@ -63,6 +63,7 @@ fn config(work: &WorkArguments, file: &ConfigFile) -> Result<Config, Failure> {
     let mut config = Config::new(place.data_dir);
     config.objects = place.objects;
     config.database_url = place.database_url;
+    // At least one: a process without workers would do nothing.
     config.workers = workers(work.workers, file, 1)?;
     config.limits.job_memory =
         memory("job_memory_mb", work.job_memory_mb, file.job_memory_mb, config.limits.job_memory)?;

@@ -1,4 +1,4 @@
-//! The files that a command writes beside what it prints.
+//! Files that a command writes in addition to its output.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::files::PromisedFile;
 use crate::trials::{self, ReadTrial};
 
-/// What was written.
+/// Files that were written.
 #[derive(Clone, Copy, Serialize)]
 pub struct WrittenFiles<'a> {
     /// The model.
@@ -20,28 +20,28 @@ pub struct WrittenFiles<'a> {
     pub report: Option<&'a Path>,
 }
 
-/// A file that is to be written, if one is asked for.
+/// Prepares an output file, if one is requested.
 ///
 /// # Errors
-/// It cannot be written, or is one of `inputs`.
+/// Returns an error if it cannot be written, or is one of `inputs`.
 pub fn promised(path: Option<&Path>, inputs: &[PathBuf]) -> Result<Option<PromisedFile>, Failure> {
     path.map(|path| PromisedFile::new(path, inputs)).transpose()
 }
 
-/// Refuses to write what was read: the files that a manifest lists are known only once it is read.
+/// Checks that no output is an input: the files of a manifest are known only after it was read.
 ///
 /// # Errors
-/// Names the file.
+/// Returns an error that names the file.
 pub fn guard(files: &WrittenFiles<'_>, read: &[ReadTrial]) -> Result<(), Failure> {
     let inputs = trials::inputs(read, &[]);
     let mut files = files.out.into_iter().chain(files.report);
     files.try_for_each(|path| PromisedFile::new(path, &inputs).map(|_| ()))
 }
 
-/// The model as a file, read back once to be sure that it is one; `how` says how it was made.
+/// Returns the model as YAML, which is parsed once as a check; `how` describes its method.
 ///
 /// # Errors
-/// It does not read back.
+/// Returns an error if it cannot be parsed again.
 pub fn model_file(zoo: &Zoo, model: &Model, how: &str) -> Result<String, Failure> {
     let text = serde_yaml::to_string(model)
         .map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;

@@ -1,4 +1,4 @@
-//! `sistership zoo`: what the zoo is worth, and the check of a ship that is to join it.
+//! `sistership zoo`: validation status of the zoo, and check of a ship that is to be added.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ enum ZooAction {
 /// Runs the command.
 ///
 /// # Errors
-/// A file is refused, by its reader or by physics.
+/// Returns an error if a file is refused, by its format or by physics.
 pub fn run(zoo: &Zoo, asked: &ZooArguments) -> Result<(), Failure> {
     match &asked.what {
         ZooAction::List { ships } => list(zoo, ships, asked.json),
@@ -129,8 +129,10 @@ fn add(
     page: Option<&std::path::Path>,
     json: bool,
 ) -> Result<(), Failure> {
+    // The page is written also for a refused ship: it says what to change.
     let page = page.map(|path| PromisedFile::new(path, &[file.to_owned()])).transpose()?;
     let vessel = named::vessel_file(zoo, file)?;
+    // A file that cannot be parsed never gets here; the review is about its content.
     let review = review(zoo, &vessel)?;
     if let Some(page) = page {
         page.write(sistership_report::contributed_ship(&vessel, &review).as_bytes())?;
@@ -151,7 +153,7 @@ fn add(
     }
 }
 
-/// The file as a vessel of a zoo of one's own; what stands there already is not replaced.
+/// Copies the file into a zoo folder; an existing file is not replaced.
 fn copied(
     file: &std::path::Path,
     zoo_folder: &std::path::Path,
@@ -161,6 +163,7 @@ fn copied(
     std::fs::create_dir_all(&vessels)
         .map_err(|error| about_file(&vessels, format!("cannot be made a folder: {error}")))?;
     let path = vessels.join(format!("{name}.yaml"));
+    // A vessel may have been edited in the zoo folder.
     if path.exists() {
         return Err(about_file(&path, "is there already; move it away first"));
     }

@@ -1,4 +1,4 @@
-//! The zoo and a contributed ship, for people.
+//! Text output of the zoo and of a contributed ship.
 
 use std::path::Path;
 
@@ -7,7 +7,8 @@ use sistership_report::numbers::hundredths;
 
 use crate::table::TextTable;
 
-/// Models with their status and manoeuvres, and the published trials that they are held against.
+/// Formats models with their status and manoeuvres, and the published trials they are compared
+/// with.
 pub fn listed(models: &[Appraisal]) -> String {
     format!("{}{}", table(models), trials(models))
 }
@@ -39,6 +40,7 @@ fn table(models: &[Appraisal]) -> String {
 fn trials(models: &[Appraisal]) -> String {
     let mut table =
         TextTable::new(["model", "published trial", "unit", "published", "sailed", "allowed", ""]);
+    // The table is omitted without published trials.
     let mut any = false;
     for model in models {
         for one in &model.comparisons {
@@ -61,7 +63,7 @@ fn trial(model: &Appraisal, one: &Comparison) -> [String; 7] {
     ]
 }
 
-/// What was found of a contributed ship.
+/// Formats the findings on a contributed ship.
 pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
     let mut text = format!("{}: {}\n\n{}", review.ship, review.title, listed(&review.models));
     for (severity, head) in
@@ -83,7 +85,7 @@ pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
     text
 }
 
-/// Ships with what their figures are taken from.
+/// Formats ships with the sources of their data.
 pub fn cited(graph: &[Dataset]) -> String {
     let one = |ship: &Dataset| {
         let works: String = ship.sources.iter().map(work).collect();
@@ -94,6 +96,7 @@ pub fn cited(graph: &[Dataset]) -> String {
 
 fn work(work: &Work) -> String {
     let url = work.url.as_ref().map_or(String::new(), |url| format!("\n    {url}"));
+    // A licence, else the terms of use, if one of them is known.
     let terms = work.license.as_deref().or(work.usage).unwrap_or("not known");
     format!("  {}: {}{url}\n    licence: {terms}\n", work.alternate_name, work.name)
 }

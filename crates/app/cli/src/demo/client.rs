@@ -1,4 +1,4 @@
-//! A client of the server's REST interface, as a user of it would write one.
+//! Client of the server's REST interface, as a user of it would write one.
 
 use reqwest::multipart::{Form, Part};
 use reqwest::{Client, RequestBuilder, Response};
@@ -6,30 +6,30 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 
-/// Speaks to one server.
+/// Client of one server.
 pub struct ApiClient {
     client: Client,
     url: String,
 }
 
 impl ApiClient {
-    /// Speaks to the server at a URL.
+    /// Creates a client of the server at a URL.
     pub fn new(url: String) -> Self {
         Self { client: Client::new(), url }
     }
 
-    /// The JSON under a path.
+    /// Returns the JSON of a path.
     ///
     /// # Errors
-    /// What the server refuses, in its own words.
+    /// Returns the server's message if it refuses the request.
     pub async fn get(&self, path: &str) -> Result<Value, Failure> {
         json(self.client.get(self.at(path))).await
     }
 
-    /// The text under a path, in a form.
+    /// Returns the text of a path in a media type.
     ///
     /// # Errors
-    /// As [`ApiClient::get`].
+    /// Same as [`ApiClient::get`].
     pub async fn text(&self, path: &str, accept: &str) -> Result<String, Failure> {
         let response = answered(self.client.get(self.at(path)).header("accept", accept)).await?;
         response.text().await.map_err(broken)
@@ -38,7 +38,7 @@ impl ApiClient {
     /// Sends YAML.
     ///
     /// # Errors
-    /// As [`ApiClient::get`].
+    /// Same as [`ApiClient::get`].
     pub async fn post_yaml(&self, path: &str, body: String) -> Result<Value, Failure> {
         json(self.client.post(self.at(path)).header("content-type", "application/yaml").body(body))
             .await
@@ -47,7 +47,7 @@ impl ApiClient {
     /// Sends JSON.
     ///
     /// # Errors
-    /// As [`ApiClient::get`].
+    /// Same as [`ApiClient::get`].
     pub async fn post_json(&self, path: &str, body: &Value) -> Result<Value, Failure> {
         json(self.client.post(self.at(path)).json(body)).await
     }
@@ -55,7 +55,7 @@ impl ApiClient {
     /// Uploads files with their manifest.
     ///
     /// # Errors
-    /// As [`ApiClient::get`].
+    /// Same as [`ApiClient::get`].
     pub async fn upload(
         &self,
         manifest: String,
@@ -68,10 +68,10 @@ impl ApiClient {
         json(self.client.post(self.at("/v1/trials")).multipart(form)).await
     }
 
-    /// Deletes what is under a path; it can be undone.
+    /// Deletes the resource of a path; this can be undone.
     ///
     /// # Errors
-    /// As [`ApiClient::get`].
+    /// Same as [`ApiClient::get`].
     pub async fn delete(&self, path: &str) -> Result<(), Failure> {
         answered(self.client.delete(self.at(path))).await.map(drop)
     }
@@ -85,12 +85,13 @@ async fn json(request: RequestBuilder) -> Result<Value, Failure> {
     answered(request).await?.json().await.map_err(broken)
 }
 
-/// The answer, or the problem that the server tells.
+/// Sends a request; returns the answer, or the problem reported by the server.
 async fn answered(request: RequestBuilder) -> Result<Response, Failure> {
     let response = request.send().await.map_err(broken)?;
     if response.status().is_success() {
         return Ok(response);
     }
+    // A refusal of the server is a problem document with a `detail`.
     let problem: Value = response.json().await.map_err(broken)?;
     Err(Failure::Refused(format!(
         "the server says: {}",

@@ -22,15 +22,15 @@ use crate::commands::store::block_on;
 use crate::failure::{Failure, about_file};
 use crate::output;
 
-/// The ship of the demonstration: particulars only, nobody has a model of it.
+/// Ship of the demonstration: particulars only, without a model.
 const SHIP: &str = include_str!("ship.yaml");
 const NAME: &str = "northern-star";
-/// Who sails the trials: a ship with roll, propeller and rudder of their own, by a law that no
-/// other ship of the zoo has.
+/// Ship that provides the trials: with roll, propeller and rudder, and a law that no other ship of
+/// the zoo has.
 const TRUTH: &str = "sr108";
 const SPEED_M_S: f64 = 10.47;
 const SEED: u64 = 1;
-/// What is sailed; the last two are kept out of fit and choice, to judge the model on.
+/// Manoeuvres of the trials; the last two are held out from fit and selection, to judge the model.
 const PROGRAMME: [TrialManoeuvre; 8] = [
     TrialManoeuvre::Zigzag(10.0, 10.0),
     TrialManoeuvre::Zigzag(-10.0, 5.0),
@@ -53,7 +53,7 @@ of the zoo first, so that no model of its law can be chosen.";
 #[derive(Debug, Args)]
 #[command(after_help = ABOUT)]
 pub struct DemoArguments {
-    /// Where the database, the samples and the report go; emptied first.
+    /// Folder for the database, the samples and the report; emptied first.
     #[arg(long, value_name = "FOLDER", default_value = "demo-out")]
     out: PathBuf,
 }
@@ -61,22 +61,25 @@ pub struct DemoArguments {
 /// Runs the demonstration.
 ///
 /// # Errors
-/// What the server refuses, or a file that cannot be written.
+/// Returns an error if the server refuses a request, or if a file cannot be written.
 pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
+    // Before the folder is emptied: a failure leaves an old demonstration as it is.
     let trials = sail(zoo)?;
     empty(&demo.out)?;
     block_on(async {
         let mut config = Config::new(demo.out.join("data"));
+        // A free port: another server may run on the default one.
         config.listen.set_port(0);
         let running =
             Server::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
         let told = tell(&running, &trials, &demo.out).await;
+        // Also after an error, so that the database is closed.
         running.stop().await;
         told
     })
 }
 
-/// The trials of the unknown ship.
+/// Simulates and records the trials of the unknown ship.
 fn sail(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
     output::note(
         "1/8  sailing the trials: SR108 with roll, by Son and Nomoto's law, and noisy instruments",
@@ -90,8 +93,9 @@ fn sail(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
         .map_err(|stopped| Failure::Refused(stopped.to_string()))
 }
 
-/// An old demonstration goes; a folder that holds anything else is left alone.
+/// Removes an old demonstration; a folder with any other file is refused.
 fn empty(folder: &Path) -> Result<(), Failure> {
+    // Checked for every entry before anything is removed.
     let ours = |name: &std::ffi::OsStr| name == "data" || name == "report.html";
     let failed = |error: std::io::Error| about_file(folder, error.to_string());
     std::fs::create_dir_all(folder).map_err(failed)?;
@@ -118,6 +122,7 @@ async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Fai
         running.url(),
         out.display()
     ));
+    // The ship of the trials must not be available as a source.
     api.delete(&format!("/v1/ships/{TRUTH}")).await?;
     output::note(
         "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the \
@@ -170,9 +175,10 @@ async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Asks for a refinement and follows its job.
+/// Requests a refinement and follows its job.
 async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
     let held_out: Vec<&str> =
+        // The last trials of the programme.
         trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
     let request = json!({ "ship": NAME, "source": "auto", "settings": { "held_out": held_out } });
     let queued = api.post_json("/v1/refinements", &request).await?;
@@ -181,6 +187,7 @@ async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
         "5/8  refinement job {id}; kept out to judge on: {}",
         held_out.join(", ")
     ));
+    // Each message of the job is printed once.
     let mut last = String::new();
     loop {
         let job = api.get(&format!("/v1/jobs/{id}")).await?;
@@ -202,7 +209,7 @@ async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
     }
 }
 
-/// Says which source was selected, and why others fell.
+/// Prints the selected source, and the reasons against the others.
 fn chosen(result: &Value) -> Result<Value, Failure> {
     let from = result["from"].as_str().unwrap_or_default();
     output::note(&format!("6/8  refined from {from}"));

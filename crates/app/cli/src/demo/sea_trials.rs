@@ -1,5 +1,5 @@
-//! Sea trials of a ship that only the sea knows: sailed by its own law, recorded with the noise of
-//! real instruments.
+//! Artificial sea trials: simulated with the ship's own law, recorded with the noise of real
+//! instruments.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub enum TrialManoeuvre {
 }
 
 impl TrialManoeuvre {
-    /// What people call it.
+    /// Name for people.
     pub fn name(self) -> String {
         match self {
             Self::Turn(rudder_deg) => format!("turn {rudder_deg:+}"),
@@ -42,14 +42,14 @@ impl TrialManoeuvre {
     }
 }
 
-/// How long each trial is recorded, s, and when the rudder is first executed.
+/// Recorded duration of each trial, s, and time of the first rudder execute, s.
 const DURATION_S: f64 = 650.0;
 const EXECUTE_S: f64 = 60.0;
-/// One sample of so many steps of 0.1 s: 2 Hz.
+/// Number of steps of 0.1 s for each sample: 2 Hz.
 const STRIDE: usize = 5;
 
-/// What is recorded, and the standard deviation of its instrument: differential GNSS, Doppler log,
-/// gyros, feedback units.
+/// Recorded channels, with the index in the state and the standard deviation of the instrument, SI:
+/// differential GNSS, Doppler log, gyros, feedback units.
 const INSTRUMENTS: [(Channel, usize, f64); 9] = [
     (Channel::X, at::X, 0.3),
     (Channel::Y, at::Y, 0.3),
@@ -63,19 +63,21 @@ const INSTRUMENTS: [(Channel, usize, f64); 9] = [
 ];
 const REVOLUTIONS_NOISE_RPS: f64 = 1e-3;
 
-/// Sails a programme and records it; the same seed gives the same noise.
+/// Simulates and records a programme; the same seed gives the same noise.
 ///
 /// # Errors
-/// Says when and why the ship left the physical range.
+/// Returns time and reason if the ship left the physical range.
 pub fn record(
     ship: &Ship,
     speed_m_s: f64,
     programme: &[TrialManoeuvre],
     seed: u64,
 ) -> Result<Vec<Trial>, Stopped> {
+    // One generator for all trials, in their order.
     let mut noise = ChaCha12Rng::seed_from_u64(seed);
     let settings = ManoeuvreSettings {
         speed_m_s: Some(speed_m_s),
+        // The duration of the settings begins with the rudder execute.
         duration_s: Some(DURATION_S - EXECUTE_S),
         run_in_s: EXECUTE_S,
         ..ManoeuvreSettings::default()

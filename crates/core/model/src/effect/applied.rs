@@ -1,4 +1,4 @@
-//! An effect as a model carries it.
+//! Effect of a model.
 
 use std::collections::BTreeMap;
 
@@ -9,27 +9,29 @@ use super::file::{ActsOn, FormFile};
 use super::form::Form;
 use crate::quantity::Quantity;
 
-/// An effect that a model carries: its definition and the values of its parameters.
+/// Effect of a model: its definition and the values of its parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AppliedEffect {
     /// The effect's name.
     pub name: String,
-    /// Where it acts.
+    /// The part of the model on which it acts.
     pub acts_on: ActsOn,
     /// Values of its parameters.
     pub parameters: BTreeMap<String, Quantity>,
-    /// The form as its file defines it, so that the model means the same wherever it is read.
+    /// The form as its file defines it, so that the model does not depend on the library of
+    /// effects.
     pub form: FormFile,
 }
 
 impl AppliedEffect {
-    /// The form with its formulas, and a value for each parameter.
+    /// Reads the form and checks that each parameter has a value.
     ///
     /// # Errors
-    /// The field at fault and why.
+    /// Returns the field at fault and the reason.
     pub fn checked(&self) -> Result<Form, (String, String)> {
         let form = Form::read(self.acts_on, &self.form)?;
+        // Every parameter of the form must have a finite value, and there must be no other.
         for name in form.parameters.keys() {
             if !self.parameters.get(name).is_some_and(|quantity| quantity.value.is_finite()) {
                 return Err((format!("parameters.{name}"), "give it a finite value".into()));

@@ -1,5 +1,5 @@
-//! Effects whose forces are affine in their parameters, as terms of the law: what fits coefficients
-//! then fits them too.
+//! Effects whose forces are affine in their parameters, as terms of the law, so that an estimator
+//! of coefficients also estimates these parameters.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -15,26 +15,26 @@ use crate::law::{Dressing, Law};
 use crate::quantity::Quantity;
 use sistership_formula::Expr;
 
-/// A model and its law with the parameters of all its effects among the coefficients.
+/// Model and law with the parameters of all its effects among the coefficients.
 #[derive(Debug, Clone)]
 pub struct AsTerms {
     /// The law.
     pub law: Law,
-    /// The model, without effects of its own.
+    /// The model, without effects.
     pub model: Model,
-    /// The model as it was.
+    /// The original model.
     of: Model,
-    /// Coefficients with the effect's place and the parameter that they stand for.
+    /// Coefficients with the index of the effect and the parameter that they represent.
     terms: Vec<(String, usize, String)>,
 }
 
 impl AsTerms {
-    /// A model whose effects do nothing but add forces, affine in parameters that each act on one
-    /// axis; none where an effect does otherwise, or where there is none. Each parameter is at the
-    /// mean of its prior, which is its source.
+    /// Converts a model whose effects only add forces, affine in parameters that each act on one
+    /// axis; `None` if an effect does otherwise, or if there is no effect. Each parameter has the
+    /// mean of its prior, which is also its source.
     ///
     /// # Errors
-    /// As [`Law::with_effects`].
+    /// The errors of [`Law::with_effects`].
     pub fn new(model: &Model, law: &Law) -> Result<Option<Self>, (String, String)> {
         let dressed = law.with_effects(model)?;
         let Dressing { accelerations, lags, bands, measures, .. } = &dressed.dressing;
@@ -42,6 +42,7 @@ impl AsTerms {
         {
             return Ok(None);
         }
+        // The effects become terms of the law, so that the bare model has none.
         let bare = Model { effects: Vec::new(), propulsion: None, ..model.clone() };
         let mut as_terms =
             Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
@@ -57,6 +58,7 @@ impl AsTerms {
     fn add(&mut self, place: usize, effect: &AppliedEffect, axis: Axis, parameters: &[String]) {
         let (still, terms) = Affine::new(&self.law, effect).taken_apart(axis, parameters);
         let Some(of_axis) = self.law.axes.get_mut(&axis) else { return };
+        // The force at zero parameters stays in the rest of the axis.
         of_axis.rest = still;
         for (parameter, term) in parameters.iter().zip(terms) {
             let factor = qualified(&effect.name, &effect.form.name, parameter);
@@ -72,7 +74,8 @@ impl AsTerms {
         }
     }
 
-    /// The model as it was, with what was fitted.
+    /// Returns the original model with fitted values of coefficients and of the parameters of
+    /// effects.
     pub fn fitted(&self, coefficients: &BTreeMap<String, Quantity>) -> Model {
         let mut model = self.of.clone();
         for (name, fitted) in coefficients {
@@ -89,15 +92,15 @@ impl AsTerms {
     }
 }
 
-/// Most numbers, names and operators of what is added to an axis, with the values that mention the
-/// effect written out.
+/// Largest number of numbers, names and operators of what is added to an axis, with the values that
+/// mention the effect substituted.
 const MAX_SIZE: usize = 20_000;
 
-/// An effect in a dressed law.
+/// Effect in a law that includes it.
 struct Affine<'a> {
     law: &'a Law,
     effect: &'a AppliedEffect,
-    /// Values that mention a parameter of the effect, themselves or through others.
+    /// Values that mention a parameter of the effect, directly or through other values.
     acting: BTreeSet<&'a str>,
 }
 
@@ -105,6 +108,7 @@ impl<'a> Affine<'a> {
     fn new(law: &'a Law, effect: &'a AppliedEffect) -> Self {
         let mut affine = Self { law, effect, acting: BTreeSet::new() };
         let mut known = HashMap::new();
+        // One map per parameter: the known dependences are those on that parameter.
         for parameter in effect.parameters.keys() {
             known.clear();
             for (name, value) in &law.values {
@@ -116,7 +120,7 @@ impl<'a> Affine<'a> {
         affine
     }
 
-    /// How large a formula is with the values that mention the effect written out.
+    /// Returns the size of a formula with the values that mention the effect substituted.
     fn written_out(&self, expr: &Expr, known: &mut HashMap<&'a str, usize>) -> usize {
         let Expr::Name(name) = expr else {
             let below = expr.children().into_iter().map(|child| self.written_out(child, known));
@@ -138,9 +142,10 @@ impl<'a> Affine<'a> {
         size
     }
 
-    /// The parameters that act on each axis; none where one acts on several, elsewhere, or not in
-    /// proportion.
+    /// Returns the parameters that act on each axis; `None` if one acts on several axes, elsewhere,
+    /// or not in proportion.
     fn by_axis(&self) -> Option<Vec<(Axis, Vec<String>)>> {
+        // Substitution may grow exponentially, so that the size is measured before it is done.
         let mut sizes = HashMap::new();
         if self.law.axes.values().any(|axis| self.written_out(&axis.rest, &mut sizes) > MAX_SIZE) {
             return None;
@@ -154,6 +159,7 @@ impl<'a> Affine<'a> {
                 .filter(|(_, axis)| self.depends_given(&axis.rest, &wanted, &mut known))
                 .map(|(axis, _)| *axis)
                 .collect();
+            // A parameter on several axes would need one coefficient for all of them.
             let [axis] = on[..] else { return None };
             (!self.acts_elsewhere(&wanted, &mut known)).then_some(axis)
         };
@@ -175,8 +181,8 @@ impl<'a> Affine<'a> {
         qualified(&self.effect.name, &self.effect.form.name, parameter)
     }
 
-    /// Whether a formula mentions a parameter by its whole name, itself or through values, each
-    /// looked at once.
+    /// Returns true if a formula mentions a parameter by its whole name, directly or through
+    /// values, each of which is examined once.
     fn depends_given(&self, expr: &Expr, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
         let Expr::Name(name) = expr else {
             return expr
@@ -198,7 +204,7 @@ impl<'a> Affine<'a> {
         depends
     }
 
-    /// Whether anything but what is added to the axes mentions a parameter.
+    /// Returns true if anything other than the forces added to the axes mentions a parameter.
     fn acts_elsewhere(&self, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
         let law = self.law;
         let of_axes = law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale]));
@@ -208,10 +214,11 @@ impl<'a> Affine<'a> {
         all.chain(law.kinematics.values()).any(|expr| self.depends_given(expr, wanted, known))
     }
 
-    /// What is added to an axis without the effect, and the term of each parameter.
+    /// Returns what is added to an axis without the effect, and the term of each parameter.
     fn taken_apart(&self, axis: Axis, parameters: &[String]) -> (Expr, Vec<Expr>) {
         let still = self.rest(axis, &|_| 0.0);
         let term = |own: &String| {
+            // An affine force: its slope is its value at one less that at zero.
             let unit = self.rest(axis, &|name| f64::from(u8::from(name == own)));
             let force = Expr::Subtract(Box::new(unit), Box::new(still.clone()));
             Expr::Divide(Box::new(force), Box::new(self.law.axes[&axis].scale.clone()))
@@ -220,7 +227,7 @@ impl<'a> Affine<'a> {
         (still, terms)
     }
 
-    /// What is added to an axis with numbers for the effect's parameters.
+    /// Returns what is added to an axis, with numbers for the effect's parameters.
     fn rest(&self, axis: Axis, number: &dyn Fn(&str) -> f64) -> Expr {
         self.with(&self.law.axes[&axis].rest, number)
     }
@@ -236,8 +243,8 @@ impl<'a> Affine<'a> {
         })
     }
 
-    /// Whether what is added to an axis is its value without the effect and a multiple of each
-    /// parameter, at a few points.
+    /// Returns true if, at a few points, what is added to an axis is its value without the effect
+    /// plus a multiple of each parameter.
     fn is_affine(&self, axis: Axis, parameters: &[String]) -> bool {
         let none = IndexMap::new();
         SEEDS.iter().all(|&seed| {
@@ -260,6 +267,7 @@ impl<'a> Affine<'a> {
             };
             let scale =
                 together.abs() + still.abs() + each.iter().map(|one| one.abs()).sum::<f64>();
+            // Affine: the joint effect of all parameters is the sum of their single effects.
             (together - still - each.iter().sum::<f64>()).abs() <= 1e-9 * scale
         })
     }

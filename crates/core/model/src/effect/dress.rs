@@ -1,5 +1,4 @@
-//! A law as effects change it: the same kind of thing, so that whatever takes a law takes a dressed
-//! one.
+//! Application of effects to a law. The result is a law, so that every consumer of laws accepts it.
 
 use super::form::Form;
 use crate::law::{Input, Law, Parameter, STATES};
@@ -7,27 +6,27 @@ use crate::particulars::{self, Particulars};
 use crate::trial::Channel;
 use sistership_formula::Expr;
 
-/// The name of an effect's parameter (or value) in a dressed law.
+/// Name of an effect's parameter (or value) in a law that includes the effect.
 pub fn qualified(effect: &str, form: &str, name: &str) -> String {
     format!("{effect}/{form}.{name}")
 }
 
-/// The input that carries a recorded channel which is a state of some laws.
+/// Name of the input for a recorded channel that is a state of some laws.
 fn recorded(channel: &str) -> String {
     format!("recorded.{channel}")
 }
 
-/// The channel that an input of a law is recorded in, if any can be.
+/// Returns the channel that records an input of a law, if any.
 pub fn input_channel(input: &str) -> Option<Channel> {
     Channel::by_name(input.strip_prefix("recorded.").unwrap_or(input))
 }
 
-/// The input of a dressed law that is the time since the start of the trial, s; effects call it
-/// `t`, which laws may use for the thrust deduction.
+/// The input for the time since the start of the trial, s; effects call it `t`, which laws may use
+/// for the thrust deduction.
 pub const TIME: &str = "recorded.t";
 
-/// A law with forms of effects, each at its absence, for a ship of these particulars; the speed is
-/// that at which the model's trials approach.
+/// Returns a law with forms of effects, each at its absence, for a ship of these particulars; the
+/// speed is the approach speed of the model's trials.
 pub fn dress(
     law: &Law,
     particulars: &Particulars,
@@ -35,8 +34,8 @@ pub fn dress(
     forms: &[(&str, &Form)],
 ) -> Law {
     let mut dressed = law.clone();
-    // What the law sees is changed before forces are added: an added force sees the ship as it
-    // moves over the ground.
+    // Effects on the inflow are applied before forces are added: an added force depends on the
+    // motion over the ground.
     let (inflow, others): (Vec<_>, Vec<_>) =
         forms.iter().partition(|(_, form)| !form.sees.is_empty());
     for (effect, form) in inflow.into_iter().chain(others) {
@@ -50,7 +49,7 @@ struct Dresser<'a> {
     effect: &'a str,
     form: &'a Form,
     particulars: &'a Particulars,
-    /// Of the approach; that of service stands in for it.
+    /// Approach speed; the service speed is the default.
     speed_m_s: Option<f64>,
     has_roll: bool,
 }
@@ -62,6 +61,7 @@ impl Dresser<'_> {
         for (name, expr) in &self.form.values {
             law.add_value(self.name(name), self.expr(expr));
         }
+        // The law uses the replacement, whose own formula uses the original name.
         for (name, expr) in &self.form.sees {
             let seen = format!("{}/{}.seen.{name}", self.effect, self.form.file.name);
             law.rename_in_forces(name, &seen);
@@ -102,6 +102,7 @@ impl Dresser<'_> {
                 is_approach_speed: false,
             };
             law.parameters.insert(self.name(name), known);
+            // The effect is absent until the values of a model are set.
             law.dressing.parameters.insert(self.name(name), parameter.absent);
         }
         for (name, expr) in &self.form.particulars {
@@ -109,8 +110,8 @@ impl Dresser<'_> {
         }
     }
 
-    /// Channels that the law does not take yet become inputs; where nobody records them they are
-    /// still: no wind, no roll, deep water.
+    /// Adds channels that the law does not use yet as inputs; their defaults mean no wind, no roll,
+    /// deep water.
     fn inputs(&self, law: &mut Law) {
         let mentioned = self
             .form
@@ -124,18 +125,20 @@ impl Dresser<'_> {
             } else {
                 channel.map(Channel::dimension)
             };
+            // States and positions are simulated: they are not inputs.
             let is_state =
                 STATES.iter().any(|(state, _)| *state == input) || input == "x" || input == "y";
             let (Some(dimension), false) = (dimension, is_state || law.inputs.contains_key(&input))
             else {
                 continue;
             };
+            // Infinite depth means deep water.
             let still = if channel == Some(Channel::Depth) { f64::INFINITY } else { 0.0 };
             law.inputs.insert(input, Input { dimension, default: Some(still) });
         }
     }
 
-    /// Roll is what was recorded where the law does not simulate it.
+    /// Name of an input; roll is a recorded input where the law does not simulate it.
     fn input(&self, name: &str) -> String {
         let is_recorded = name == "t" || !self.has_roll && (name == "phi" || name == "p");
         if is_recorded { recorded(name) } else { name.to_owned() }
@@ -151,6 +154,7 @@ impl Dresser<'_> {
 
     fn renamed(&self, name: &str) -> Option<Expr> {
         let form = self.form;
+        // The formula of a particular is used only if the ship does not state it.
         let stands_in = form.particulars.contains_key(name) && !self.particulars.contains_key(name);
         if name == "approach_speed_m_s" {
             let service = particulars::value(self.particulars, "service_speed_m_s");
@@ -163,8 +167,8 @@ impl Dresser<'_> {
 }
 
 impl Law {
-    /// Replaces a state or an input by another name in everything that makes forces; kinematics
-    /// stay.
+    /// Replaces a state or an input by another name in all formulas of forces; kinematics keep the
+    /// original name.
     pub(crate) fn rename_in_forces(&mut self, name: &str, by: &str) {
         let rename = |expr: &mut Expr| {
             *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())))

@@ -1,4 +1,4 @@
-//! The shape of an effect's YAML file.
+//! Structure of an effect's YAML file.
 
 use std::collections::BTreeMap;
 
@@ -18,39 +18,39 @@ pub struct EffectFile {
     pub kind: EffectKind,
     /// Name in the zoo: lower case, digits, hyphens.
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub title: String,
-    /// Where it acts.
+    /// The part of the model on which it acts.
     pub acts_on: ActsOn,
     /// Publications by key.
     pub sources: BTreeMap<String, Source>,
     /// A remark.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// How common it is, before any trial is looked at.
+    /// Prior odds of the effect, before any trial is considered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beforehand: Option<PriorOddsFile>,
-    /// The forms in which it may appear; each is tried on trials that have the channels it needs.
+    /// The forms in which it may appear; each is fitted to trials that have the channels it needs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub forms: Vec<FormFile>,
-    /// Instead of forms: terms that are searched for one by one.
+    /// Instead of forms: a grammar of terms that are searched one by one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grammar: Option<GrammarFile>,
 }
 
-/// Odds that new trials have an effect which the model lacks, against that they do not.
+/// Odds that new trials show an effect that the model lacks, against that they do not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PriorOddsFile {
-    /// In all forms together.
+    /// Odds of all forms together.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub odds: f64,
-    /// The same where trials record the cause, such as the wind: for forms that need such a
+    /// The same for trials that record the cause, such as the wind: for forms that need such a
     /// channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub odds_where_recorded: Option<f64>,
-    /// What they come from.
+    /// Basis of the odds.
     pub because: String,
 }
 
@@ -62,52 +62,53 @@ pub enum EffectKind {
     Effect,
 }
 
-/// Where an effect acts.
+/// The part of the model on which an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ActsOn {
     /// It adds forces and moments.
     Force,
-    /// It changes what the hull or an actuator sees.
+    /// It changes the inflow to the hull or an actuator.
     Inflow,
-    /// It changes what the instruments say.
+    /// It changes the readings of the instruments.
     Measurement,
 }
 
-/// One form of an effect as its file, and a model that carries it, write it.
+/// One form of an effect, as in its file and in a model that has it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormFile {
-    /// What tells it from the other forms of the effect, such as `measured`.
+    /// Name that distinguishes it from the other forms of the effect, such as `measured`.
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub meaning: String,
     /// Channels that every trial must have.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub needs: Vec<Channel>,
-    /// Channels of which no trial may have any: where they are recorded, another form is meant.
+    /// Channels of which no trial may have any: another form applies where they are recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unless: Vec<Channel>,
-    /// Whether the form is meant only for laws without roll.
+    /// True if the form is meant only for laws without roll.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub only_without_roll: bool,
-    /// Whether the form is tried as a change within a trial only: throughout, it is what
-    /// coefficients say.
+    /// True if the form is fitted only as a change within a trial: a constant one cannot be
+    /// distinguished from the coefficients.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub only_as_change: bool,
-    /// How far one author's form of it is from another's: root mean square of the difference by
-    /// that of the response, where the sizes suit each other best. Where absent, a few per cent.
+    /// Difference between forms of the effect by different authors: root mean square of the
+    /// difference relative to that of the response, with the best ratio of sizes. Default: a few
+    /// per cent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
     pub misfit: Option<f64>,
-    /// Particulars it uses, with what stands in where the ship does not state them.
+    /// Particulars it uses, with the formula that replaces one that the ship does not state.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub particulars: IndexMap<String, String>,
-    /// What is fitted.
+    /// Parameters that are fitted.
     #[schemars(with = "BTreeMap<String, EffectParameterFile>")]
     pub parameters: IndexMap<String, EffectParameterFile>,
-    /// What is reported besides the parameters, each a formula of them.
+    /// Figures that are reported besides the parameters, each a formula of them.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub reports: IndexMap<String, String>,
@@ -115,31 +116,30 @@ pub struct FormFile {
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub values: IndexMap<String, String>,
-    /// What the law sees in place of a state or an input.
+    /// Formulas that replace a state or an input in the law.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub sees: IndexMap<String, String>,
-    /// What is added to the accelerations that the law gives, m/s2 or rad/s2.
+    /// Additions to the accelerations of the law, m/s2 or rad/s2.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accelerates: BTreeMap<Axis, String>,
     /// Factors on coefficients of the law, by name; coefficients that the law does not have are
-    /// passed over.
+    /// ignored.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub coefficients: IndexMap<String, String>,
-    /// Inputs that reach the ship through a first-order lag, with its time constant, s.
+    /// Inputs that act through a first-order lag, with its time constant, s.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub lags: IndexMap<String, String>,
-    /// Inputs that the ship follows only where they leave a band about what it has, with half of
-    /// the band's width in the unit of the input.
+    /// Inputs with a dead band, with half of its width in the unit of the input.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub bands: IndexMap<String, String>,
-    /// Forces in N and moments in N m that are added.
+    /// Added forces in N and moments in N m.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub forces: BTreeMap<Axis, String>,
-    /// What an instrument says, as a formula of the true state.
+    /// Readings of an instrument, as a formula of the true state.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub measures: BTreeMap<Channel, String>,
 }
@@ -150,23 +150,23 @@ pub struct FormFile {
 pub struct EffectParameterFile {
     /// Its unit: SI and radians; `1` for a pure number.
     pub unit: String,
-    /// What it means.
+    /// Its meaning.
     pub meaning: String,
-    /// What is believed of it before any trial: a normal distribution.
+    /// Its prior before any trial: a normal distribution.
     pub prior: PriorFile,
-    /// The least and the greatest value that is believed at all.
+    /// Least and greatest value that is plausible.
     pub bounds: [f64; 2],
-    /// The value that stands for the absence of the effect.
+    /// The value that represents the absence of the effect.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub absent: f64,
-    /// Where a search begins, if not at its absence.
+    /// Initial value of a search; default: the absence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
-    /// Whether it is a coefficient of the form, in which authors differ by its prior, and no size
-    /// of the effect: trials that push all of these far out show something else.
+    /// True if it is a coefficient of the form, in which authors differ by its prior, not a size of
+    /// the effect: trials that move all of these far from their priors show something else.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub shape: bool,
-    /// What it becomes when the ship is mirrored port to starboard.
+    /// Its transformation when the ship is mirrored port to starboard.
     pub mirror: Mirror,
 }
 
@@ -185,31 +185,31 @@ pub struct PriorFile {
     pub deviation: f64,
 }
 
-/// What a parameter becomes when the ship is mirrored port to starboard.
+/// Transformation of a parameter when the ship is mirrored port to starboard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Mirror {
-    /// It stays.
+    /// It keeps its value.
     Same,
     /// It changes its sign.
     Opposite,
 }
 
-/// Terms that are searched for one by one: products of factors, each one a form with a single
+/// Terms that are searched one by one: products of factors, each one a form with a single
 /// parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrammarFile {
-    /// What the factors stand for, each a dimensionless formula.
+    /// Meaning of the factors, each a dimensionless formula.
     #[schemars(with = "BTreeMap<String, String>")]
     pub factors: IndexMap<String, String>,
-    /// Factors of which the absolute value may follow, as in `v|v|`.
+    /// Factors whose absolute value may follow, as in `v|v|`.
     #[serde(default)]
     pub absolute: Vec<String>,
-    /// Most factors in a term.
+    /// Largest number of factors in a term.
     pub order: usize,
-    /// Force in N (moment in N m) of a term with coefficient and factors of one.
+    /// Force in N (moment in N m) of a term with a coefficient and factors of one.
     pub scales: BTreeMap<Axis, String>,
-    /// Standard deviation of a coefficient's prior, by axis.
+    /// Standard deviation of the prior of a coefficient, by axis.
     pub deviations: BTreeMap<Axis, f64>,
 }

@@ -1,4 +1,4 @@
-//! A form of an effect: its formulas, read and checked.
+//! Form of an effect, with parsed and checked formulas.
 
 use std::collections::BTreeMap;
 
@@ -10,33 +10,33 @@ use crate::trial::Channel;
 use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
 
-/// One form of an effect, read and checked. Formulas mention states, inputs, particulars, the
-/// form's parameters and values by their plain names.
+/// One form of an effect, read and checked. Formulas use the plain names of states, inputs,
+/// particulars, and of the form's parameters and values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
-    /// As the file writes it: what a model that carries the effect keeps.
+    /// The form as its file writes it, which a model with the effect keeps.
     pub file: FormFile,
-    /// What stands in for particulars that the ship does not state.
+    /// Formulas that replace particulars which the ship does not state.
     pub particulars: IndexMap<String, Expr>,
-    /// What is fitted.
+    /// Parameters that are fitted.
     pub parameters: IndexMap<String, EffectParameter>,
-    /// What is reported besides the parameters.
+    /// Figures that are reported besides the parameters.
     pub reports: IndexMap<String, Report>,
     /// Intermediate values.
     pub values: IndexMap<String, Expr>,
-    /// What the law sees in place of a state or an input.
+    /// Formulas that replace a state or an input in the law.
     pub sees: IndexMap<String, Expr>,
-    /// What is added to the accelerations.
+    /// Additions to the accelerations.
     pub accelerates: BTreeMap<Axis, Expr>,
     /// Factors on coefficients.
     pub coefficients: IndexMap<String, Expr>,
-    /// Time constants of inputs that reach the ship through a lag, s.
+    /// Time constants of inputs with a lag, s.
     pub lags: IndexMap<String, Expr>,
-    /// Half widths of the bands that inputs must leave before the ship follows them.
+    /// Half widths of the dead bands of inputs.
     pub bands: IndexMap<String, Expr>,
-    /// Forces and moments that are added.
+    /// Added forces and moments.
     pub forces: BTreeMap<Axis, Expr>,
-    /// What instruments say of the true state.
+    /// Readings of instruments as formulas of the true state.
     pub measures: BTreeMap<Channel, Expr>,
 }
 
@@ -49,29 +49,29 @@ pub struct EffectParameter {
     pub prior_mean: f64,
     /// Standard deviation of its prior.
     pub prior_deviation: f64,
-    /// The least and the greatest value that is believed at all.
+    /// Least and greatest value that is plausible.
     pub bounds: [f64; 2],
-    /// The value that stands for the absence of the effect.
+    /// The value that represents the absence of the effect.
     pub absent: f64,
-    /// Where a search begins.
+    /// Initial value of a search.
     pub start: f64,
-    /// Whether it is a coefficient of the form, and no size of the effect.
+    /// True for a coefficient of the form, which is not a size of the effect.
     pub shape: bool,
-    /// What it becomes in the mirror.
+    /// Its transformation in the mirror.
     pub mirror: Mirror,
 }
 
-/// A figure that follows from the parameters. A name that ends in `_deg` is converted from radians.
+/// Figure that follows from the parameters. A name that ends in `_deg` is converted from radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// The formula, in SI and radians.
+    /// Formula, in SI and radians.
     pub formula: Expr,
-    /// What its value is multiplied by to be in the unit of its name.
+    /// Factor that converts the value to the unit of the figure's name.
     pub factor: f64,
 }
 
 impl Form {
-    /// Every formula that acts.
+    /// Every formula that acts on the law or the instruments.
     pub(crate) fn formulas(&self) -> impl Iterator<Item = &Expr> {
         let named = self
             .values
@@ -86,8 +86,7 @@ impl Form {
             .chain(self.measures.values())
     }
 
-    /// A figure that follows from the parameters, in the unit of its name; `None` without a finite
-    /// value.
+    /// Value of a reported figure, in the unit of its name; `None` without a finite value.
     pub fn report(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         let report = self.reports.get(name)?;
         report

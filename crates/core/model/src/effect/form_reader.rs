@@ -1,4 +1,4 @@
-//! From a form as its file, or a model that carries it, writes it to a checked form.
+//! Reading of a form from a file, or from a model that has the effect, and its checks.
 
 use indexmap::IndexMap;
 
@@ -14,8 +14,8 @@ use crate::trial::Channel;
 use sistership_formula::Expr;
 use sistership_formula::units::{Dimension, Unit};
 
-/// Endings of reported names: dimension of the formula, and what converts its value from SI and
-/// radians.
+/// Endings of reported names: dimension of the formula, and the factor that converts its value from
+/// SI and radians.
 const REPORTED: [(&str, Dimension, f64); 8] = [
     ("_deg_s", Dimension::RATE, 180.0 / std::f64::consts::PI),
     ("_deg", Dimension::NONE, 180.0 / std::f64::consts::PI),
@@ -31,11 +31,13 @@ impl Form {
     /// Reads and checks a form.
     ///
     /// # Errors
-    /// The dotted field below the form that is wrong, and why: syntax, an unknown name, a unit, a
-    /// channel that `needs` lacks, a symmetry, or an effect that does not vanish at its absence.
+    /// Returns the dotted field at fault below the form, and the reason: syntax, an unknown name, a
+    /// unit, a channel missing in `needs`, a symmetry, or an effect that does not vanish at its
+    /// absence.
     pub fn read(acts_on: ActsOn, file: &FormFile) -> Result<Self, (String, String)> {
         check_actions(acts_on, file)?;
         check_counts(file)?;
+        // Order matters: values may use parameters, all other sections both.
         let mut scope = Scope::new(acts_on == ActsOn::Measurement);
         let parameters = parameters(&mut scope, file)?;
         let values = scope.values(&file.values)?;
@@ -85,13 +87,13 @@ impl Form {
     }
 }
 
-/// Parameters, values, particulars, reports and each way of acting.
+/// Largest number of parameters, values, particulars, reports, and entries of each way of acting.
 const MAX_NAMES: usize = 100;
 
-/// Levels of operators from a formula of a form down through its values.
+/// Largest depth of operators from a formula of a form down through its values.
 const MAX_DEPTH: usize = 128;
 
-/// Numbers, names and operators of all formulas of a form.
+/// Largest number of numbers, names and operators of all formulas of a form.
 const MAX_SIZE: usize = 5000;
 
 fn check_counts(file: &FormFile) -> Result<(), Refusal> {
@@ -124,8 +126,8 @@ impl Form {
     }
 }
 
-/// Each way of acting belongs to one place where effects act; what changes the flow about the hull
-/// may be given as the forces that it adds.
+/// Checks that each way of acting belongs to the part on which the effect acts; an effect on the
+/// flow about the hull may be given as the forces that it adds.
 fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
     let counts = [
         ("sees", ActsOn::Inflow, file.sees.len()),
@@ -181,6 +183,7 @@ fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
     if unit.to_si != 1.0 {
         return Err(format!("effects use SI and radians; `{}` is not of them", raw.unit));
     }
+    // By default a search starts at the absence of the effect.
     let start = raw.start.unwrap_or(raw.absent);
     let [low, high] = raw.bounds;
     if !(low.is_finite() && high.is_finite() && low < high) {

@@ -1,4 +1,4 @@
-//! Terms that are searched for one by one.
+//! Grammar of terms that are searched one by one.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,14 +17,14 @@ use crate::trial::Channel;
 use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
 
-/// Most factors of a grammar: to the fourth order they make some 5000 terms.
+/// Largest number of factors of a grammar: to the fourth order they make some 5000 terms.
 const MOST_FACTORS: usize = 16;
 
-/// A grammar, read and checked.
+/// Grammar, read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grammar {
     file: GrammarFile,
-    /// In the canonical order of factors.
+    /// Factors in canonical order.
     factors: Vec<Factor>,
     /// Forces and moments per unit of a term.
     scales: BTreeMap<Axis, Expr>,
@@ -41,7 +41,7 @@ impl Grammar {
             scope.formulas("scales", &file.scales, &dimension, false)?;
         check(file, &scales)?;
         let grammar = Self { factors: ordered(file, &factors)?, scales, file: file.clone() };
-        // Each term once, so that none that is searched for later can be refused.
+        // Each term is read once, so that none that is searched for later can be refused.
         grammar.terms().iter().try_for_each(|term| {
             let readable = |axis: &Axis| {
                 Form::read(ActsOn::Force, &term.form(&grammar.file, *axis)).map(|_| ())
@@ -51,9 +51,9 @@ impl Grammar {
         Ok(grammar)
     }
 
-    /// Every term that fits an axis: products of factors of which the parity is the axis', named
-    /// like coefficients, without those whose name is `known` and those that need a channel which
-    /// nobody `has`.
+    /// Returns every term that fits one of the axes: products of factors with the parity of the
+    /// axis, named like coefficients, without those whose name is `known` and those that need a
+    /// channel for which `has` returns false.
     pub fn forms(
         &self,
         axes: &[Axis],
@@ -74,8 +74,8 @@ impl Grammar {
         wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
     }
 
-    /// The constant of each axis, such as `Y_0`: what a ship that is not quite symmetric has. None
-    /// of those `known`.
+    /// Returns the constant of each axis, such as `Y_0`, for a ship that is not exactly symmetric;
+    /// none of those that are `known`.
     pub fn constants(&self, axes: &[Axis], known: &dyn Fn(&str) -> bool) -> Vec<Arc<Form>> {
         let constant = Term { factors: Vec::new(), bars: false };
         let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
@@ -92,7 +92,8 @@ impl Grammar {
         terms
     }
 
-    /// Products of `left` more factors from place `from` on, each with its variant in bars.
+    /// Adds products of `left` more factors from index `from` on, each also with its variant in
+    /// bars.
     fn add_products<'a>(
         &'a self,
         left: usize,
@@ -102,11 +103,13 @@ impl Grammar {
     ) {
         if left == 0 {
             terms.push(Term { factors: taken.clone(), bars: false });
+            // Only products of two factors have such a variant, as in `v|v|`.
             if taken.len() == 2 && taken[1].absolute {
                 terms.push(Term { factors: taken.clone(), bars: true });
             }
             return;
         }
+        // Each product is listed once: factors do not decrease, and may be repeated.
         for place in from..self.factors.len() {
             taken.push(&self.factors[place]);
             self.add_products(left - 1, place, taken, terms);
@@ -142,6 +145,7 @@ fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<
     let mut factors = Vec::new();
     for (symbol, formula) in formulas {
         let is = |odd| symmetry::has_parity(&IndexMap::new(), &IndexMap::new(), formula, odd);
+        // A factor must be either odd or even; one that is both is zero.
         if is(true) == is(false) {
             let message = "breaks the port/starboard symmetry: mirrored it should stay as it is, \
                 or change its sign";
@@ -150,8 +154,7 @@ fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<
         let (text, absolute) = (file.factors[symbol].clone(), file.absolute.contains(symbol));
         factors.push(Factor { symbol: symbol.clone(), text, odd: is(true), absolute });
     }
-    // A stable sort: factors that coefficients do not know of stay in the order of the file,
-    // behind.
+    // A stable sort: factors without a standard rank stay in the order of the file, at the end.
     let rank = |symbol: &str| {
         STANDARD_FACTORS.iter().position(|known| *known == symbol).unwrap_or(STANDARD_FACTORS.len())
     };

@@ -1,4 +1,4 @@
-//! Effects: what changes a law from outside, as data.
+//! Effects: changes of a law by external causes, as data.
 
 mod applied;
 mod as_terms;

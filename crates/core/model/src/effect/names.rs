@@ -1,4 +1,4 @@
-//! What formulas of effects may mention, and with what dimension.
+//! Names that formulas of effects may use, with their dimensions.
 
 use crate::law::STATES;
 use crate::particulars;
@@ -6,19 +6,18 @@ use crate::trial::Channel;
 use sistership_formula as formula;
 use sistership_formula::units::Dimension;
 
-/// The speed at which the model's trials approach, which belongs to the model and not to the ship.
+/// Approach speed of the model's trials, which belongs to the model and not to the ship.
 pub const APPROACH_SPEED: &str = "approach_speed_m_s";
 
-/// The time since the start of the trial, s; a dressed law may call it otherwise, as laws have
-/// parameters of that name.
+/// Time since the start of the trial, s; a law with effects may use another name, as laws may have
+/// a parameter `t`.
 const TIME: &str = "t";
 
-/// What the simulation itself always has; every other channel must be recorded and is listed in
+/// Names that a simulation always has; every other channel must be recorded and is listed in
 /// `needs`.
 const GIVEN: [&str; 7] = ["u", "v", "r", "psi", "delta", "x", "y"];
 
-/// The dimension of a name that every effect may use; `measuring` adds positions and rates of
-/// change.
+/// Dimension of a name that every effect may use; `measuring` adds positions and rates of change.
 pub fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
     let further = || if measuring { position_or_rate(name).or_else(|| log(name)) } else { None };
     seen(name)
@@ -29,13 +28,13 @@ pub fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
         .or_else(further)
 }
 
-/// The dimension of a name that reports and stand-ins for particulars may use: what does not change
+/// Dimension of a name that reports and replacements of particulars may use, which does not change
 /// during a trial.
 pub fn constant(name: &str) -> Option<Dimension> {
     formula::builtin(name).map(|(_, dimension)| dimension).or_else(|| particulars::dimension(name))
 }
 
-/// The dimension of a state or of a channel that a law may take.
+/// Dimension of a state or of a channel that a law may use.
 pub fn seen(name: &str) -> Option<Dimension> {
     state(name).or_else(|| input(name))
 }
@@ -44,15 +43,16 @@ fn state(name: &str) -> Option<Dimension> {
     STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension)
 }
 
-/// The dimension of a channel that reaches a law from outside.
+/// Dimension of a channel that is an input of a law.
 pub fn input(name: &str) -> Option<Dimension> {
+    // Positions and speeds through the water are results or readings, not inputs.
     let channel = Channel::by_name(name)?;
     let from_outside = state(name).is_none()
         && !matches!(channel, Channel::X | Channel::Y | Channel::UWater | Channel::VWater);
     from_outside.then(|| channel.dimension())
 }
 
-/// A speed through the water that is recorded beside that over the ground.
+/// Dimension of a speed through the water that is recorded in addition to that over the ground.
 fn log(name: &str) -> Option<Dimension> {
     matches!(name, "u_water" | "v_water").then_some(Dimension::SPEED)
 }
@@ -63,7 +63,7 @@ fn position_or_rate(name: &str) -> Option<Dimension> {
     position(name).or_else(|| name.strip_suffix("_dot").and_then(of_rate))
 }
 
-/// The channel that a trial must have recorded for the name to mean anything.
+/// Channel that a trial must have recorded for the name to be available.
 pub fn needed(name: &str) -> Option<Channel> {
     if GIVEN.contains(&name) { None } else { Channel::by_name(name) }
 }

@@ -1,5 +1,5 @@
-//! Formulas at a few ordinary points: any numbers will do, as long as different names have
-//! different ones.
+//! Evaluation of formulas at a few ordinary points; the numbers are arbitrary, but differ from name
+//! to name.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use super::file::Mirror;
 use super::form::EffectParameter;
 use sistership_formula::{self as formula, Expr};
 
-/// What changes its sign in the mirror.
+/// Names that change sign in the mirror.
 const ODD: [&str; 16] = [
     "v",
     "v_water",
@@ -30,10 +30,10 @@ const ODD: [&str; 16] = [
     "y_dot",
 ];
 
-/// Points at which formulas are tried.
+/// Seeds of the points at which formulas are evaluated.
 pub const SEEDS: [u32; 3] = [7, 31, 101];
 
-/// Whether the quantity changes its sign when the ship is mirrored port to starboard.
+/// Returns true if the quantity changes sign when the ship is mirrored port to starboard.
 pub fn is_odd(name: &str) -> bool {
     ODD.contains(&name)
 }
@@ -44,14 +44,14 @@ pub struct Probe<'a> {
     pub values: &'a IndexMap<String, Expr>,
     pub seed: u32,
     pub mirrored: bool,
-    /// Whether every parameter stands for the absence of the effect.
+    /// True if every parameter has the value of the effect's absence.
     pub absent: bool,
-    /// Values that were needed so far: each is found once.
+    /// Values that have been evaluated; each is evaluated once.
     pub known: RefCell<HashMap<String, Option<f64>>>,
 }
 
 impl Probe<'_> {
-    /// The value of a formula; `None` where it is not finite.
+    /// Value of a formula; `None` if it is not finite.
     pub fn of(&self, expr: &Expr) -> Option<f64> {
         expr.value(&|name| self.name(name)).filter(|value| value.is_finite())
     }
@@ -76,6 +76,7 @@ impl Probe<'_> {
     }
 
     fn parameter(&self, name: &str, parameter: &EffectParameter) -> f64 {
+        // Between 0.3 and 0.7 of the bounds, away from both ends.
         let [low, high] = parameter.bounds;
         let here = if self.absent {
             parameter.absent
@@ -90,11 +91,12 @@ impl Probe<'_> {
         if !is_odd(name) {
             return size;
         }
+        // At each point an odd quantity has an arbitrary sign, and in the mirror the opposite one.
         let to_port = (self.hash(name) / 997) % 2 == 1;
         if to_port == self.mirrored { size } else { -size }
     }
 
-    /// From 0 to 1.
+    /// Fraction from 0 to 1 that belongs to a name.
     fn fraction(&self, name: &str) -> f64 {
         f64::from(self.hash(name) % 997) / 997.0
     }

@@ -1,4 +1,4 @@
-//! An effect, from its file.
+//! Reading of an effect from its file.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,32 +10,32 @@ use crate::error::{Blame, FileError};
 use crate::name::check_slug;
 use crate::source::Source;
 
-/// An effect, read and checked.
+/// Effect, read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effect {
-    /// Its name in the zoo.
+    /// Name in the zoo.
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub title: String,
-    /// Where it acts.
+    /// The part of the model on which it acts.
     pub acts_on: ActsOn,
-    /// Where it was published.
+    /// Publications of the effect.
     pub sources: BTreeMap<String, Source>,
     /// A remark.
     pub note: Option<String>,
-    /// How common it is, before any trial is looked at.
+    /// Prior odds of the effect, before any trial is considered.
     pub beforehand: Option<PriorOddsFile>,
-    /// The forms in which it may appear; none where terms are searched for.
+    /// The forms in which it may appear; empty if terms are searched.
     pub forms: Vec<Arc<Form>>,
-    /// Terms that are searched for.
+    /// Grammar of the terms that are searched.
     pub grammar: Option<Grammar>,
 }
 
 impl Effect {
-    /// Reads and checks an effect; `file` is the name that errors give it.
+    /// Reads and checks an effect; `file` is its name in errors.
     ///
     /// # Errors
-    /// Names file, line and field of the first thing that is wrong: syntax, an unknown name, a
+    /// Returns an error with file, line and field of the first fault: syntax, an unknown name, a
     /// unit, a symmetry.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         read(file, text)
@@ -94,6 +94,7 @@ fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, S
         if raw[..index].iter().any(|earlier| earlier.name == form.name) {
             return Err((path, "is the name of two forms".into()));
         }
+        // The form reports fields below itself; errors need the path from the root.
         let below = |(field, message): (String, String)| {
             let field = if field.is_empty() { path.clone() } else { format!("{path}.{field}") };
             (field, message)

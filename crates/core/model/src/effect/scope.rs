@@ -1,4 +1,4 @@
-//! The names within one form, and formulas read against them.
+//! Names within one form, and formulas read against them.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,20 +11,21 @@ use crate::trial::Channel;
 use sistership_formula::units::Dimension;
 use sistership_formula::{self as formula, Expr};
 
-/// A field at fault and why.
+/// A field at fault and the reason.
 pub type Refusal = (String, String);
 
-/// What formulas of a form may mention so far.
+/// Names that formulas of a form may use so far.
 pub struct Scope {
     measuring: bool,
     parameters: BTreeMap<String, Dimension>,
     values: BTreeMap<String, Dimension>,
-    /// Channels that formulas mentioned, with the field that did.
+    /// Channels that formulas use, with the field that does.
     needed: RefCell<BTreeMap<Channel, String>>,
 }
 
 impl Scope {
-    /// Nothing but what every formula knows; `measuring` adds positions and rates of change.
+    /// Creates a scope with the names of every formula; `measuring` adds positions and rates of
+    /// change.
     pub fn new(measuring: bool) -> Self {
         Self {
             measuring,
@@ -45,7 +46,7 @@ impl Scope {
         Ok(())
     }
 
-    /// Values in their order, each from earlier ones.
+    /// Reads values in order, each from earlier ones.
     pub fn values(
         &mut self,
         raw: &IndexMap<String, String>,
@@ -61,8 +62,8 @@ impl Scope {
         Ok(values)
     }
 
-    /// A section of formulas, each of the dimension that `wanted` says; `constant` ones know
-    /// particulars only.
+    /// Reads a section of formulas, each of the dimension that `wanted` returns; if `constant` is
+    /// true, they may use particulars only.
     pub fn formulas<'a, K, M>(
         &self,
         section: &str,
@@ -84,7 +85,7 @@ impl Scope {
         raw.into_iter().map(one).collect()
     }
 
-    /// A formula of parameters and particulars.
+    /// Reads a formula of parameters and particulars.
     pub fn constant(
         &self,
         field: &str,
@@ -96,8 +97,8 @@ impl Scope {
         })
     }
 
-    /// Channels that formulas use must be listed, so that the form is tried only where they were
-    /// recorded.
+    /// Checks that the channels that formulas use are listed, so that the form is fitted only to
+    /// trials that recorded them.
     pub fn check_needs(&self, listed: &[Channel]) -> Result<(), Refusal> {
         match self.needed.borrow().iter().find(|(channel, _)| !listed.contains(channel)) {
             Some((channel, field)) => {
@@ -113,6 +114,7 @@ impl Scope {
     }
 
     fn check_name(&self, field: &str, name: &str) -> Result<(), Refusal> {
+        // The text must be parsed as a single name, not as a number or a call.
         if formula::parse(name) != Ok(Expr::Name(name.to_owned())) {
             return Err((field.to_owned(), "is not a name that formulas can use".into()));
         }
@@ -134,6 +136,7 @@ impl Scope {
     ) -> Result<Expr, Refusal> {
         let (expr, found) = self.read(field, text, known)?;
         match wanted {
+            // A literal zero fits every dimension.
             Some(wanted) if wanted != found && expr != Expr::Number(0.0) => Err((
                 field.to_owned(),
                 format!("`{text}` has the dimension {found}; {wanted} is needed"),

@@ -8,8 +8,8 @@ use super::form::{EffectParameter, Form};
 use super::probe::{Probe, SEEDS, is_odd};
 use sistership_formula::Expr;
 
-/// A formula that acts: its field, whether it is odd in the mirror, and what it is while the effect
-/// is absent.
+/// Formula that acts: its field, its parity in the mirror, and its value while the effect is
+/// absent.
 struct Action<'a> {
     field: String,
     formula: &'a Expr,
@@ -17,8 +17,8 @@ struct Action<'a> {
     absent: Expr,
 }
 
-/// Mirrored motion with mirrored parameters must give mirrored results, and an absent effect must
-/// do nothing.
+/// Checks that mirrored motion with mirrored parameters gives mirrored results, and that an absent
+/// effect does nothing.
 pub fn check(form: &Form) -> Result<(), (String, String)> {
     for action in actions(form) {
         let Action { field, formula, .. } = &action;
@@ -36,6 +36,7 @@ fn actions(form: &Form) -> Vec<Action<'_>> {
     let mut add = |section: &str, key: &str, formula, odd, absent| {
         actions.push(Action { field: format!("{section}.{key}"), formula, odd, absent });
     };
+    // A replaced state or a reading without the effect is the quantity itself.
     let itself = |name: &str| Expr::Name(name.to_owned());
     form.sees.iter().for_each(|(name, e)| add("sees", name, e, is_odd(name), itself(name)));
     form.measures
@@ -47,6 +48,7 @@ fn actions(form: &Form) -> Vec<Action<'_>> {
     form.accelerates.iter().for_each(|(axis, e)| {
         add("accelerates", &axis.to_string(), e, axis.is_odd(), Expr::Number(0.0))
     });
+    // Without the effect, factors on coefficients are 1, lags and bands 0.
     form.coefficients
         .iter()
         .for_each(|(name, e)| add("coefficients", name, e, false, Expr::Number(1.0)));
@@ -70,6 +72,7 @@ fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
         let absent = probe(form, seed, true);
         let present = probe(form, seed, false).of(action.formula).map_or(0.0, f64::abs);
         let pair = absent.of(action.formula).zip(absent.of(&action.absent));
+        // Rounding errors scale with the present effect, and so does the tolerance.
         pair.is_some_and(|(found, wanted)| {
             (found - wanted).abs() <= 1e-9 * (wanted.abs() + present)
         })
@@ -98,7 +101,7 @@ fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
     }
 }
 
-/// What is wrong with a formula that is not as odd (or even) as it should be.
+/// Message for a formula that is not odd (or even) as it should be.
 pub fn broken(odd: bool) -> String {
     let wanted = if odd { "change its sign" } else { "stay as it is" };
     format!(
@@ -107,7 +110,8 @@ pub fn broken(odd: bool) -> String {
     )
 }
 
-/// Whether the formula changes its sign (`odd`) or stays as it is in the mirror.
+/// Returns true if the formula changes its sign (`odd`) or keeps its value (not `odd`) in the
+/// mirror.
 pub fn has_parity(
     parameters: &IndexMap<String, EffectParameter>,
     values: &IndexMap<String, Expr>,

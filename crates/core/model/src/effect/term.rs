@@ -1,4 +1,4 @@
-//! One term that a grammar spells, and its form.
+//! One term of a grammar, and its form.
 
 use std::collections::BTreeMap;
 
@@ -10,32 +10,33 @@ use crate::coefficient::Axis;
 use crate::trial::Channel;
 use sistership_formula::{self as formula, Expr};
 
-/// What a factor of a coefficient's name stands for.
+/// Meaning of a factor of a coefficient's name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
     pub symbol: String,
     pub text: String,
-    /// Whether it changes its sign in the mirror.
+    /// True if it changes its sign in the mirror.
     pub odd: bool,
     pub absolute: bool,
 }
 
-/// Factors of a term, the last perhaps as its absolute value.
+/// Factors of a term, of which the last may be an absolute value.
 pub struct Term<'a> {
     pub factors: Vec<&'a Factor>,
     pub bars: bool,
 }
 
 impl Term<'_> {
-    /// Whether its parity is that of the axis.
+    /// Returns true if its parity is that of the axis.
     pub fn fits(&self, axis: Axis) -> bool {
         let odd = self.factors.iter().filter(|factor| factor.odd).count();
+        // Bars make the last factor even.
         let in_bars = self.factors.last().filter(|factor| self.bars && factor.odd).map_or(0, |_| 1);
         ((odd - in_bars) % 2 == 1) == axis.is_odd()
     }
 
-    /// Like a coefficient; formulas cannot mention bars, so that the parameter has another mark in
-    /// their place.
+    /// Name of the term, like that of a coefficient. Formulas cannot contain bars, so that the
+    /// parameter has another mark in their place.
     fn name(&self, axis: Axis, bar: &str) -> String {
         let Some(last) = self.factors.len().checked_sub(1) else { return format!("{axis}_0") };
         let symbol = |(place, factor): (usize, &&Factor)| {
@@ -60,8 +61,9 @@ impl Term<'_> {
         self.factors.iter().enumerate().map(one).collect::<Vec<_>>().join("*")
     }
 
-    /// The form of the term on an axis.
+    /// Form of the term on an axis.
     pub fn form(&self, grammar: &GrammarFile, axis: Axis) -> FormFile {
+        // A trailing mark is dropped from the name of the parameter.
         let (name, parameter) =
             (self.name(axis, "|"), self.name(axis, "_abs_").trim_end_matches("_abs_").to_owned());
         let force = format!("{parameter}*({})*{}", grammar.scales[&axis], self.product());
@@ -91,7 +93,7 @@ impl Term<'_> {
     }
 }
 
-/// The channels that a formula uses and that trials may lack.
+/// Channels that a formula uses and that trials may lack.
 fn needs(formula: &str) -> Vec<Channel> {
     let parsed = formula::parse(formula);
     let mut needs: Vec<Channel> =

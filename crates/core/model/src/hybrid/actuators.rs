@@ -1,33 +1,34 @@
-//! From actuators to the inputs of the law and the variables of the expansion: Miyauchi 2024, Eqs.
+//! Inputs of the law and variables of the expansion for the declared actuators: Miyauchi 2024, Eqs.
 //! 5 and 6.
 
 use super::file::{ActuatorFile, ActuatorKind, AngleFeature, Coupling, HybridFile, Symmetry};
 use crate::coefficient::{Axis, STANDARD_FACTORS};
 use crate::law::STATES;
 
-/// A variable of the expansion.
+/// Variable of the expansion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
-    /// How a coefficient's name spells it.
+    /// Symbol in the names of coefficients.
     pub symbol: String,
-    /// What it is, in SI.
+    /// Formula of its value, SI.
     pub formula: String,
-    /// What makes it a pure number; nothing where it is one.
+    /// Unit by which it is divided to be a pure number.
     pub unit: Unit,
-    /// Whether it changes sign in the mirror.
+    /// True if it changes sign in the mirror.
     pub odd: bool,
-    /// Whether it is a sine or a cosine.
+    /// True for a sine or a cosine.
     pub trigonometric: bool,
-    /// The actuator it belongs to, and how far that reaches; none for the ship's motion.
+    /// Actuator to which it belongs, and its couplings; `None` for the ship's motion.
     pub actuator: Option<Reach>,
-    /// The symbol it exchanges places with in the mirror; its own where it stands alone.
+    /// Symbol of the variable with which it exchanges places in the mirror; its own if it has no
+    /// twin.
     pub twin: String,
 }
 
-/// What makes a variable a pure number.
+/// Unit of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// It is one.
+    /// A pure number.
     Number,
     /// A velocity.
     Speed,
@@ -35,29 +36,29 @@ pub enum Unit {
     Rate,
 }
 
-/// An actuator as its variables know it.
+/// Couplings of an actuator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reach {
     /// Its name.
     pub name: String,
-    /// With what its terms are multiplied.
+    /// Variables by which its terms are multiplied.
     pub couples: Coupling,
-    /// Axes on which it acts; all of them where absent.
+    /// Axes on which it acts; default: all.
     pub axes: Option<Vec<Axis>>,
 }
 
-/// An input of the law.
+/// Input of the law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActuatorInput {
     /// Its name.
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
-    /// What it becomes in the mirror; nothing for what every law knows.
+    /// Its transformation in the mirror; `None` for an input that every law has.
     pub mirror: Option<String>,
 }
 
-/// The inputs in their order, and the variables in the order of coefficients' names.
+/// Returns the inputs in order, and the variables in the order of coefficients' names.
 pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Variable>) {
     let mut inputs = Vec::new();
     let mut variables = motion();
@@ -76,7 +77,7 @@ pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Varia
     (inputs, variables)
 }
 
-/// Suffixes of the sides on which an actuator has a twin.
+/// Returns the suffixes of the sides on which an actuator has a twin.
 pub fn sides(actuator: &ActuatorFile) -> &'static [&'static str] {
     if actuator.pair || actuator.kind == ActuatorKind::Vectwin { &["_s", "_p"] } else { &[""] }
 }
@@ -103,7 +104,7 @@ struct One<'a> {
 }
 
 impl One<'_> {
-    /// The input it has with a prefix, and the one it becomes in the mirror.
+    /// Returns its input with a prefix, and the input that it becomes in the mirror.
     fn input(&self, prefix: &str) -> (String, String) {
         let other = match self.side {
             "_s" => "_p",
@@ -127,7 +128,7 @@ impl One<'_> {
         let (name, other) = self.input(prefix);
         let known = STATES.iter().any(|(state, _)| *state == name) || name == "delta";
         let becomes = if self.exchanges { other } else { name.clone() };
-        // One entry serves both sides of a pair.
+        // One mirror entry serves both sides of a pair.
         let says = !known && (odd || becomes != name) && !(self.exchanges && self.side == "_p");
         let mirror = says.then(|| format!("{}{becomes}", if odd { "-" } else { "" }));
         ActuatorInput { name, unit, mirror }

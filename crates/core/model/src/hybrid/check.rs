@@ -1,4 +1,4 @@
-//! What a declaration may say.
+//! Checks of a declaration.
 
 use super::actuators::{ActuatorInput, Variable, inputs_and_variables, sides};
 use super::file::{ActuatorFile, ActuatorKind, AngleFeature, HybridFile, Squares, Symmetry};
@@ -10,18 +10,18 @@ use crate::name::check_slug;
 use crate::particulars;
 use sistership_formula as formula;
 
-/// Most terms that an expansion may have.
+/// Largest number of terms of an expansion.
 const MOST_TERMS: usize = 5000;
 
-/// Most actuators.
+/// Largest number of actuators.
 const MOST_ACTUATORS: usize = 50;
 
 type Fault = (String, String);
 
-/// Checks everything that can be told before the law is written.
+/// Checks everything that can be checked before the law is written.
 ///
 /// # Errors
-/// The field at fault and what would be right.
+/// Returns the field at fault and its remedy.
 pub fn check(file: &HybridFile) -> Result<(), Fault> {
     let fault = |field: &str, message: String| Err((field.to_owned(), message));
     check_slug(&file.name).map_err(|e| ("name".to_owned(), e.to_string()))?;
@@ -75,6 +75,7 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
             "a tunnel thruster has no twin on the other side; declare each by its name".into(),
         ));
     }
+    // Only rudders and azimuth thrusters have an angle.
     if actuator.angle != AngleFeature::default() && matches!(kind, Propeller | TunnelThruster) {
         return Err((".angle", "it has no angle".into()));
     }
@@ -101,8 +102,8 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
     }
 }
 
-/// No two actuators may have an input in common, and a name that every law knows must mean what it
-/// does there.
+/// Checks that no two actuators share an input, and that an input with a standard name has its
+/// standard unit.
 fn check_inputs(inputs: &[ActuatorInput]) -> Result<(), Fault> {
     for (place, input) in inputs.iter().enumerate() {
         let field = || "actuators".to_owned();
@@ -161,6 +162,8 @@ fn check_rules(file: &HybridFile, variables: &[Variable]) -> Result<(), Fault> {
 }
 
 fn check_size(file: &HybridFile, variables: usize) -> Result<(), Fault> {
+    // Number of monomials up to the order: the binomial coefficient of variables + order over
+    // order.
     let terms = (0..file.order as usize)
         .fold(1, |product, i| product * (variables + file.order as usize - i) / (i + 1));
     if terms > MOST_TERMS {

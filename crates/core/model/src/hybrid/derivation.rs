@@ -1,4 +1,4 @@
-//! From a declaration to its law, rule by rule.
+//! Derivation of the law from a declaration, rule by rule.
 
 use super::actuators::{Variable, inputs_and_variables};
 use super::file::HybridFile;
@@ -9,26 +9,25 @@ use crate::coefficient::{Axis, CoefficientName, STANDARD_FACTORS};
 use crate::error::{Blame, FileError};
 use crate::law::{Law, LawFile};
 
-/// A derived law and how it came about.
+/// Derived law and the steps of its derivation.
 #[derive(Debug, Clone)]
 pub struct Derivation {
     /// The declaration.
     pub file: HybridFile,
-    /// What each rule left.
+    /// Number of terms after each rule.
     pub steps: Vec<Step>,
-    /// The law as a file writes it.
+    /// The law in the form of a file.
     pub law_file: LawFile,
-    /// The text of that file.
+    /// Text of that file.
     pub text: String,
-    /// The law, read from that text and checked as any other.
+    /// The law, read from that text and checked like any other.
     pub law: Law,
 }
 
-/// Derives the law that a declaration asks for; `file` is the name that errors give the
-/// declaration.
+/// Derives the law of a declaration; `file` is the name of the declaration in errors.
 ///
 /// # Errors
-/// Names file, line and field of the first thing that is wrong.
+/// Returns an error with file, line and field of the first fault.
 pub fn derive(file: &str, text: &str) -> Result<Derivation, FileError> {
     let blame = Blame::new(file, text);
     let declared: HybridFile = blame.read()?;
@@ -49,8 +48,7 @@ pub fn derive(file: &str, text: &str) -> Result<Derivation, FileError> {
     };
     let law_file = writer.law();
     let text = write(&law_file).map_err(|e| blame.at("", e))?;
-    // What the reader of laws refuses, it refuses for something that the declaration says under the
-    // same field.
+    // An error of the reader of laws concerns a part of the declaration with the same field name.
     let law = Law::parse(file, &text).map_err(|error| blame.at(&error.field, error.message))?;
     Ok(Derivation { file: declared, steps, law_file, text, law })
 }
@@ -63,8 +61,8 @@ fn write(law: &LawFile) -> Result<String, String> {
     ))
 }
 
-/// Names must be read factor by factor as they were spelled: with `n` and `nn`, what would `X_nn`
-/// be?
+/// Checks that names are read factor by factor as they were spelled: with factors `n` and `nn`,
+/// `X_nn` would be ambiguous.
 fn check_names(terms: &[Vec<Term>; 3], variables: &[Variable]) -> Result<(), String> {
     let symbols: Vec<&str> = variables.iter().map(|variable| variable.symbol.as_str()).collect();
     let extra: Vec<&str> =

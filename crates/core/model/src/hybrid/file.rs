@@ -1,4 +1,4 @@
-//! The shape of a declaration's YAML file.
+//! Structure of a declaration's YAML file.
 
 use std::collections::BTreeMap;
 
@@ -18,29 +18,29 @@ pub struct HybridFile {
     pub kind: HybridKind,
     /// Name of the law: lower case, digits, hyphens.
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub title: String,
-    /// Publications by key, beside that of the hybrid itself.
+    /// Publications by key, in addition to that of the hybrid itself.
     #[serde(default)]
     pub sources: BTreeMap<String, Source>,
     /// Highest degree of the polynomials, 1 to 4.
     pub order: u32,
-    /// Whether coefficients carry units.
+    /// Units of the coefficients.
     #[serde(default)]
     pub scaling: Scaling,
-    /// What moves the ship, by name.
+    /// The actuators by name.
     #[schemars(with = "BTreeMap<String, ActuatorFile>")]
     pub actuators: IndexMap<String, ActuatorFile>,
-    /// Which terms of the expansion stay, and how they are written.
+    /// Selection and notation of the terms of the expansion.
     #[serde(default)]
     pub rules: Rules,
     /// Conditions under which coefficients deviate.
     #[serde(default)]
     pub submodels: SubmodelsFile,
-    /// How many times the precision of a deviation's prior is that of a shared coefficient's.
+    /// Precision of a deviation's prior relative to that of a shared coefficient's prior.
     #[serde(default = "default_shrinkage")]
     pub shrinkage: f64,
-    /// Effects that go with the law; they are no part of it, but their parameters are unknowns too.
+    /// Effects used with the law; they are not part of it, but their parameters are unknowns too.
     #[serde(default)]
     pub effects: Vec<EffectUse>,
 }
@@ -57,14 +57,14 @@ pub enum HybridKind {
     Hybrid,
 }
 
-/// Whether coefficients carry units.
+/// Units of the coefficients.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Scaling {
     /// Forces in N of velocities in SI, as Miyauchi 2024, Idea 6: coefficients belong to one ship.
     Dimensional,
-    /// The bis system: mass, Lpp and g as units, so that coefficients carry over by Froude's law
-    /// and rest divides by nothing.
+    /// The bis system: mass, Lpp and g as units, so that coefficients are transferred by Froude's
+    /// law and are defined at rest, too.
     #[default]
     Bis,
 }
@@ -73,21 +73,21 @@ pub enum Scaling {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ActuatorFile {
-    /// What it is.
+    /// Kind of the actuator.
     pub kind: ActuatorKind,
-    /// Whether there is one on either side, `NAME_s` and `NAME_p`; a VecTwin always is.
+    /// True if there is one on either side, `NAME_s` and `NAME_p`; a VecTwin is always a pair.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub pair: bool,
-    /// How an angle enters the expansion.
+    /// Form in which an angle enters the expansion.
     #[serde(default)]
     pub angle: AngleFeature,
     /// Nominal stall angle of a rudder, deg: one, or starboard and port.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stall_deg: Option<StallFile>,
-    /// With what its terms are multiplied.
+    /// Variables by which its terms are multiplied.
     #[serde(default)]
     pub couples: Coupling,
-    /// Axes on which it acts; all of them where absent.
+    /// Axes on which it acts; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<Vec<Axis>>,
 }
@@ -108,48 +108,48 @@ pub enum ActuatorKind {
     TunnelThruster,
 }
 
-/// How an angle enters the expansion.
+/// Form in which an angle enters the expansion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AngleFeature {
-    /// By sine and cosine: Miyauchi 2024, Eq. 6.
+    /// Sine and cosine: Miyauchi 2024, Eq. 6.
     #[default]
     SineCosine,
-    /// By sine and 1 - cos, so that a rudder amidships adds nothing to a ship at rest.
+    /// Sine and 1 - cos, so that a rudder amidships adds nothing to a ship at rest.
     SineVersine,
-    /// By itself, as Abkowitz.
+    /// The angle itself, as Abkowitz.
     Plain,
 }
 
-/// A stall angle, or two.
+/// A stall angle, or one for each side.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum StallFile {
-    /// Of one rudder or of both, deg.
+    /// Angle of one rudder, or of both, deg.
     Both(f64),
-    /// Of either, deg.
+    /// Angle of each side, deg.
     Sides {
-        /// Of the starboard one.
+        /// Starboard rudder.
         starboard: f64,
-        /// Of the port one.
+        /// Port rudder.
         port: f64,
     },
 }
 
-/// With what an actuator's terms are multiplied.
+/// Variables by which an actuator's terms are multiplied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Coupling {
-    /// With the ship's motion and every other actuator.
+    /// The ship's motion and every other actuator.
     #[default]
     All,
-    /// With the ship's motion only: its flow meets no other actuator.
+    /// The ship's motion only: its flow meets no other actuator.
     Hull,
-    /// With nothing.
+    /// None.
     None,
 }
 
-/// Which terms stay and how they are written: Miyauchi 2024, sec. 2.2.
+/// Selection and notation of the terms: Miyauchi 2024, sec. 2.2.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rules {
@@ -157,14 +157,14 @@ pub struct Rules {
     pub constant: bool,
     /// Modification A: selection by port/starboard symmetry.
     pub symmetry: Symmetry,
-    /// Keep in Y and N what has no factor that is odd in the mirror, such as `Y_n`: the bias of a
-    /// single screw.
+    /// Keep in Y and N the terms without a factor that is odd in the mirror, such as `Y_n`: the
+    /// bias of a single screw.
     pub zeroth_powers: bool,
-    /// Bring `v|v|` back where modification A has taken `v^2`: cross-flow drag.
+    /// Replace `v^2`, which modification A removes, by `v|v|`: cross-flow drag.
     pub signed_squares: bool,
     /// Modification B: drop powers of sines and cosines.
     pub trigonometric_powers: TrigonometricPowers,
-    /// Squares that modification B leaves.
+    /// Exceptions from modification B.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub trigonometric_exceptions: Vec<ExceptionFile>,
     /// Modification C: `x|x|` for squares.
@@ -175,12 +175,12 @@ pub struct Rules {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Symmetry {
-    /// As published: X is even, Y and N are odd in sway, yaw and every sine of an angle, each side
-    /// of a pair by itself.
+    /// As published: X is even, Y and N are odd in sway, yaw and every sine of an angle, separately
+    /// for each side of a pair.
     #[default]
     Parity,
-    /// The mirror also exchanges the sides of a pair: they share coefficients, and what only
-    /// differs between them stays.
+    /// The mirror also exchanges the sides of a pair: they share coefficients, and terms that
+    /// differ only by the side remain.
     Mirror,
     /// No selection.
     None,
@@ -197,13 +197,13 @@ pub enum TrigonometricPowers {
     Keep,
 }
 
-/// Squares that modification B leaves.
+/// Exceptions from modification B.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExceptionFile {
-    /// The factor whose square stays, such as `cosdelta_s`.
+    /// The factor whose square remains, such as `cosdelta_s`.
     pub factor: String,
-    /// The axes on which it stays.
+    /// The axes on which it remains.
     pub axes: Vec<Axis>,
 }
 
@@ -211,13 +211,14 @@ pub struct ExceptionFile {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Squares {
-    /// As the text says: squares of what is even in the mirror become `x|x|`, on every axis.
+    /// As the text describes: squares of factors that are even in the mirror become `x|x|`, on
+    /// every axis.
     #[default]
     AsDescribed,
-    /// As Eqs. 14 to 16 print: in Y and N it is the squares of what is odd in the mirror that
-    /// become `x|x|`, which makes `v|v|r` and its like biases.
+    /// As Eqs. 14 to 16 are printed: in Y and N the squares of factors that are odd in the mirror
+    /// become `x|x|`, which makes terms such as `v|v|r` biases.
     AsPrinted,
-    /// Squares stay squares.
+    /// Squares remain squares.
     Plain,
 }
 
@@ -225,9 +226,9 @@ pub enum Squares {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum SubmodelsFile {
-    /// Those of a publication.
+    /// Conditions of a publication.
     Scheme(Scheme),
-    /// Conditions by name, the first whose comparisons all hold applies.
+    /// Conditions by name; the first one whose comparisons all hold applies.
     #[schemars(with = "BTreeMap<String, SubmodelFile>")]
     Declared(IndexMap<String, SubmodelFile>),
 }
@@ -250,11 +251,11 @@ pub enum Scheme {
     AheadStalledAstern,
     /// Algorithm 3, Submodel-4: ahead and astern, each with or without stalled rudders.
     AheadAsternStalled,
-    /// By the quadrant of u and the revolutions of the only propeller.
+    /// The quadrant of u and the revolutions of the only propeller.
     Quadrants,
 }
 
-/// An effect that goes with the law.
+/// An effect used with the law.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectUse {

@@ -1,5 +1,5 @@
-//! The derived law as a file like any other: forces from the terms, the rest from the equations of
-//! motion (Miyauchi 2024, Eq. 1).
+//! The derived law as a file: forces from the terms, the rest from the equations of motion
+//! (Miyauchi 2024, Eq. 1).
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::coefficient::Axis;
 use crate::law::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
 use crate::source::Source;
 
-/// What a law is written from.
+/// Writer of the derived law.
 pub struct Writer<'a> {
     pub file: &'a HybridFile,
     pub inputs: &'a [ActuatorInput],
@@ -56,6 +56,7 @@ impl Writer<'_> {
                         Mar Sci Technol 29, 975-999, sec. 2.2";
         let hybrid = Source { citation: citation.into(), doi: None, note: None };
         let mut sources = self.file.sources.clone();
+        // A declaration may list this publication itself.
         sources.entry("miyauchi-2024".into()).or_insert(hybrid);
         sources
     }
@@ -64,7 +65,7 @@ impl Writer<'_> {
         self.file.scaling == Scaling::Bis && variable.unit != Unit::Number
     }
 
-    /// What a variable is called in formulas.
+    /// Name of a variable in formulas.
     fn called(&self, place: usize) -> String {
         let variable = &self.variables[place];
         if self.is_scaled(variable) {
@@ -76,6 +77,7 @@ impl Writer<'_> {
 
     fn values(&self) -> IndexMap<String, String> {
         let mut values = IndexMap::new();
+        // Units of the bis system: sqrt(g L) for speed, sqrt(L / g) for time.
         if self.file.scaling == Scaling::Bis {
             values.insert("speed_unit".to_owned(), "sqrt(g*lpp_m)".to_owned());
             values.insert("time_unit".to_owned(), "sqrt(lpp_m/g)".to_owned());
@@ -88,6 +90,7 @@ impl Writer<'_> {
                 Unit::Rate if self.is_scaled(variable) => format!("{}*time_unit", variable.formula),
                 _ => variable.formula.clone(),
             };
+            // A variable that equals its symbol needs no value.
             if formula != variable.symbol {
                 values.insert(self.called(place), formula);
             }
@@ -109,11 +112,13 @@ impl Writer<'_> {
         let formula =
             |monomial: &super::monomial::Monomial| monomial.formula(&|place| self.called(place));
         match &term.image {
+            // The constant term has no factors in its name, so that its formula is written out.
             None if term.monomial.degree() == 0 => {
                 TermFile::Formula(BTreeMap::from([(name, "1".into())]))
             }
             None => TermFile::Name(name),
             Some((image, subtracted)) => {
+                // Mirror images with opposite effect on the axis are subtracted.
                 let sign = if *subtracted { '-' } else { '+' };
                 TermFile::Formula(BTreeMap::from([(
                     name,
@@ -124,10 +129,10 @@ impl Writer<'_> {
     }
 }
 
-/// The inertial side of Eq. 1 in one scaling.
+/// Inertial side of Eq. 1 in one scaling.
 struct Inertia {
     scaling: Scaling,
-    /// Mass with added mass in surge and in sway, kg.
+    /// Mass with the added mass in surge and in sway, kg.
     surge: &'static str,
     sway: &'static str,
     /// Moment of inertia with added moment about midship, kg m2.
@@ -139,6 +144,7 @@ struct Inertia {
 impl Inertia {
     fn of(scaling: Scaling) -> Self {
         match scaling {
+            // In the bis system parameters are divided by mass and length.
             Scaling::Bis => Self {
                 scaling,
                 surge: "m*(1 + m_x)",
@@ -186,7 +192,7 @@ impl Inertia {
         (self.scaling == Scaling::Bis).then(|| bis.to_owned())
     }
 
-    /// The products of velocities that stand left in Eq. 1.
+    /// Products of velocities that remain on the right-hand side of Eq. 1.
     fn rest(&self, axis: Axis) -> String {
         match axis {
             Axis::X => format!("{}*v*r + {}*r^2", self.sway, self.moment),

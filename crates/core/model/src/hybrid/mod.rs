@@ -1,5 +1,4 @@
-//! The Abkowitz-MMG hybrid as a law that the program derives: Miyauchi, Akimoto and Maki (2024),
-//! sec. 2.2.
+//! The Abkowitz-MMG hybrid as a derived law: Miyauchi, Akimoto and Maki (2024), sec. 2.2.
 //!
 //! A declaration names the actuators, the order, the rules and the submodels; from it follow the
 //! variables (Eqs. 5 and 6), the Taylor expansion (Eqs. 7 to 11), the selection (modifications A to

@@ -5,27 +5,28 @@ use std::collections::BTreeSet;
 use super::actuators::Variable;
 use crate::coefficient::Axis;
 
-/// A product of powers of the expansion's variables, which it knows by their places.
+/// Product of powers of the expansion's variables, which are given by their indices.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Monomial {
-    /// Places and powers above zero, by place.
+    /// Indices and powers above zero, ordered by index.
     pub powers: Vec<(usize, u32)>,
-    /// Places whose square is written `x|x|`.
+    /// Indices whose square is written `x|x|`.
     pub moduli: BTreeSet<usize>,
 }
 
-/// Every monomial up to a degree, by degree, then by the order of the variables.
+/// Returns every monomial up to a degree, ordered by degree, then by the order of the variables.
 pub fn expand(variables: usize, order: u32) -> Vec<Monomial> {
     let mut all = vec![Monomial::default()];
     let mut last = vec![Vec::new()];
     for _ in 0..order {
+        // All lists of factors of the next degree.
         last = last.iter().flat_map(|factors: &Vec<usize>| longer(factors, variables)).collect();
         all.extend(last.iter().map(|factors| Monomial::of(factors)));
     }
     all
 }
 
-/// The products of one factor more, none before the last one.
+/// Returns the products with one more factor, which is not before the last one.
 fn longer(factors: &[usize], variables: usize) -> Vec<Vec<usize>> {
     let from = factors.last().copied().unwrap_or(0);
     (from..variables).map(|next| factors.iter().copied().chain([next]).collect()).collect()
@@ -33,6 +34,7 @@ fn longer(factors: &[usize], variables: usize) -> Vec<Vec<usize>> {
 
 impl Monomial {
     fn of(factors: &[usize]) -> Self {
+        // Factors are sorted, so that equal ones are adjacent.
         let mut powers: Vec<(usize, u32)> = Vec::new();
         for &place in factors {
             match powers.last_mut() {
@@ -43,25 +45,26 @@ impl Monomial {
         Self { powers, moduli: BTreeSet::new() }
     }
 
-    /// The sum of the powers.
+    /// Sum of the powers.
     pub fn degree(&self) -> u32 {
         self.powers.iter().map(|(_, power)| power).sum()
     }
 
-    /// The places whose power is two.
+    /// Indices with a power of two.
     pub fn squares(&self) -> impl Iterator<Item = usize> + '_ {
         self.powers.iter().filter(|(_, power)| *power == 2).map(|&(place, _)| place)
     }
 
-    /// Whether it changes sign in the mirror; `x|x|` does where `x` does.
+    /// Returns true if it changes sign in the mirror; `x|x|` does if `x` does.
     pub fn is_odd(&self, variables: &[Variable]) -> bool {
         let odd = self.powers.iter().filter(|(place, _)| variables[*place].odd);
+        // A modulus takes one sign away from the power of its variable.
         let signs =
             odd.filter(|(place, power)| (power - u32::from(self.moduli.contains(place))) % 2 == 1);
         signs.count() % 2 == 1
     }
 
-    /// With the sides of every pair exchanged.
+    /// Returns the monomial with the sides of every pair exchanged.
     pub fn exchanged(&self, variables: &[Variable]) -> Self {
         let twin = |place: usize| {
             variables.iter().position(|v| v.symbol == variables[place].twin).unwrap_or(place)
@@ -72,7 +75,7 @@ impl Monomial {
         Self { powers, moduli: self.moduli.iter().map(|&place| twin(place)).collect() }
     }
 
-    /// The name of its coefficient on an axis, such as `Y_v|v|`.
+    /// Name of its coefficient on an axis, such as `Y_v|v|`.
     pub fn name(&self, axis: Axis, variables: &[Variable]) -> String {
         let factors: Vec<String> = self
             .powers
@@ -91,7 +94,7 @@ impl Monomial {
         }
     }
 
-    /// Its formula, of what each variable is called in formulas.
+    /// Formula, in terms of the names of the variables in formulas.
     pub fn formula(&self, called: &dyn Fn(usize) -> String) -> String {
         let factor = |&(place, power): &(usize, u32)| match (called(place), power) {
             (name, 2) if self.moduli.contains(&place) => format!("{name}*abs({name})"),

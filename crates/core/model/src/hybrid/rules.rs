@@ -1,36 +1,36 @@
-//! Which terms of the expansion stay and how they are written: Miyauchi 2024, sec. 2.2.2, each rule
-//! by itself.
+//! Selection and notation of the terms of the expansion: Miyauchi 2024, sec. 2.2.2, one function
+//! for each rule.
 
 use super::actuators::Variable;
 use super::file::{Coupling, Rules, Squares, Symmetry, TrigonometricPowers};
 use super::monomial::Monomial;
 use crate::coefficient::Axis;
 
-/// A term: a monomial, or the sum or difference of two that are each other's mirror images.
+/// Term: a monomial, or the sum or difference of two that are mirror images of each other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term {
-    /// The monomial, after which the coefficient is named.
+    /// The monomial, which gives the coefficient its name.
     pub monomial: Monomial,
-    /// Its mirror image, and whether that is subtracted.
+    /// Its mirror image, and true if that is subtracted.
     pub image: Option<(Monomial, bool)>,
 }
 
-/// What one rule left, and what it did.
+/// Result of one rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// The rule.
     pub rule: &'static str,
-    /// The setting under which it ran.
+    /// Setting of the rule.
     pub setting: String,
-    /// Terms after it on X, Y and N.
+    /// Numbers of terms after it on X, Y and N.
     pub terms: [usize; 3],
 }
 
-/// The axes of the hybrid.
+/// Axes of the hybrid.
 pub const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::N];
 
-/// Applies the rules one after another; returns the terms by axis, as [`AXES`], and what each rule
-/// left.
+/// Applies the rules one after another; returns the terms by axis, in the order of [`AXES`], and
+/// the result of each rule.
 pub fn select(
     all: &[Monomial],
     rules: &Rules,
@@ -62,7 +62,7 @@ struct Selector<'a> {
 }
 
 impl<'a> Selector<'a> {
-    /// The rules in their order, with their settings in words.
+    /// The rules in order, with their settings in words.
     fn rules(&self) -> [(&'static str, String, Rule<'a>); 5] {
         let constant = if self.rules.constant { "keep" } else { "drop" };
         [
@@ -74,16 +74,18 @@ impl<'a> Selector<'a> {
         ]
     }
 
-    /// The first term of Eq. 7.
+    /// Rule of the force at rest, the first term of Eq. 7.
     fn constant(&self, _: Axis, term: Term) -> Option<Term> {
         (self.rules.constant || term.monomial.degree() > 0).then_some(term)
     }
 
-    /// Actuators act on their axes and meet what they couple with.
+    /// Rule of couplings: actuators act on their axes only, and multiply only the variables with
+    /// which they couple.
     fn reach(&self, axis: Axis, term: Term) -> Option<Term> {
         let places =
             || term.monomial.powers.iter().map(|&(place, _)| &self.variables[place].actuator);
         let allowed = places().flatten().all(|one| {
+            // `All` meets everything, `Hull` the motion, and every actuator itself.
             let met = |other: &Option<super::actuators::Reach>| match (one.couples, other) {
                 (Coupling::All, _) => true,
                 (Coupling::Hull, None) => true,
@@ -94,12 +96,14 @@ impl<'a> Selector<'a> {
         allowed.then_some(term)
     }
 
-    /// Modification A.
+    /// Rule of symmetry, modification A.
     fn symmetry(&self, axis: Axis, term: Term) -> Option<Term> {
         let image = term.monomial.exchanged(self.variables);
         let fits = term.monomial.is_odd(self.variables) == axis.is_odd();
         match self.rules.symmetry {
             Symmetry::None => Some(term),
+            // Of two mirror images one represents both; their sum or difference has the parity of
+            // the axis.
             Symmetry::Mirror if image != term.monomial => {
                 let first = term.monomial < image;
                 first.then_some(Term { image: Some((image, !fits)), ..term })
@@ -109,21 +113,22 @@ impl<'a> Selector<'a> {
         }
     }
 
-    /// The zeroth power of what is odd in the mirror, where it is kept.
+    /// Returns true for a term without odd factors on an odd axis, if such biases are kept.
     fn is_bias(&self, axis: Axis, monomial: &Monomial) -> bool {
         let even = || monomial.powers.iter().all(|&(place, _)| !self.variables[place].odd);
         self.rules.zeroth_powers && axis.is_odd() && even()
     }
 
-    /// `v|v|` for `v^2`, where that makes the term fit its axis.
+    /// Replaces `v^2` by `v|v|`, if that gives the term the parity of its axis.
     fn signed(&self, axis: Axis, mut term: Term) -> Option<Term> {
+        // The first square of an odd variable is changed.
         let square = term.monomial.squares().find(|&place| self.variables[place].odd)?;
         term.monomial.moduli.insert(square);
         (self.rules.signed_squares && term.monomial.is_odd(self.variables) == axis.is_odd())
             .then_some(term)
     }
 
-    /// Modification B.
+    /// Rule of the powers of sines and cosines, modification B.
     fn trigonometric(&self, axis: Axis, term: Term) -> Option<Term> {
         let drops = self.rules.trigonometric_powers == TrigonometricPowers::Drop;
         let excepted = |place: usize, power: u32| {
@@ -139,7 +144,7 @@ impl<'a> Selector<'a> {
         (!drops || !term.monomial.powers.iter().any(goes)).then_some(term)
     }
 
-    /// Modification C.
+    /// Rule of squares, modification C.
     fn squares(&self, axis: Axis, mut term: Term) -> Option<Term> {
         self.moduli(axis, &mut term.monomial);
         if let Some((image, _)) = &mut term.image {

@@ -1,5 +1,5 @@
 //! Published conditions: Miyauchi 2024, Algorithms 1 to 3, and the quadrants of Miyauchi 2021 (as
-//! told there).
+//! cited there).
 //!
 //! The first set of each algorithm, ahead with unstalled rudders, is the shared one.
 
@@ -9,10 +9,10 @@ use super::actuators::sides;
 use super::file::{ActuatorKind, HybridFile, Scheme, StallFile, SubmodelsFile};
 use crate::law::SubmodelFile;
 
-/// The submodels that a declaration asks for.
+/// Returns the submodels of a declaration.
 ///
 /// # Errors
-/// Says what the scheme needs and the ship does not have.
+/// Returns an error if the ship lacks what the scheme needs.
 pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, String> {
     let ahead = || "u >= 0".to_owned();
     let astern = || "u < 0".to_owned();
@@ -51,7 +51,7 @@ fn quadrants(n: &str) -> Vec<(&'static str, &'static str, Vec<String>)> {
     ]
 }
 
-/// The revolutions by which the quadrants are told.
+/// Returns the input of the revolutions that distinguish the quadrants.
 fn propeller(file: &HybridFile) -> Result<String, String> {
     let propellers: Vec<&String> = file
         .actuators
@@ -68,9 +68,9 @@ fn propeller(file: &HybridFile) -> Result<String, String> {
     }
 }
 
-/// `max(|delta_s| - stall_s, |delta_p| - stall_p) >= 0`: some rudder is beyond its stall angle. The
-/// paper's Algorithms 2 and 3 print the starboard rudder in both comparisons; the port one is meant
-/// in the second.
+/// Condition of stall, `max(|delta_s| - stall_s, |delta_p| - stall_p) >= 0`: at least one rudder is
+/// beyond its stall angle. The paper's Algorithms 2 and 3 print the starboard rudder in both
+/// comparisons; the port one is meant in the second.
 fn stalled(file: &HybridFile, comparison: &str) -> Result<String, String> {
     let beyond = |(name, angle): (String, f64)| format!("abs({name}) - {angle}*pi/180");
     let excess = stall_angles(file).into_iter().map(beyond).reduce(|a, b| format!("max({a}, {b})"));
@@ -79,7 +79,7 @@ fn stalled(file: &HybridFile, comparison: &str) -> Result<String, String> {
     Ok(format!("{excess} {comparison} 0"))
 }
 
-/// The rudders with a stall angle, deg.
+/// Rudders with their stall angles, deg.
 fn stall_angles(file: &HybridFile) -> Vec<(String, f64)> {
     let mut angles = Vec::new();
     for (name, actuator) in &file.actuators {
@@ -92,7 +92,7 @@ fn stall_angles(file: &HybridFile) -> Vec<(String, f64)> {
 }
 
 impl StallFile {
-    /// The angle of a side, deg.
+    /// Angle of a side, deg.
     pub(crate) fn of(self, side: &str) -> f64 {
         match self {
             Self::Both(angle) => angle,

@@ -1,4 +1,4 @@
-//! How many numbers a hybrid leaves to be found: Miyauchi 2024, Eq. 34 and Table 4.
+//! Number of unknowns of a hybrid: Miyauchi 2024, Eq. 34 and Table 4.
 
 use serde::Serialize;
 
@@ -7,24 +7,24 @@ use super::file::EffectUse;
 use super::rules::Step;
 use crate::Zoo;
 
-/// The unknowns of a derived law, rule by rule.
+/// Unknowns of a derived law, rule by rule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unknowns {
-    /// Terms that each rule leaves.
+    /// Number of terms after each rule.
     pub rules: Vec<RuleCount>,
-    /// Sets of coefficients: the shared one and the submodels'.
+    /// Number of sets of coefficients: the shared one and those of the submodels.
     pub coefficient_sets: usize,
-    /// Coefficients of all sets.
+    /// Number of coefficients in all sets.
     pub coefficients: usize,
     /// Parameters that do not follow from particulars: added masses and the moment of inertia.
     pub parameters: Vec<String>,
-    /// Parameters of the effects that go with the law.
+    /// Parameters of the effects used with the law.
     pub effects: Vec<EffectUnknowns>,
-    /// All of them.
+    /// Total number of unknowns.
     pub unknowns: usize,
 }
 
-/// Terms by axis after a rule.
+/// Number of terms by axis after a rule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RuleCount {
     /// The rule.
@@ -40,27 +40,27 @@ pub struct RuleCount {
     /// Terms of the yaw moment.
     #[serde(rename = "N")]
     pub n: usize,
-    /// Their sum.
+    /// Sum over the axes.
     pub total: usize,
 }
 
-/// The unknowns of an effect.
+/// Unknowns of an effect.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct EffectUnknowns {
     /// The effect.
     pub effect: String,
     /// Its form.
     pub form: String,
-    /// Its parameters.
+    /// Number of its parameters.
     pub unknowns: usize,
 }
 
 impl Derivation {
-    /// Counts the unknowns; `zoo` knows the effects.
+    /// Counts the unknowns; `zoo` supplies the effects.
     ///
     /// # Errors
-    /// The field of the declaration that names an effect or form that is not in the zoo, and what
-    /// is.
+    /// Returns the field of the declaration that names an effect or form that is not in the zoo,
+    /// and the known ones.
     pub fn unknowns(&self, zoo: &Zoo) -> Result<Unknowns, (String, String)> {
         let effects = self.effects(zoo)?;
         let parameters: Vec<String> = self

@@ -1,4 +1,4 @@
-//! A law of motion: formulas over states, inputs, particulars and parameters, linear in its
+//! Law of motion: formulas of states, inputs, particulars and parameters, linear in its
 //! coefficients.
 
 use std::collections::BTreeMap;
@@ -15,66 +15,65 @@ use crate::source::Source;
 use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
 
-/// A law, read and checked.
+/// Law, read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
-    /// Its name in the zoo.
+    /// Name in the zoo.
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub title: String,
-    /// Where it was published.
+    /// Publications of the law.
     pub sources: BTreeMap<String, Source>,
-    /// What it takes from outside besides the states: rudder, revolutions, depth.
+    /// Inputs in addition to the states: rudder, revolutions, depth.
     pub inputs: IndexMap<String, Input>,
-    /// Nonlinear parameters: everything a vessel must give besides coefficients.
+    /// Nonlinear parameters: everything that a vessel must give besides coefficients.
     pub parameters: IndexMap<String, Parameter>,
-    /// Intermediate values, in an order in which each needs only earlier ones.
+    /// Intermediate values, ordered so that each needs only earlier ones.
     pub values: IndexMap<String, Expr>,
-    /// Their dimensions, each found once: found anew, that of a value named twice in the next would
-    /// be found twice.
+    /// Dimensions of the values, each determined once: a repeated search would double with each
+    /// value that names another one twice.
     pub value_dimensions: BTreeMap<String, Dimension>,
-    /// What a factor of a coefficient's name stands for in a regressor.
+    /// Meaning of each factor of a coefficient's name in a regressor.
     pub factors: IndexMap<String, Expr>,
-    /// Submodels by name, the first whose conditions hold applies; each one's indicator is the
+    /// Submodels by name; the first one whose conditions hold applies. The indicator of each is the
     /// value [`indicator`].
     pub submodels: IndexMap<String, Submodel>,
-    /// The right-hand sides.
+    /// Right-hand sides by axis.
     pub axes: BTreeMap<Axis, AxisLaw>,
-    /// The mass matrix, by axis and the axis whose acceleration it multiplies; what is absent is
-    /// zero.
+    /// Mass matrix, by axis and the axis whose acceleration it multiplies; absent entries are zero.
     pub mass: BTreeMap<(Axis, Axis), Expr>,
     /// Rates of x, y, psi and phi, where they differ from those of motion in the horizontal plane.
     pub kinematics: BTreeMap<String, Expr>,
-    /// What parameters and inputs become when the ship is mirrored port to starboard: another one,
-    /// or `-name` for the opposite.
+    /// Transformation of parameters and inputs when the ship is mirrored port to starboard: another
+    /// name, or `-name` for the opposite.
     pub mirrors: BTreeMap<String, String>,
-    /// What effects add; nothing in a law as its file writes it.
+    /// Additions of effects; empty in a law as its file writes it.
     pub dressing: Dressing,
 }
 
-/// Something the law takes from outside.
+/// Input of the law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Input {
     /// Its dimension.
     pub dimension: Dimension,
-    /// What it is where nobody says; without a default it must be given.
+    /// Default value; an input without a default must be given.
     pub default: Option<f64>,
 }
 
-/// A nonlinear parameter.
+/// Nonlinear parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// Its dimension.
     pub dimension: Dimension,
     /// The unit as the law writes it.
     pub unit: String,
-    /// What it means.
+    /// Its meaning.
     pub meaning: String,
-    /// How it follows from particulars; used where a vessel does not state it, and when a model
-    /// moves to another ship.
+    /// Formula of particulars; used if a vessel does not state the parameter, and when a model is
+    /// transferred to another ship.
     pub from: Option<Expr>,
-    /// Whether it is the speed about which the law is expanded, which belongs to the trials and not
-    /// to the ship.
+    /// True for the speed about which the law is expanded, which belongs to the trials and not to
+    /// the ship.
     pub is_approach_speed: bool,
 }
 
@@ -82,34 +81,34 @@ pub struct Parameter {
 /// added to `X_u`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Submodel {
-    /// What it stands for.
+    /// Its meaning.
     pub meaning: String,
-    /// How many times the precision of a deviation's prior, which pulls it to zero, is that of the
-    /// shared coefficient's.
+    /// Precision of a deviation's prior, which shrinks it to zero, relative to that of the shared
+    /// coefficient's prior.
     pub shrinkage: f64,
 }
 
-/// The name of the value that is 1 while a submodel applies and 0 elsewhere; no formula of a file
-/// can spell it.
+/// Name of the value that is 1 while a submodel applies and 0 otherwise; formulas of files cannot
+/// contain it.
 pub fn indicator(submodel: &str) -> String {
     format!("@{submodel}")
 }
 
-/// The right-hand side of one axis.
+/// Right-hand side of one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisLaw {
-    /// Multiplies every term: makes a force in N (moment in N m) of a dimensionless sum.
+    /// Factor of every term: converts a dimensionless sum to a force in N (moment in N m).
     pub scale: Expr,
     /// Regressors of the coefficients in which the law is linear, without the scale.
     pub terms: IndexMap<String, Expr>,
-    /// What is added as it is, in N or N m.
+    /// Force without coefficients, N or N m.
     pub rest: Expr,
-    /// Whether a vessel may add any further term that the factors can spell.
+    /// True if a vessel may add any term that the factors can express.
     pub open: bool,
 }
 
 impl Law {
-    /// A law of nothing: what stands in where a vessel has no model at all.
+    /// Returns a law without formulas, for a vessel that has no model.
     pub(crate) fn empty() -> Self {
         Self {
             name: String::new(),
@@ -129,7 +128,7 @@ impl Law {
         }
     }
 
-    /// The factors this law adds to the standard ones.
+    /// Factors that the law adds to the standard ones.
     pub fn extra_factors(&self) -> Vec<&str> {
         self.factors
             .keys()
@@ -138,20 +137,20 @@ impl Law {
             .collect()
     }
 
-    /// The regressor of a coefficient with its axis' scale: the force in N (or N m) per unit of the
-    /// coefficient.
+    /// Returns the regressor of a coefficient with the scale of its axis: the force in N (or N m)
+    /// per unit of the coefficient.
     ///
     /// # Errors
-    /// Says why the law has no such coefficient.
+    /// Returns an error if the law has no such coefficient.
     pub fn regressor(&self, name: &str) -> Result<(Axis, Expr), TermError> {
         let (axis, term) = self.term(name)?;
         Ok((axis, self.axes[&axis].scale.clone().times(term)))
     }
 
-    /// The regressor of a coefficient without its axis' scale.
+    /// Returns the regressor of a coefficient without the scale of its axis.
     ///
     /// # Errors
-    /// Says why the law has no such coefficient.
+    /// Returns an error if the law has no such coefficient.
     pub fn term(&self, name: &str) -> Result<(Axis, Expr), TermError> {
         let parsed = CoefficientName::parse(name, &self.extra_factors())?;
         let axis = self
@@ -159,6 +158,7 @@ impl Law {
             .get(&parsed.axis)
             .ok_or_else(|| TermError::Axis { law: self.name.clone(), axis: parsed.axis })?;
         let (shared, submodel) = split_submodel(name);
+        // A listed term has its own formula; an open axis also accepts products of known factors.
         let term = match axis.terms.get(shared) {
             Some(term) => term.clone(),
             None if axis.open => self.product(&parsed)?,
@@ -169,13 +169,16 @@ impl Law {
             }
         };
         let term = submodel.map_or(Ok(term.clone()), |submodel| self.under(submodel, term))?;
+        // Effects may scale the coefficient.
         let factors = self.dressing.coefficients.iter().filter(|(of, _)| of == shared);
         let term = factors.fold(term, |term, (_, factor)| term.times(factor.clone()));
+        // Outside the range covered by trials the propulsion balance replaces the term straight
+        // ahead.
         let straight = self.dressing.straight.as_ref();
         Ok((parsed.axis, straight.map_or(term.clone(), |of| of.blended(term, &axis.scale))))
     }
 
-    /// The regressor that a name spells: the product of what its factors stand for.
+    /// Returns the regressor that a name expresses: the product of its factors.
     pub(crate) fn product(&self, name: &CoefficientName) -> Result<Expr, TermError> {
         name.factors.iter().try_fold(Expr::Number(1.0), |product, factor| {
             let of = self.factors.get(&factor.symbol);
@@ -193,9 +196,10 @@ impl Law {
         })
     }
 
-    /// A term while a submodel applies, nothing elsewhere.
+    /// Returns a term that is zero unless a submodel applies.
     fn under(&self, submodel: &str, term: Expr) -> Result<Expr, TermError> {
         if self.submodels.contains_key(submodel) {
+            // The indicator is 1 while the submodel applies and 0 otherwise.
             return Ok(term.times(Expr::Name(indicator(submodel))));
         }
         let known: Vec<&str> = self.submodels.keys().map(String::as_str).collect();
@@ -203,17 +207,17 @@ impl Law {
         Err(TermError::Submodel { law: self.name.clone(), submodel: submodel.to_owned(), known })
     }
 
-    /// The unit of a coefficient, which follows from its regressor; `1` in a prime system.
+    /// Unit of a coefficient, which follows from its regressor; `1` in a prime system.
     ///
     /// # Errors
-    /// As [`Law::regressor`].
+    /// The errors of [`Law::regressor`].
     pub fn coefficient_dimension(&self, name: &str) -> Result<Dimension, TermError> {
         let (axis, regressor) = self.regressor(name)?;
         Ok(axis_dimension(axis)
             - sistership_formula::dimension_of(&regressor, &|n| self.dimension(n))?)
     }
 
-    /// The dimension of any name that a formula of this law may mention.
+    /// Dimension of any name that a formula of this law may use; `None` for an unknown name.
     pub fn dimension(&self, name: &str) -> Option<Dimension> {
         let state =
             STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension);
@@ -227,21 +231,22 @@ impl Law {
 
     /// Adds a value that needs only earlier ones.
     pub fn add_value(&mut self, name: String, expr: Expr) {
+        // A value whose dimension cannot be determined stays unknown to later checks of units.
         if let Ok(dimension) = sistership_formula::dimension_of(&expr, &|n| self.dimension(n)) {
             self.value_dimensions.insert(name.clone(), dimension);
         }
         self.values.insert(name, expr);
     }
 
-    /// The value of a parameter for a ship: how it follows from its particulars, where the law says
-    /// so and they suffice.
+    /// Value of a parameter that follows from the particulars of a ship; `None` if the law has no
+    /// formula for it, or if the particulars do not suffice.
     pub fn derived_parameter(&self, name: &str, ship: &BTreeMap<String, Quantity>) -> Option<f64> {
         let from = self.parameters.get(name)?.from.as_ref()?;
         from.value(&|particular| particulars::value(ship, particular))
             .filter(|value| value.is_finite())
     }
 
-    /// The parameter about which the law is expanded, if it has one.
+    /// Name of the parameter about which the law is expanded, if it has one.
     pub fn approach_speed_parameter(&self) -> Option<&str> {
         self.parameters
             .iter()
@@ -249,7 +254,7 @@ impl Law {
             .map(|(name, _)| name.as_str())
     }
 
-    /// Whether roll is a state of its own.
+    /// Returns true for a 4-DOF law, in which roll is a state.
     pub fn has_roll(&self) -> bool {
         self.axes.contains_key(&Axis::K)
     }

@@ -1,9 +1,9 @@
-//! Dimensions of states, of what acts on an axis and of what that causes.
+//! Dimensions of states, forces and accelerations.
 
 use crate::coefficient::Axis;
 use sistership_formula::units::Dimension;
 
-/// The states that formulas may use, with their dimensions.
+/// States that formulas may use, with their dimensions.
 pub const STATES: [(&str, Dimension); 6] = [
     ("u", Dimension::SPEED),
     ("v", Dimension::SPEED),
@@ -13,7 +13,7 @@ pub const STATES: [(&str, Dimension); 6] = [
     ("psi", Dimension::NONE),
 ];
 
-/// Force for X and Y, moment for K and N.
+/// Dimension of the force on an axis: a force for X and Y, a moment for K and N.
 pub fn axis_dimension(axis: Axis) -> Dimension {
     match axis {
         Axis::X | Axis::Y => Dimension::FORCE,
@@ -21,7 +21,7 @@ pub fn axis_dimension(axis: Axis) -> Dimension {
     }
 }
 
-/// The rate of a velocity for X and Y, of a rate for K and N.
+/// Dimension of the acceleration on an axis: m/s2 for X and Y, rad/s2 for K and N.
 pub fn acceleration_dimension(axis: Axis) -> Dimension {
     let velocity =
         if matches!(axis, Axis::X | Axis::Y) { Dimension::SPEED } else { Dimension::RATE };

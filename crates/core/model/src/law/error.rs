@@ -1,9 +1,9 @@
-//! Why a law has no term for a coefficient.
+//! Error of a coefficient for which a law has no term.
 
 use crate::coefficient::{Axis, NameError};
 use sistership_formula::FormulaError;
 
-/// Why a law has no term for a coefficient.
+/// Reason for which a law has no term for a coefficient.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TermError {
     /// The name is not one of a coefficient.
@@ -17,14 +17,14 @@ pub enum TermError {
         /// The axis.
         axis: Axis,
     },
-    /// The law lists the terms of the axis, and this is none of them.
+    /// The law lists the terms of the axis, and the coefficient is not among them.
     #[error("law `{law}` has no coefficient `{name}`; it has {known}")]
     Unlisted {
         /// The law.
         law: String,
         /// The coefficient.
         name: String,
-        /// Those that the axis has.
+        /// Coefficients of the axis.
         known: String,
     },
     /// The law does not define a factor.
@@ -42,10 +42,10 @@ pub enum TermError {
         law: String,
         /// The submodel.
         submodel: String,
-        /// Those that the law has.
+        /// Submodels of the law.
         known: String,
     },
-    /// The regressor has no dimension.
+    /// The dimension of the regressor cannot be determined.
     #[error(transparent)]
     Dimension(#[from] FormulaError),
 }

@@ -1,4 +1,4 @@
-//! The shape of a law's YAML file.
+//! Structure of a law's YAML file.
 
 use std::collections::BTreeMap;
 
@@ -17,11 +17,11 @@ pub struct LawFile {
     pub kind: LawKind,
     /// Name in the zoo: lower case, digits, hyphens.
     pub name: String,
-    /// One line for people.
+    /// One line for readers.
     pub title: String,
     /// Publications by key.
     pub sources: BTreeMap<String, Source>,
-    /// What the law takes from outside: `delta`, `n`, `depth`, ...
+    /// Inputs of the law: `delta`, `n`, `depth`, ...
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, InputFile>")]
     pub inputs: IndexMap<String, InputFile>,
@@ -33,11 +33,11 @@ pub struct LawFile {
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub values: IndexMap<String, String>,
-    /// What each factor of a coefficient's name stands for.
+    /// Meaning of each factor of a coefficient's name.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub factors: IndexMap<String, String>,
-    /// Conditions under which every coefficient deviates: the first whose comparisons all hold
+    /// Conditions under which every coefficient deviates; the first one whose comparisons all hold
     /// applies.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, SubmodelFile>")]
@@ -49,8 +49,8 @@ pub struct LawFile {
     /// Rates of `x`, `y`, `psi`, `phi` where they are not those of motion in the horizontal plane.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub kinematics: BTreeMap<String, String>,
-    /// What parameters and inputs become when the ship is mirrored: another one, or `-name` for the
-    /// opposite.
+    /// Transformation of parameters and inputs when the ship is mirrored: another name, or `-name`
+    /// for the opposite.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub mirrors: BTreeMap<String, String>,
 }
@@ -69,7 +69,7 @@ pub enum LawKind {
 pub struct InputFile {
     /// Its unit.
     pub unit: String,
-    /// Its value where nobody gives one.
+    /// Default value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
 }
@@ -80,9 +80,9 @@ pub struct InputFile {
 pub struct ParameterFile {
     /// Its unit; `1` for a pure number.
     pub unit: String,
-    /// What it means.
+    /// Its meaning.
     pub meaning: String,
-    /// How it follows from particulars.
+    /// Formula of particulars from which it follows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
     /// `approach_speed` for the speed about which the law is expanded.
@@ -90,7 +90,7 @@ pub struct ParameterFile {
     pub role: Option<ParameterRole>,
 }
 
-/// What a parameter may stand for besides itself.
+/// Special meaning of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ParameterRole {
@@ -105,10 +105,10 @@ pub enum ParameterRole {
 pub struct SubmodelFile {
     /// Comparisons such as `u < 0`, all of which must hold.
     pub when: Vec<String>,
-    /// What it stands for.
+    /// Its meaning.
     pub meaning: String,
-    /// How many times the precision (the inverse variance) of the prior that pulls a deviation to
-    /// zero is that of the shared coefficient's prior.
+    /// Precision (the inverse variance) of the prior that shrinks a deviation to zero, relative to
+    /// that of the shared coefficient's prior.
     #[serde(default = "no_shrinkage")]
     pub shrinkage: f64,
 }
@@ -121,17 +121,17 @@ fn no_shrinkage() -> f64 {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisFile {
-    /// Multiplies every term.
+    /// Factor of every term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
-    /// Coefficients: a name alone stands for the product of its factors, `{name: formula}` for that
+    /// Coefficients: a name alone means the product of its factors, `{name: formula}` means that
     /// formula.
     #[serde(default)]
     pub terms: Vec<TermFile>,
-    /// What is added as it is.
+    /// Force without coefficients.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest: Option<String>,
-    /// Whether a vessel may add further terms that the factors can spell.
+    /// True if a vessel may add further terms that the factors can express.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub open: bool,
 }
@@ -140,8 +140,8 @@ pub struct AxisFile {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum TermFile {
-    /// The product of the factors that the name spells.
+    /// The product of the factors in the name.
     Name(String),
-    /// A regressor of its own.
+    /// A regressor with its own formula.
     Formula(BTreeMap<String, String>),
 }

@@ -1,5 +1,5 @@
-//! How large a law may be, so that it can be read, simulated, refined and diagnosed in bounded time
-//! and stack.
+//! Limits of the size of a law, so that it can be read, simulated, refined and diagnosed in bounded
+//! time and stack.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -8,23 +8,24 @@ use super::definition::Law;
 use super::file::LawFile;
 use sistership_formula::{Expr, MAX_DEPTH};
 
-/// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law
-/// of the zoo has 189, and none more than 189 coefficients.
+/// Largest number of terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`].
+/// The largest law of the zoo has 189 terms, and none has more than 189 coefficients.
 pub const MAX_TERMS: usize = 1500;
 
-/// Coefficients of a law, shared ones and deviations, or of a model.
+/// Largest number of coefficients of a law, shared ones and deviations, or of a model.
 pub const MAX_COEFFICIENTS: usize = 3000;
 
-/// Effects of a model.
+/// Largest number of effects of a model.
 pub const MAX_EFFECTS: usize = 64;
 
-/// Numbers, names and operators of all formulas of a law, or of a form of an effect.
+/// Largest number of numbers, names and operators of all formulas of a law, or of a form of an
+/// effect.
 pub const MAX_SIZE: usize = 50_000;
 
-/// Values, parameters, inputs, factors or submodels, each.
+/// Largest number of values, parameters, inputs, factors or submodels, each.
 const MAX_NAMES: usize = 500;
 
-/// Comparisons of one submodel.
+/// Largest number of comparisons of one submodel.
 const MAX_COMPARISONS: usize = 16;
 
 type Fault = (String, String);
@@ -46,13 +47,14 @@ pub fn check_counts(raw: &LawFile) -> Result<(), Fault> {
     let terms = raw.axes.values().map(|axis| axis.terms.len()).sum::<usize>();
     most("axes", terms, MAX_TERMS)
         .map_err(|(field, message)| (field, format!("terms: {message}")))?;
+    // Each submodel has a deviation of every term.
     let coefficients = terms * (1 + raw.submodels.len());
     let told =
         |(field, message)| (field, format!("coefficients, {terms} for each condition: {message}"));
     most("submodels", coefficients, MAX_COEFFICIENTS).map_err(told)
 }
 
-/// Refuses more than some number of what a field lists.
+/// Refuses a field that lists more than some number of items.
 pub(crate) fn most(field: &str, found: usize, most: usize) -> Result<(), Fault> {
     if found > most {
         Err((field.to_owned(), format!("there are {found}; {most} are the most")))
@@ -74,9 +76,10 @@ pub fn check(law: &Law) -> Result<(), Fault> {
 }
 
 impl Law {
-    /// Refuses what effects have made too deep.
+    /// Refuses a law that effects have made too deep.
     pub(crate) fn check_depth(&self) -> Result<(), String> {
         let depths = Depths::of(&self.values);
+        // Twice the depth of a file's law leaves room for the formulas of effects.
         let more = self.dressing.formulas().map(|expr| ("effects".to_owned(), expr));
         let mut all = formulas(self).into_iter().chain(more);
         all.try_for_each(|(field, expr)| depths.check(&field, expr, 2 * MAX_DEPTH))
@@ -84,7 +87,7 @@ impl Law {
     }
 }
 
-/// Every formula of a law with its field.
+/// Returns every formula of a law with its field.
 fn formulas(law: &Law) -> Vec<(String, &Expr)> {
     let mut all: Vec<(String, &Expr)> =
         law.values.iter().map(|(name, expr)| (format!("values.{name}"), expr)).collect();
@@ -106,7 +109,7 @@ fn formulas(law: &Law) -> Vec<(String, &Expr)> {
     all
 }
 
-/// How deep formulas are through values, each looked at once.
+/// Depths of formulas through values, each of which is examined once.
 pub(crate) struct Depths<'a> {
     values: &'a indexmap::IndexMap<String, Expr>,
     known: RefCell<HashMap<String, usize>>,
@@ -135,6 +138,7 @@ impl<'a> Depths<'a> {
         if let Some(depth) = self.known.borrow().get(name) {
             return Some(*depth);
         }
+        // One level less is left below the value; an exhausted depth ends the search.
         let depth = 1 + expr.depth(left.checked_sub(1)?, &|name, left| self.of_name(name, left))?;
         self.known.borrow_mut().insert(name.to_owned(), depth);
         Some(depth)

@@ -1,4 +1,4 @@
-//! Laws of motion: what they are, how they are read and checked.
+//! Laws of motion: definition, reading and checks.
 
 mod definition;
 mod dimension;

@@ -1,4 +1,4 @@
-//! From a law's file to a checked law.
+//! Reading of a law from its file, and its checks.
 
 use std::collections::BTreeMap;
 
@@ -18,10 +18,10 @@ use sistership_formula::units::{Dimension, Unit};
 use sistership_formula::{self as formula, Expr};
 
 impl Law {
-    /// Reads and checks a law; `file` is the name that errors give it.
+    /// Reads and checks a law; `file` is its name in errors.
     ///
     /// # Errors
-    /// Names file, line and field of the first thing that is wrong: syntax, an unknown name, a
+    /// Returns an error with file, line and field of the first fault: syntax, an unknown name, a
     /// unit, a symmetry.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         read(file, text)
@@ -50,6 +50,7 @@ fn read(file: &str, text: &str) -> Result<Law, FileError> {
         dressing: Dressing::default(),
     };
     let reader = Reader { blame: &blame };
+    // Sections are read in the order of their dependence: a formula may use those before it.
     for (name, input) in &raw.inputs {
         let unit = Unit::parse(&input.unit).map_err(|e| blame.at(&format!("inputs.{name}"), e))?;
         law.inputs
@@ -103,7 +104,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A derivation may use particulars only; a bare number takes the parameter's unit.
+    /// Checks that a derivation uses particulars only; a bare number takes the parameter's unit.
     fn check_from(&self, field: &str, from: &Expr, wanted: Dimension) -> Result<(), FileError> {
         if from.names().is_empty() {
             return Ok(());
@@ -120,6 +121,7 @@ impl Reader<'_> {
     fn values(&self, law: &mut Law, raw: &IndexMap<String, String>) -> Result<(), FileError> {
         for (name, formula) in raw {
             let field = format!("values.{name}");
+            // A value must not have the name of another quantity.
             let taken =
                 STATES.iter().any(|(state, _)| state == name) || law.dimension(name).is_some();
             if taken {
@@ -145,6 +147,7 @@ impl Reader<'_> {
         let found = formula::dimension_of(&expr, &|n| law.dimension(n))
             .map_err(|e| self.blame.at(field, format!("`{text}` {e}")))?;
         match wanted {
+            // A literal zero fits every dimension.
             Some(wanted) if wanted != found && expr != Expr::Number(0.0) => Err(self
                 .blame
                 .at(field, format!("`{text}` has the dimension {found}; {wanted} is needed"))),
@@ -218,9 +221,11 @@ impl Reader<'_> {
                 if !law.axes.contains_key(row) || !law.axes.contains_key(column) {
                     return Err(self.blame.at(&field, "the law has no such axis"));
                 }
+                // Dimension of an entry: force over acceleration.
                 let wanted = axis_dimension(*row) - acceleration_dimension(*column);
                 law.mass.insert((*row, *column), self.formula(law, &field, formula, Some(wanted))?);
             }
+            // Without its diagonal entry the row cannot give an acceleration.
             if !columns.contains_key(row) {
                 return Err(self.blame.at(&format!("mass.{row}"), "lacks its own acceleration"));
             }

@@ -1,9 +1,9 @@
 //! Submodels: conditions under which the coefficients of a law deviate from the shared ones.
 //!
-//! Miyauchi et al. (2024, sec. 2.2.3) give every condition a set of coefficients of its own. Here
-//! the first set is shared by all and the others are written as deviations from it, `X^(i) = X +
-//! X@i`: the same functions with as many numbers, but a prior can pull what the trials do not tell
-//! apart to zero.
+//! Miyauchi et al. (2024, sec. 2.2.3) give every condition a separate set of coefficients. Here the
+//! first set is shared by all and the others are written as deviations from it, `X^(i) = X + X@i`:
+//! the same functions with as many numbers, but a prior can shrink deviations that the trials
+//! cannot distinguish to zero.
 
 use indexmap::IndexMap;
 
@@ -13,7 +13,7 @@ use crate::coefficient::split_submodel;
 use crate::name::check_slug;
 use sistership_formula::{self as formula, Expr};
 
-/// Reads submodels into `law`, whose inputs, parameters and values are there already.
+/// Reads submodels into `law`, whose inputs, parameters and values have been read.
 pub fn read_submodels(
     law: &mut Law,
     raw: &IndexMap<String, SubmodelFile>,
@@ -34,16 +34,19 @@ pub fn read_submodels(
     Ok(())
 }
 
-/// 1 where every comparison holds and no earlier submodel applies.
+/// Returns a formula that is 1 if every comparison holds and no earlier submodel applies, and 0
+/// otherwise.
 fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
     let mut product: Option<Expr> = None;
     for text in &file.when {
         let condition = formula::parse_condition(text).map_err(|e| e.to_string())?;
+        // Both sides of the comparison must have the same dimension.
         formula::dimension_of(&condition, &|n| law.dimension(n))
             .map_err(|e| format!("`{text}` {e}"))?;
         product = Some(product.map_or(condition.clone(), |product| product.times(condition)));
     }
     let holds = product.ok_or("give at least one comparison under `when`")?;
+    // Earlier submodels take precedence: `product * (1 - earlier)`.
     Ok(law.submodels.keys().fold(holds, |holds, earlier| {
         let elsewhere =
             Expr::Subtract(Box::new(Expr::Number(1.0)), Box::new(Expr::Name(indicator(earlier))));
@@ -52,9 +55,9 @@ fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
 }
 
 impl Law {
-    /// The submodel whose deviation a coefficient is; `None` for a shared one. An estimator pulls
-    /// deviations to zero with a prior whose precision is [`Submodel::shrinkage`] times that of the
-    /// shared coefficient.
+    /// Submodel of a coefficient that is a deviation; `None` for a shared coefficient. An estimator
+    /// shrinks deviations to zero by a prior whose precision is [`Submodel::shrinkage`] times that
+    /// of the shared coefficient.
     pub fn deviation(&self, coefficient: &str) -> Option<&Submodel> {
         self.submodels.get(split_submodel(coefficient).1?)
     }

@@ -10,10 +10,10 @@ use sistership_formula::Expr;
 /// States and inputs that change sign in the mirror.
 const ODD: [&str; 6] = ["v", "r", "p", "phi", "psi", "delta"];
 
-/// Inputs beyond [`AT`] that change sign too: directions of the wind.
+/// Inputs beyond [`AT`] that also change sign: directions of the wind.
 const ODD_INPUTS: [&str; 2] = ["wind_from", "apparent_wind_from"];
 
-/// A few states well apart from zero and from each other, in SI.
+/// States at which formulas are evaluated, distinct from zero and from each other, SI.
 const POINTS: [[f64; 8]; 3] = [
     // u, v, r, p, phi, psi, delta, n
     [5.0, 0.7, 0.011, 0.004, 0.05, 0.3, 0.2, 1.2],
@@ -22,7 +22,7 @@ const POINTS: [[f64; 8]; 3] = [
 ];
 const AT: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "delta", "n"];
 
-/// Checks every term and rest; a term whose name says that it is a bias (`Y_0`, `N_u`) must be one.
+/// Checks every term and rest; a term whose name declares a bias (`Y_0`, `N_u`) must be one.
 pub fn check(law: &Law) -> Result<(), (String, String)> {
     for (first, second) in &law.mirrors {
         let second = second.trim_start_matches('-');
@@ -52,9 +52,9 @@ pub fn check(law: &Law) -> Result<(), (String, String)> {
     Ok(())
 }
 
-/// Whether the factors that a name spells make an odd product in the mirror. Where one of them is
-/// neither odd nor even, as the angle of one rudder of a pair, the name cannot spell a bias and the
-/// axis decides.
+/// Returns true if the product of a name's factors is odd in the mirror. If one of them is neither
+/// odd nor even, such as the angle of one rudder of a pair, the name cannot declare a bias and the
+/// parity of the axis applies.
 fn spelled_parity(
     law: &Law,
     factors: &BTreeMap<&str, Option<bool>>,
@@ -64,7 +64,7 @@ fn spelled_parity(
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else {
         return axis.is_odd();
     };
-    // A factor that only explicit formulas use is known by its symbol alone.
+    // The parity of a factor that only explicit formulas use follows from its symbol.
     let of_symbol = |symbol: &String| {
         factors
             .get(symbol.as_str())
@@ -82,6 +82,7 @@ fn check_parity(
     odd: bool,
     field: &str,
 ) -> Result<(), (String, String)> {
+    // A formula that vanishes at all points has either parity.
     let vanishes = places.0.iter().all(|[here, _]| here.of(expr) == Some(0.0));
     if vanishes || is_odd(places, expr) == Some(odd) {
         return Ok(());
@@ -94,13 +95,15 @@ fn check_parity(
     Err((field.to_owned(), message))
 }
 
-/// Whether the formula is odd (`Some(true)`), even (`Some(false)`) or neither in the mirror.
+/// Returns the parity of a formula in the mirror: odd (`Some(true)`), even (`Some(false)`) or
+/// neither.
 fn is_odd(places: &Places<'_>, expr: &Expr) -> Option<bool> {
     let parity = |sign: f64| {
         places.0.iter().all(|[here, there]| match (here.of(expr), there.of(expr)) {
             (Some(here), Some(there)) => {
                 (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs())
             }
+            // A point without a value says nothing about the parity.
             _ => true,
         })
     };
@@ -112,20 +115,20 @@ fn is_odd(places: &Places<'_>, expr: &Expr) -> Option<bool> {
 }
 
 impl Law {
-    /// Whether a coefficient's regressor changes sign with the rudder: by `delta`, or by a factor
-    /// of the law that does, such as a sine of it.
+    /// Returns true if a coefficient's regressor changes sign with the rudder: by `delta`, or by a
+    /// factor of the law that does, such as its sine.
     pub fn is_odd_in_rudder(&self, coefficient: &str) -> bool {
         let odd: BTreeSet<&str> = self.odd_in_rudder().collect();
         self.is_odd_in(coefficient, &odd)
     }
 
-    /// The factors of the law that change sign with the rudder.
+    /// Factors of the law that change sign with the rudder.
     pub(crate) fn odd_in_rudder(&self) -> impl Iterator<Item = &str> {
         let own = self.factors.iter().filter(|(_, expr)| is_odd_in_rudder(self, expr));
         own.map(|(symbol, _)| symbol.as_str()).chain(["delta"])
     }
 
-    /// Whether a coefficient's regressor changes sign with what is `odd`.
+    /// Returns true if a coefficient's regressor changes sign with the factors in `odd`.
     pub(crate) fn is_odd_in(&self, coefficient: &str, odd: &BTreeSet<&str>) -> bool {
         let Ok(name) = CoefficientName::parse(coefficient, &self.extra_factors()) else {
             return false;
@@ -139,13 +142,14 @@ impl Law {
     }
 }
 
-/// Whether a formula changes sign with every rudder angle, `delta` or one of a pair, all else as it
-/// is.
+/// Returns true if a formula changes sign with every rudder angle, `delta` or one of a pair, at
+/// otherwise equal values.
 fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     let rudders =
         || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
     let value = |point: &[f64; 8], sign: f64| {
         let mut place = Place::new(law, point, false);
+        // Each rudder has a different angle, so that their sum cannot cancel.
         place.known.extend(
             rudders().enumerate().map(|(k, name)| (name.as_str(), sign * (0.2 + 0.1 * k as f64))),
         );
@@ -157,8 +161,8 @@ fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     })
 }
 
-/// The ship in one of the points, or its mirror image, with the values that were needed there so
-/// far: each is found once.
+/// The ship in one of the points, or its mirror image, with the values that were evaluated there,
+/// each once.
 struct Place<'a> {
     law: &'a Law,
     known: BTreeMap<&'a str, f64>,
@@ -209,8 +213,7 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Any number will do for particulars and parameters, as long as different names have different
-/// ones.
+/// Arbitrary number for a particular or parameter, which differs from name to name.
 fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
     if let Some((value, _)) = sistership_formula::builtin(name) {
         return value;
@@ -223,8 +226,8 @@ fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
     sign * (0.2 + f64::from(hash % 997) / 997.0)
 }
 
-/// What a parameter or input becomes in the mirror, with its sign: another one (`gamma_R_minus`),
-/// its own opposite (`-c_Pr`), or the opposite of another (`-delta_p`).
+/// Returns the name that a parameter or input becomes in the mirror, with its sign: another one
+/// (`gamma_R_minus`), its own opposite (`-c_Pr`), or the opposite of another (`-delta_p`).
 fn twin<'a>(law: &'a Law, name: &str) -> Option<(f64, &'a str)> {
     law.mirrors.iter().find_map(|(a, b)| {
         let (sign, b) = b.strip_prefix('-').map_or((1.0, b.as_str()), |positive| (-1.0, positive));

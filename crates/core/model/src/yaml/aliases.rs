@@ -1,13 +1,14 @@
-//! Aliases and `%TAG`, found by what they look like: where one may be, there is one.
+//! Aliases and `%TAG` directives, recognised by their form alone: false positives are accepted.
 
 use std::collections::HashSet;
 
-/// Refuses aliases of anchors, and directives of tags, at a byte.
+/// Refuses aliases of anchors, and directives of tags; returns the byte at fault and a message.
 pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
     let marks: Vec<(usize, &[u8])> =
         (0..bytes.len()).filter_map(|at| Some((at, name(bytes, at)?))).collect();
     let anchors: HashSet<&[u8]> =
         marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
+    // An asterisk without an anchor of that name is part of a text.
     let alias = marks.iter().find(|(at, name)| bytes[*at] == b'*' && anchors.contains(name));
     if let Some((at, name)) = alias {
         let name = sistership_formula::head(&String::from_utf8_lossy(name));
@@ -19,7 +20,7 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
     }
 }
 
-/// The name of what may be an anchor or an alias at a place.
+/// Returns the name of a possible anchor or alias at a position.
 fn name(bytes: &[u8], at: usize) -> Option<&[u8]> {
     if !matches!(bytes[at], b'&' | b'*') || !may_begin(bytes, at) {
         return None;
@@ -30,8 +31,8 @@ fn name(bytes: &[u8], at: usize) -> Option<&[u8]> {
     (length > 0).then(|| &rest[..length])
 }
 
-/// Whether a token may begin at a place, by what stands before it; bytes above ASCII may be a line
-/// break or a mark of order.
+/// Returns true if a token may begin at a position, by the byte before it; bytes above ASCII may be
+/// a line break or a byte order mark.
 fn may_begin(bytes: &[u8], at: usize) -> bool {
     let before = at.checked_sub(1).map(|place| bytes[place]);
     before.is_none_or(|b| b.is_ascii_whitespace() || !b.is_ascii() || b"[]{},:?\"'".contains(&b))

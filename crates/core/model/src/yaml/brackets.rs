@@ -1,28 +1,30 @@
-//! How deep brackets and braces nest, told without knowing where strings, comments and block
-//! scalars begin and end.
+//! Nesting depth of brackets and braces, determined without knowledge of where strings, comments
+//! and block scalars begin and end.
 //!
-//! Outside brackets, what a byte means depends on the indentation of everything before it; inside,
-//! on few rules. So each bracket is taken for the outermost one, and what follows is read by the
-//! rules for what is inside. For the brackets that are, that is how the parser reads it; for those
-//! that stand in some text it is read in vain, and seldom deep.
+//! Outside brackets, the meaning of a byte depends on the indentation of everything before it;
+//! inside, on few rules. Each bracket is therefore taken as the outermost one, and the following
+//! text is read by the rules for the inside. For true outermost brackets this is how the parser
+//! reads them; for those within a text the reading is superfluous, and seldom deep.
 
 use super::line_break::break_at;
 
-/// Brackets and braces within each other.
+/// Largest nesting depth of brackets and braces.
 pub const MAX_DEPTH: usize = 64;
 
-/// How often a document may be read over: as often as its brackets nest, and once for each that is
-/// never closed.
+/// Largest number of passes over a document: one for each level of nesting, and one for each
+/// bracket that is never closed.
 const MAX_PASSES: usize = 16;
 
-/// A document that counts as this long at least, bytes: short ones may have more brackets that are
+/// Smallest length that is assumed of a document, bytes: short ones may have more brackets that are
 /// never closed.
 const SHORT: usize = 256 << 10;
 
-/// Refuses brackets that nest deeper than [`MAX_DEPTH`], at a byte.
+/// Refuses brackets that nest deeper than [`MAX_DEPTH`]; returns the byte at fault and a message.
 pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
+    // Every byte that is read is subtracted from the budget, which bounds the time.
     let mut budget = MAX_PASSES * bytes.len().max(SHORT);
     for at in (0..bytes.len()).filter(|&at| matches!(bytes[at], b'[' | b'{')) {
+        // Each opening bracket is read as if it were the outermost one.
         let mut inside = Inside { bytes, at, depth: 0, most: 0 };
         inside.read();
         if inside.most > MAX_DEPTH {
@@ -45,7 +47,7 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
     Ok(())
 }
 
-/// A reader of what is inside brackets, as libyaml's scanner has it.
+/// Reader of the text inside brackets, by the rules of libyaml's scanner.
 struct Inside<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -54,7 +56,7 @@ struct Inside<'a> {
 }
 
 impl Inside<'_> {
-    /// Reads tokens until the bracket is closed, they nest too deep or the text ends.
+    /// Reads tokens until the bracket is closed, the limit of depth is exceeded or the text ends.
     fn read(&mut self) {
         while let Some(byte) = self.peek() {
             match byte {
@@ -81,6 +83,7 @@ impl Inside<'_> {
                     None => self.plain(),
                 },
             }
+            // At depth 0 the bracket is closed.
             if self.depth == 0 || self.most > MAX_DEPTH {
                 return;
             }
@@ -100,16 +103,18 @@ impl Inside<'_> {
     fn quoted(&mut self) {
         self.at += 1;
         while let Some(byte) = self.peek() {
+            // A backslash escapes the next byte.
             self.at += if byte == b'\\' { 2 } else { 1 };
             if byte == b'"' {
                 return;
             }
         }
+        // A string that is not closed extends to the end of the text.
         self.at = self.bytes.len();
     }
 
-    /// A doubled quote reads as the end of one string and the beginning of the next, to the same
-    /// end.
+    /// Skips a single-quoted string. A doubled quote is read as the end of one string and the
+    /// beginning of the next, with the same end.
     fn single_quoted(&mut self) {
         self.at += 1;
         self.skip_while(|byte| byte != b'\'');
@@ -122,7 +127,7 @@ impl Inside<'_> {
         }
     }
 
-    /// Only a verbatim tag, `!<...>`, may have brackets in it.
+    /// Skips a tag. Only a verbatim tag, `!<...>`, may contain brackets.
     fn tag(&mut self) {
         self.at += 1;
         if self.peek() == Some(b'<') {
@@ -136,11 +141,13 @@ impl Inside<'_> {
         self.skip_while(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'));
     }
 
-    /// A plain scalar: quotes are part of it, and so are spaces and lines, up to what ends it.
+    /// Skips a plain scalar: quotes, spaces and line breaks are part of it, up to the character
+    /// that ends it.
     fn plain(&mut self) {
         let mut after_space = false;
         while let Some(byte) = self.peek() {
             let line_break = break_at(self.bytes, self.at);
+            // Indicators that end a plain scalar inside brackets.
             let ends = match byte {
                 b',' | b'[' | b']' | b'{' | b'}' => true,
                 b'#' => after_space,

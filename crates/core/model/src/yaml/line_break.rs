@@ -1,7 +1,7 @@
-//! Line breaks as libyaml knows them.
+//! Line breaks according to libyaml.
 
-/// Bytes of the line break that begins at a place, none where none does: also NEL, LS and PS, which
-/// libyaml takes for one.
+/// Length in bytes of the line break at a position; `None` if there is none. NEL, LS and PS are
+/// included, which libyaml takes for line breaks.
 pub fn break_at(bytes: &[u8], at: usize) -> Option<usize> {
     match bytes[at] {
         b'\n' | b'\r' => Some(1),

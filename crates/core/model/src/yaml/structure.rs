@@ -1,31 +1,31 @@
-//! Everything that is wrong with the shape of a document, by the schema of its type: the parser
-//! itself stops at the first.
+//! All faults of a document's shape, by the schema of its type: the parser stops at the first.
 
 use schemars::JsonSchema;
 use serde_json::{Map, Value};
 
 use super::{MOST_FAULTS, read};
 
-/// A dotted path and what is wrong there.
+/// A dotted path and the fault there.
 pub type ShapeFault = (String, String);
 
-/// Where a text does not have the shape of its type, of many places the first; nothing where the
-/// schema finds nothing, or the text is no YAML.
+/// Returns the places where a text does not have the shape of its type, at most [`MOST_FAULTS`];
+/// empty if the schema finds none, or if the text is not YAML.
 pub fn faults<T: JsonSchema>(text: &str) -> Vec<ShapeFault> {
-    // By the door: what may not be parsed is not.
+    // `read` checks the limits before the text is parsed.
     let Ok(document) = read::<Value>(text) else { return Vec::new() };
     let schema = schemars::schema_for!(T);
     let shape = Shape { root: schema.as_value() };
     shape.faults(schema.as_value(), &document, "")
 }
 
-/// The keywords that schemas derived from types use.
+/// Checker for the keywords of schemas that are derived from types.
 struct Shape<'a> {
     root: &'a Value,
 }
 
 impl Shape<'_> {
     fn faults(&self, schema: &Value, value: &Value, path: &str) -> Vec<ShapeFault> {
+        // Schemas of named types are references into the root schema.
         if let Some(target) = schema["$ref"].as_str() {
             let target = target.strip_prefix('#').and_then(|pointer| self.root.pointer(pointer));
             return target.map_or_else(Vec::new, |schema| self.faults(schema, value, path));
@@ -52,7 +52,8 @@ impl Shape<'_> {
         }
     }
 
-    /// What may be one of several: the faults of the one that its tag names, or that comes nearest.
+    /// Returns the faults of a choice: those of the alternative that its tag selects, or that
+    /// matches best.
     fn of_choice(&self, choice: &[Value], value: &Value, path: &str) -> Vec<ShapeFault> {
         let each = choice.iter().map(|schema| self.faults(schema, value, path));
         let mut each: Vec<Vec<ShapeFault>> = each.collect();
@@ -65,16 +66,18 @@ impl Shape<'_> {
             && let Some(given) = value.get(name)
         {
             let at = tags.iter().position(|(_, word)| *word == given);
+            // Indices match only if every alternative has a tag.
             return match at.filter(|_| tags.len() == each.len()) {
                 Some(at) => each.swap_remove(at),
                 None => vec![(below(path, name), unknown(given, tags.iter().map(|tag| tag.1)))],
             };
         }
+        // The alternative whose faults lie deepest accepted most of the value.
         let deepest = |faults: &Vec<ShapeFault>| faults.iter().map(|fault| fault.0.len()).max();
         each.into_iter().max_by_key(deepest).unwrap_or_default()
     }
 
-    /// The field by whose word a choice is told from others, and that word.
+    /// Returns the field that distinguishes the alternatives of a choice, and its value.
     fn tag<'v>(&'v self, schema: &'v Value) -> Option<(&'v str, &'v Value)> {
         let target = schema["$ref"].as_str().and_then(|target| target.strip_prefix('#'));
         let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(schema);
@@ -93,6 +96,7 @@ impl Shape<'_> {
         let names: Vec<&str> = names.map(String::as_str).collect();
         let mut found = Vec::new();
         for (name, value) in fields {
+            // The number of faults is limited, because each is searched in the text later.
             if found.len() >= MOST_FAULTS {
                 break;
             }
@@ -121,7 +125,8 @@ fn below(path: &str, name: impl std::fmt::Display) -> String {
     if path.is_empty() { name.to_string() } else { format!("{path}.{name}") }
 }
 
-/// The words of which one is asked for, if any are; such as are described stand one by one.
+/// Returns the permitted words of a schema, if it lists any; words with descriptions are listed as
+/// alternatives.
 fn words(schema: &Value) -> Option<Vec<&Value>> {
     let one = schema.get("const").map(|word| vec![word]);
     let described = || schema["oneOf"].as_array()?.iter().map(|one| one.get("const")).collect();
@@ -148,7 +153,7 @@ fn has_type(schema: &Value, value: &Value) -> bool {
         "array" => value.is_array(),
         "string" => value.is_string(),
         "integer" => value.is_i64() || value.is_u64(),
-        // YAML has numbers that JSON has not: they come as null.
+        // YAML has numbers that JSON lacks, such as infinity: they are read as null.
         "number" => value.is_number() || value.is_null(),
         "boolean" => value.is_boolean(),
         _ => value.is_null(),
@@ -179,7 +184,7 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// A value as a person reads it.
+/// Formats a value for readers.
 fn said(value: &Value) -> String {
     match value {
         Value::String(text) => format!("`{text}`"),

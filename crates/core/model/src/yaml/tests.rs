@@ -67,7 +67,7 @@ fn aliases_and_tags_are_refused() {
     assert!(read::<serde_yaml::Value>("a: 2 *x & y\nb: R&D\nc: u *v\nd: '&'").is_ok());
 }
 
-/// What people write: brackets in text, in comments and in strings.
+/// Documents as users write them: brackets in text, in comments and in strings.
 #[test]
 fn honest_documents_are_read() {
     let note = "note: half open [0, 1) and \"[[\" it's {\n# [[[ 'x\n";

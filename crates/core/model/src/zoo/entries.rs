@@ -1,4 +1,4 @@
-//! Documents of one kind by name, each read when it is first asked for.
+//! Documents of one kind by name, each read when it is first requested.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::error::FileError;
 
-/// How a document is read from the name of its file and its text.
+/// Function that reads a document from the name of its file and its text.
 type Parse<T> = fn(&str, &str) -> Result<T, FileError>;
 
 /// Documents by name.
@@ -27,15 +27,15 @@ struct Entry<T> {
 }
 
 impl<T: Send + Sync> Entries<T> {
-    /// None yet.
+    /// Creates an empty collection.
     pub fn new(parse: Parse<T>) -> Self {
         Self { parse, by_name: BTreeMap::new() }
     }
 
-    /// The YAML files of an embedded folder; each is called as the document that it holds.
+    /// Returns the YAML files of an embedded folder; the name of each file is that of its document.
     ///
     /// # Errors
-    /// A file that is no text.
+    /// Returns an error for a file that is not text.
     pub fn embedded(
         folder: Option<&'static Dir<'static>>,
         parse: Parse<T>,
@@ -54,32 +54,34 @@ impl<T: Send + Sync> Entries<T> {
         self.by_name.insert(name.to_owned(), entry);
     }
 
-    /// The document of a name; none where it does not read.
+    /// Document by name; `None` if it cannot be read.
     pub fn get(&self, name: &str) -> Option<&Arc<T>> {
         self.read(self.by_name.get(name)?).as_ref().ok()
     }
 
-    /// The text of a document.
+    /// Text of a document.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.by_name.get(name).map(|entry| &*entry.text)
     }
 
-    /// The names, in order.
+    /// Names, in order.
     pub fn names(&self) -> Vec<&str> {
         self.by_name.keys().map(String::as_str).collect()
     }
 
-    /// Every document that reads, by name; those not yet read are read on all cores.
+    /// Every document that can be read, in the order of names; those not yet read are read on all
+    /// cores.
     pub fn all(&self) -> impl Iterator<Item = &Arc<T>> {
         let unread: Vec<&Entry<T>> =
             self.by_name.values().filter(|entry| entry.read.get().is_none()).collect();
+        // All unread documents are read in parallel first; the iterator then finds them in place.
         unread.into_par_iter().for_each(|entry| {
             self.read(entry);
         });
         self.by_name.values().filter_map(|entry| self.read(entry).as_ref().ok())
     }
 
-    /// The first document that does not read, by name.
+    /// Error of the first document that cannot be read, in the order of names.
     pub fn fault(&self) -> Option<&FileError> {
         self.by_name.values().find_map(|entry| self.read(entry).as_ref().err())
     }
@@ -89,7 +91,7 @@ impl<T: Send + Sync> Entries<T> {
     }
 }
 
-/// A file that is not yet read, by its name without folder and extension.
+/// Entry of a file that is not yet read, with its name without folder and extension.
 fn entry<T>(file: &'static File<'static>) -> Result<(String, Entry<T>), FileError> {
     let no_text = || FileError {
         file: file.path().display().to_string(),

@@ -1,5 +1,5 @@
 //! The equations of motion: `M (nu' - a) = F`, where `nu` are the velocities, `F` the forces of the
-//! law and `a` what effects add to accelerations, and the kinematics.
+//! law and `a` the accelerations that effects add, and the kinematics.
 
 use std::borrow::Cow;
 
@@ -13,24 +13,23 @@ use super::refusal::PlantError;
 use crate::state::at;
 use crate::tape::Binding;
 
-/// Places in the state vector of the states that move: velocities first, as the axes accelerate
-/// them.
+/// Places in the state vector of the moving states: velocities first, in the order of the axes.
 const PLANE: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
 const ROLL: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
 
-/// The axes, in the order of the velocities among those states.
+/// Axes in the order of the velocities among those states.
 const AXES: [Axis; 4] = [Axis::X, Axis::Y, Axis::N, Axis::K];
 
-/// What stands for the coefficients in a force.
+/// Representation of the coefficients in a force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coefficients {
-    /// Those values of the model that are not zero.
+    /// The values of the model that are not zero.
     Values,
-    /// The name of each coefficient that the model has: an input of the tape.
+    /// The name of each coefficient of the model, as an input of the tape.
     Names,
 }
 
-/// How the ship's axes lie in kinematics that the law leaves open.
+/// Attitude of the ship's axes in kinematics that the law does not define.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attitude {
     /// Velocities are horizontal.
@@ -47,11 +46,11 @@ pub struct EquationsOfMotion<'a> {
 }
 
 impl<'a> EquationsOfMotion<'a> {
-    /// Of a law with the effects that a model carries.
+    /// Sets up the equations of a law with the effects that a model carries.
     ///
     /// # Errors
-    /// Says which effect cannot be used, and why. Refuses a model with a learned branch, which is
-    /// no formula: only [`Ship`](crate::Ship) sails both halves.
+    /// Returns an error that names the effect that cannot be used. Refuses a model with a learned
+    /// correction, which is not a formula: only [`Ship`](crate::Ship) simulates both.
     pub fn new(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
         if model.branch.is_some() {
             return Err(PlantError::Branch(model.name.clone()));
@@ -59,10 +58,10 @@ impl<'a> EquationsOfMotion<'a> {
         Self::of_foundation(model, law)
     }
 
-    /// As [`EquationsOfMotion::new`], and without what was learned beside the law.
+    /// Sets up the equations as [`EquationsOfMotion::new`] does, without the learned correction.
     ///
     /// # Errors
-    /// Says which effect cannot be used, and why.
+    /// Returns an error that names the effect that cannot be used.
     pub fn of_foundation(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
         if model.effects.is_empty() && model.propulsion.is_none() {
             return Ok(Self::of_law(model, Cow::Borrowed(law)));
@@ -73,7 +72,7 @@ impl<'a> EquationsOfMotion<'a> {
         Ok(Self::of_law(model, Cow::Owned(dressed)))
     }
 
-    /// Of a law as it is: effects are in it already, or are left out.
+    /// Sets up the equations of a law as it is: effects are in it already, or are left out.
     pub fn of_law(model: &'a Model, law: Cow<'a, Law>) -> Self {
         Self { model, law }
     }
@@ -88,8 +87,10 @@ impl<'a> EquationsOfMotion<'a> {
         &self.law
     }
 
-    /// What tapes of forces take: the states that formulas know, then the inputs of the law.
+    /// Input names of a tape of forces: the states that formulas can use, then the inputs of the
+    /// law.
     pub fn names(&self) -> Vec<String> {
+        // Evaluators rely on this order: states first, then the inputs of the law.
         STATES
             .iter()
             .map(|&(name, _)| name.to_owned())
@@ -97,27 +98,28 @@ impl<'a> EquationsOfMotion<'a> {
             .collect()
     }
 
-    /// The inputs of the law with their defaults.
+    /// Inputs of the law with their defaults.
     pub fn inputs(&self) -> Vec<(String, Option<f64>)> {
         self.law.inputs.iter().map(|(name, input)| (name.clone(), input.default)).collect()
     }
 
-    /// The axes in the order of the velocities: X, Y, N, and K where the law has roll.
+    /// Axes in the order of the velocities: X, Y, N, and K for a 4-DOF law.
     pub fn axes(&self) -> &'static [Axis] {
         if self.law.has_roll() { &AXES } else { &AXES[..3] }
     }
 
-    /// Places in the state vector of the states that move: velocities in the order of the axes,
-    /// then attitude and position.
+    /// Places in the state vector of the moving states: velocities in the order of the axes, then
+    /// attitude and position.
     pub fn states(&self) -> &'static [usize] {
         if self.law.has_roll() { &ROLL } else { &PLANE }
     }
 
-    /// What a name of the law stands for.
+    /// Returns the formula or value of a name of the law; `None` for an unknown name.
     pub fn binding(&self, name: &str) -> Option<Binding> {
         if let Some(expr) = self.law.values.get(name) {
             return Some(Binding::Formula(expr.clone()));
         }
+        // Parameters of effects take precedence over those of the model, and both over particulars.
         let of_effect = self.law.dressing.parameters.get(name).copied();
         let parameter =
             of_effect.or_else(|| self.model.parameters.get(name).map(|quantity| quantity.value));
@@ -126,37 +128,39 @@ impl<'a> EquationsOfMotion<'a> {
             .map(Binding::Constant)
     }
 
-    /// The names of the coefficients that the model has on an axis.
+    /// Names of the coefficients that the model has on an axis.
     pub fn coefficients(&self, axis: Axis) -> impl Iterator<Item = &'a String> + use<'a> {
         let prefix = format!("{axis}_");
         self.model.coefficients.keys().filter(move |name| name.starts_with(&prefix))
     }
 
-    /// The regressor of a coefficient without its axis' scale.
+    /// Returns the regressor of a coefficient without the scale of its axis.
     ///
     /// # Errors
-    /// Says why the law has no such coefficient.
+    /// Returns an error if the law has no such coefficient.
     pub fn term(&self, name: &str) -> Result<Expr, PlantError> {
         Ok(self.law.term(name)?.1)
     }
 
-    /// The regressor of a coefficient with its axis' scale, N (N m) per unit.
+    /// Returns the regressor of a coefficient with the scale of its axis, N (N m) per unit.
     ///
     /// # Errors
-    /// Says why the law has no such coefficient.
+    /// Returns an error if the law has no such coefficient.
     pub fn regressor(&self, name: &str) -> Result<Expr, PlantError> {
         Ok(self.law.regressor(name)?.1)
     }
 
-    /// The whole right-hand side of an axis, N (N m): coefficients times regressors, and the rest.
+    /// Returns the whole right-hand side of an axis, N (N m): coefficients times regressors, and
+    /// the rest.
     ///
     /// # Errors
-    /// Names the coefficient that the law does not have.
+    /// Returns an error that names a coefficient that the law does not have.
     pub fn force(&self, axis: Axis, coefficients: Coefficients) -> Result<Expr, PlantError> {
         let axis_law = &self.law.axes[&axis];
         let mut sum = Expr::Number(0.0);
         for (name, quantity) in &self.model.coefficients {
             let factor = match coefficients {
+                // Zero coefficients are left out, which keeps the tape short.
                 Coefficients::Values if quantity.value == 0.0 => continue,
                 Coefficients::Values => Expr::Number(quantity.value),
                 Coefficients::Names => Expr::Name(name.clone()),
@@ -166,10 +170,11 @@ impl<'a> EquationsOfMotion<'a> {
                 sum = Expr::Add(Box::new(sum), Box::new(term.times(factor)));
             }
         }
+        // `scale * sum + rest`
         Ok(Expr::Add(Box::new(axis_law.scale.clone().times(sum)), Box::new(axis_law.rest.clone())))
     }
 
-    /// What effects add to the acceleration of an axis, m/s2 (rad/s2).
+    /// Acceleration that effects add on an axis, m/s2 (rad/s2); `None` if no effect adds any.
     pub fn addition(&self, axis: Axis) -> Option<Expr> {
         let added = self
             .law
@@ -181,16 +186,17 @@ impl<'a> EquationsOfMotion<'a> {
         added.reduce(|sum, expr| Expr::Add(Box::new(sum), Box::new(expr)))
     }
 
-    /// The rate of a state after the velocities: as the law says, else that of motion in the
-    /// horizontal plane, in m/s or rad/s.
+    /// Returns the rate of a state other than a velocity: that of the law, or by default that of
+    /// motion in the horizontal plane, in m/s or rad/s.
     ///
     /// # Errors
-    /// None that a law could cause.
+    /// Returns an error if a built-in formula cannot be parsed; no law can cause this.
     pub fn kinematic(&self, state: usize, attitude: Attitude) -> Result<Expr, PlantError> {
         let (name, upright, heeled) = match state {
             at::PHI => ("phi", "p", "p"),
             at::PSI => ("psi", "r", "r*cos(phi)"),
             at::X => ("x", "u*cos(psi) - v*sin(psi)", "u*cos(psi) - v*sin(psi)*cos(phi)"),
+            // The remaining state is y.
             _ => ("y", "u*sin(psi) + v*cos(psi)", "u*sin(psi) + v*cos(psi)*cos(phi)"),
         };
         match self.law.kinematics.get(name) {
@@ -199,10 +205,10 @@ impl<'a> EquationsOfMotion<'a> {
         }
     }
 
-    /// Refuses what acts through a lag or a dead band, or on instruments, which some view does not
-    /// know.
+    /// Refuses a model with a lag, a dead band or an effect on instruments, which some views cannot
+    /// represent.
     ///
-    /// # Errors
+    /// Returns an error that names the model and the view.
     /// Names the model and the view.
     pub fn without_lags_or_instruments(&self, view: &'static str) -> Result<(), PlantError> {
         let dressing = &self.law.dressing;

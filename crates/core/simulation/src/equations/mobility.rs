@@ -1,4 +1,4 @@
-//! Accelerations per force: the mass matrix, solved.
+//! Mobility matrix: accelerations per unit force, the inverse of the mass matrix.
 
 use nalgebra::Matrix4;
 
@@ -6,8 +6,9 @@ use super::definition::EquationsOfMotion;
 use super::refusal::PlantError;
 use crate::tape::Tape;
 
-/// Accelerations that unit forces cause; not a number where the matrix cannot be solved.
+/// Returns the accelerations that unit forces cause; all NaN if the matrix is singular.
 pub fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
+    // Axes that the law does not have are padded by those of the identity matrix.
     let padded =
         Matrix4::from_fn(
             |i, j| if i < n && j < n { mass(i, j) } else { f64::from(u8::from(i == j)) },
@@ -15,22 +16,24 @@ pub fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
     padded.lu().solve(&Matrix4::identity()).unwrap_or_else(|| Matrix4::repeat(f64::NAN))
 }
 
-/// The same over all axes, row by row, where masses do not change; `mass` are the outputs of the
-/// matrix' entries on the tape.
+/// Returns the mobility over all axes, row by row, if the masses do not change, and `None`
+/// otherwise; `mass` are the outputs of the matrix entries on the tape.
 ///
 /// # Errors
-/// Says that the mass matrix cannot be solved.
+/// Returns an error if the mass matrix cannot be inverted.
 pub fn constant_mobility(
     equations: &EquationsOfMotion<'_>,
     tape: &Tape,
     mass: &[Option<usize>],
 ) -> Result<Option<Vec<f64>>, PlantError> {
     let entries: Option<Vec<f64>> =
+        // An absent entry is a constant zero; an entry that changes gives `None`.
         mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
     let Some(entries) = entries else { return Ok(None) };
     let n = equations.axes().len();
     let solved = mobility(n, |i, j| entries[i * n + j]);
     let constant: Vec<f64> = (0..n * n).map(|k| solved[(k / n, k % n)]).collect();
+    // NaN marks a matrix that could not be inverted.
     if constant.iter().any(|value| !value.is_finite()) {
         return Err(PlantError::Mass(equations.model().name.clone()));
     }

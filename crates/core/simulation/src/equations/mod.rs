@@ -1,9 +1,9 @@
-//! The equations of motion of a law for a model, and how they are put on tapes.
+//! The equations of motion of a law for a model, and their lowering to tapes.
 //!
 //! [`EquationsOfMotion`] is set up once from the law, the coefficients and the effects of a model,
 //! and has the formulas of forces, masses, added accelerations and kinematics. [`Lowering`] puts
-//! formulas of them on a tape; [`PlantError`] is the one refusal. Each use is a view that takes
-//! what it needs: simulation ([`Plant`](crate::Plant)), what instruments say
+//! these formulas on a tape; [`PlantError`] is the only error type. Each use is a view that takes
+//! what it needs: simulation ([`Plant`](crate::Plant)), readings of instruments
 //! ([`Instruments`](crate::instruments::Instruments)), candidates whose coefficients are data
 //! ([`CandidateSystem`](crate::candidates::CandidateSystem)), sensitivities
 //! ([`SensitiveSystem`](crate::sensitivity::SensitiveSystem)), the residuals of a filter and the

@@ -1,9 +1,9 @@
-//! Why the equations of motion cannot be used.
+//! Error type of the equations of motion.
 
 use sistership_formula::FormulaError;
 use sistership_model::law::TermError;
 
-/// Why a model cannot be made ready.
+/// Reason for which a model cannot be prepared.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// A formula needs a particular or parameter that the model does not have.
@@ -21,18 +21,18 @@ pub enum PlantError {
         "the mass matrix of `{0}` is singular or not positive: check mass, inertia and added masses"
     )]
     Mass(String),
-    /// The mass matrix depends on the motion, and is to be differentiated.
+    /// The mass matrix depends on the motion, but would have to be differentiated.
     #[error("masses of law `{0}` change with the motion: no sensitivities")]
     MovingMass(String),
-    /// Some view knows neither lags nor instruments.
+    /// A view that can represent neither lags nor instruments.
     #[error("`{model}` carries a lag, a dead band or an effect on instruments: no {view}")]
     Unsupported {
         /// The model.
         model: String,
-        /// What is not to be had.
+        /// The view that is not available.
         view: &'static str,
     },
-    /// A law takes more from outside than a simulation can give.
+    /// A law has more inputs than a simulation can give.
     #[error("law `{law}` has more than {most} inputs")]
     Inputs {
         /// The law.
@@ -40,7 +40,7 @@ pub enum PlantError {
         /// Most inputs.
         most: usize,
     },
-    /// A model with a learned branch is sailed without its weights.
+    /// The weights of the model's learned correction are not attached.
     #[error("branch: `{model}` has a learned branch, whose weights {sha256} are not here")]
     Weights {
         /// The model.
@@ -48,7 +48,7 @@ pub enum PlantError {
         /// The hash of the weights.
         sha256: String,
     },
-    /// What is asked of a model with a learned branch can only be asked of its foundation.
+    /// A request that only the foundation of a model with a learned correction can answer.
     #[error(
         "branch: `{0}` has a learned branch, which has no formulas and no coefficients: give the \
          model that it was trained on"
@@ -65,7 +65,7 @@ pub enum PlantError {
     Effect {
         /// The field of the model.
         field: String,
-        /// What is wrong with it.
+        /// Description of the error.
         message: String,
     },
 }

@@ -7,7 +7,7 @@ use crate::Plant;
 use crate::candidates::CandidateSystem;
 use crate::sensitivity::SensitiveSystem;
 
-/// What each view says of a model.
+/// Result of each view for a model.
 fn refusals(model: &Model, law: &Law) -> [Option<PlantError>; 3] {
     [
         Plant::new(model, law).err(),

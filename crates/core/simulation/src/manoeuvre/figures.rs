@@ -1,22 +1,23 @@
-//! The standard manoeuvres as a list of figures, each by its name.
+//! List of the named figures of the standard manoeuvres.
 
 use super::StandardManoeuvres;
 
 /// One figure of a manoeuvre or criterion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What it is of: `turn 35 deg: tactical diameter`, `IMO: advance`.
+    /// Name of the manoeuvre or criterion and of the figure, such as `turn 35 deg: tactical
+    /// diameter` or `IMO: advance`.
     pub name: String,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: String,
-    /// Its value; absent where the manoeuvre did not reach it.
+    /// Value; absent if the manoeuvre did not reach it.
     pub value: Option<f64>,
-    /// Whether a criterion is met.
+    /// True if a criterion is met; absent for figures that are no criterion.
     pub pass: Option<bool>,
 }
 
 impl StandardManoeuvres {
-    /// Every figure, in an order that depends on what was sailed only.
+    /// Returns every figure, in an order that depends only on the manoeuvres that were simulated.
     pub fn figures(&self) -> Vec<Figure> {
         let plain = |name: String, unit: &str, value| Figure {
             name,

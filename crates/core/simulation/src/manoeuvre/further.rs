@@ -1,4 +1,4 @@
-//! Manoeuvres beside the standard ones: stopping, pull-outs, spirals.
+//! Manoeuvres in addition to the standard ones: stopping, pull-outs, spirals.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::Model;
@@ -15,26 +15,26 @@ use crate::metrics::{
 use crate::ship::Ship;
 use crate::state::Trajectory;
 
-/// Which of them are sailed.
+/// Selection of the additional manoeuvres to simulate.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FurtherAsked {
     /// A full astern stop.
     pub stop: Option<AsternOrder>,
     /// Pull-outs of turns with these rudder angles, deg.
     pub pull_outs_deg: Vec<f64>,
-    /// Whether spirals are sailed.
+    /// Condition under which spirals are simulated.
     pub spiral: AskedSpiral,
 }
 
-/// Whether spirals are sailed.
+/// Condition under which spirals are simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AskedSpiral {
-    /// They are not.
+    /// Never.
     #[default]
     Never,
-    /// Where pull-outs do not show a ship that is stable on a straight course.
+    /// If pull-outs do not show that the ship is stable on a straight course.
     WhereUnstable,
-    /// They are.
+    /// Always.
     Always,
 }
 
@@ -43,8 +43,8 @@ pub enum AskedSpiral {
 const PULL_OUT_DEG: f64 = 20.0;
 
 impl FurtherAsked {
-    /// What is sailed where nobody says more: a stop, pull-outs to both sides, and spirals with a
-    /// ship that is not stable on a straight course.
+    /// Default selection: a stop, pull-outs to both sides, and spirals for a ship that is not
+    /// stable on a straight course.
     pub fn usual() -> Self {
         Self {
             stop: Some(AsternOrder::default()),
@@ -54,20 +54,19 @@ impl FurtherAsked {
     }
 }
 
-/// What came of them.
+/// Metrics and tracks of the additional manoeuvres.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FurtherManoeuvres {
     /// The full astern stop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopping: Option<StoppingMetrics>,
-    /// Why there is none, where the model is not told of a reversed propeller.
+    /// Reason for which there is no stopping test: the model does not cover a reversed propeller.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_stopping: Option<String>,
     /// Pull-outs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pull_outs: Vec<PullOutMetrics>,
-    /// Whether the ship is stable on a straight course, by pull-outs to both sides, or by spirals
-    /// where they were sailed.
+    /// Straight-line stability, by pull-outs to both sides, or by spirals if these were simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub straight_line_stable: Option<bool>,
     /// Spirals.
@@ -76,18 +75,18 @@ pub struct FurtherManoeuvres {
     /// Manoeuvres that left the physical range, with the reason.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
-    /// Where it went in the stop and the pull-outs, by the name of each.
+    /// Tracks of the stop and the pull-outs, by name.
     #[serde(skip)]
     pub tracks: Vec<(String, Trajectory)>,
 }
 
 impl FurtherManoeuvres {
-    /// The criterion of stopping ability, where it was stopped.
+    /// Criterion of stopping ability; `None` without a stopping test.
     pub fn criterion(&self, lpp_m: f64) -> Option<Criterion> {
         Some(self.stopping.as_ref()?.criterion(lpp_m))
     }
 
-    /// What must be known to read the figures.
+    /// Remarks that a reader of the figures needs.
     pub fn remarks(&self, lpp_m: f64) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(stop) = &self.stopping {
@@ -110,7 +109,8 @@ impl FurtherManoeuvres {
     }
 }
 
-/// Sails them; what leaves the physical range is reported, and the others go on.
+/// Simulates the selected manoeuvres; one that leaves the physical range is reported, and the
+/// others continue.
 pub fn further(
     model: &Model,
     law: &Law,
@@ -139,7 +139,9 @@ pub fn further(
             Err(stopped) => all.failures.push(format!("{name}: {stopped}")),
         }
     }
+    // Spirals decide on stability where they are simulated, since they show the loop itself.
     all.straight_line_stable = is_straight_line_stable(&all.pull_outs);
+    // An unknown stability is treated as instability, which the spirals then decide.
     let unstable = all.straight_line_stable != Some(true);
     if asked.spiral == AskedSpiral::Always || asked.spiral == AskedSpiral::WhereUnstable && unstable
     {

@@ -1,4 +1,4 @@
-//! Who stands at the helm during a manoeuvre, and the sailing of many at once.
+//! Orders to the rudder during a manoeuvre, and the simulation of many manoeuvres at once.
 
 use super::ManoeuvreSettings;
 use crate::envelope::Stopped;
@@ -11,12 +11,12 @@ use crate::state::{StateVector, Trajectory, at, straight};
 pub enum Manoeuvre {
     /// A turning circle.
     Turn {
-        /// Rudder.
+        /// Rudder angle.
         rudder: f64,
     },
     /// A zigzag of four reversals.
     Zigzag {
-        /// Rudder, to the side of the first execute.
+        /// Rudder angle, to the side of the first execute.
         rudder: f64,
         /// Change of heading at which the rudder is reversed.
         switch: f64,
@@ -32,26 +32,28 @@ impl std::fmt::Display for Manoeuvre {
     }
 }
 
-/// What was sailed.
+/// Simulated manoeuvre.
 #[derive(Debug)]
 pub struct Sailed {
-    /// From the execution of the rudder on.
+    /// Track from the execution of the rudder on.
     pub after: Trajectory,
-    /// With the run before it.
+    /// Track including the approach before it.
     pub track: Trajectory,
-    /// When the rudder was reversed, s since it was executed.
+    /// Times of the reversals of the rudder, s after its execution.
     pub reversals_s: Vec<f64>,
 }
 
-/// Sails manoeuvres in lockstep, each by a sister with its own coefficients ([`Ship::sister`]);
-/// none for a ship with its own.
+/// Simulates manoeuvres in lockstep, each by a ship with its own coefficients, in the order of the
+/// ship's open coefficients ([`Ship::sister`]); these are empty for a ship without open
+/// coefficients.
 ///
-/// Each fails by itself where the motion leaves the physical range, and says when and why.
+/// Each result is an error by itself if its motion leaves the physical range, with time and reason.
 pub fn sail_together(
     ship: &Ship,
     manoeuvres: &[(Manoeuvre, &[f64])],
     settings: &ManoeuvreSettings,
 ) -> Vec<Result<Sailed, Stopped>> {
+    // Every manoeuvre starts from straight running at the approach speed.
     let run = settings.run(ship, straight(settings.speed(ship)));
     let mut helms: Vec<Helm> =
         manoeuvres.iter().map(|(manoeuvre, _)| Helm::new(ship, *manoeuvre, settings)).collect();
@@ -63,6 +65,7 @@ pub fn sail_together(
     let one = |(helm, sailed): (Helm, crate::sailing::Sailed)| match sailed.stopped {
         Some(stopped) => Err(stopped),
         None => {
+            // The track includes the approach, the metrics start at the execution.
             let after = after(&sailed.track, settings.run_in_s);
             Ok(Sailed { after, track: sailed.track, reversals_s: helm.reversals_s })
         }
@@ -70,23 +73,23 @@ pub fn sail_together(
     helms.into_iter().zip(sailed).map(one).collect()
 }
 
-/// Rudder and change of heading of the initial turning test.
+/// Rudder angle and change of heading of the initial turning test, deg.
 pub(super) const INITIAL_DEG: f64 = 10.0;
-/// The heading is reached within this, deg: a hundredth of what overshoots are read to.
+/// Tolerance of the heading, deg: a hundredth of the resolution of overshoots.
 const HEADING_DEG: f64 = 1e-3;
-/// Least part of a step that is sailed alone: it ends the approach to a heading.
+/// Smallest part of a step that is simulated separately: it ends the approach to a heading.
 const LEAST_OF_STEP: f64 = 1e-3;
 
-/// Carries out a manoeuvre.
+/// Controller that carries out a manoeuvre.
 struct Helm {
     manoeuvre: Manoeuvre,
     n_rps: f64,
     run_in_s: f64,
-    /// Whether it goes on when all is seen.
+    /// True if the run continues after the manoeuvre is complete.
     goes_on: bool,
-    /// Whether the rudder is reversed at the heading, not at the end of the step.
+    /// True if the rudder is reversed at the heading, not at the end of the step.
     at_heading: bool,
-    /// Whether an initial turn ends soon after its heading.
+    /// True if an initial turn ends soon after its heading.
     figures_only: bool,
     step_s: f64,
     reversals_s: Vec<f64>,
@@ -107,35 +110,39 @@ impl Helm {
         }
     }
 
-    /// The order at a time; none when all is seen.
+    /// Returns the order at a time; `None` when the manoeuvre is complete.
     fn order(&mut self, t_s: f64, state: &StateVector) -> Option<HeldOrder> {
         let since_s = t_s - self.run_in_s;
+        // The tolerance absorbs the rounding of the sum of steps.
         let rudder_deg = if since_s < -1e-9 { 0.0 } else { self.rudder_deg(since_s, state) };
         let order = Order { delta_rad: rudder_deg.to_radians(), n_rps: self.n_rps };
         let held = HeldOrder { order, lasts_s: self.lasts_s(state) };
+        // A given duration continues the run after the manoeuvre is complete.
         (self.goes_on || !self.is_done(state)).then_some(held)
     }
 
-    /// A zigzag reverses the rudder at the first step at which the heading has reached the
-    /// switching angle.
+    /// Rudder angle, deg. A zigzag reverses the rudder at the first step at which the heading has
+    /// reached the switching angle.
     fn rudder_deg(&mut self, since_s: f64, state: &StateVector) -> f64 {
         let rudder = match self.manoeuvre {
             Manoeuvre::Turn { rudder } => return rudder,
             Manoeuvre::Zigzag { rudder, .. } => rudder,
         };
         let tolerance = if self.at_heading { HEADING_DEG } else { 0.0 };
+        // A step that ends at the heading does so by extrapolation, hence the tolerance.
         if self.to_go_deg(state).is_some_and(|(to_go, _)| to_go <= tolerance) {
             self.reversals_s.push(since_s);
         }
         self.swing() * rudder
     }
 
-    /// 1 before the first reversal, -1 before the second, and so on.
+    /// Side of the rudder: 1 before the first reversal, -1 before the second, and so on.
     fn swing(&self) -> f64 {
         if self.reversals_s.len().is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
-    /// What is missing from the next switching angle, deg, and how fast it grows less, deg/s.
+    /// Returns the remaining change of heading to the next switching angle, deg, and the rate at
+    /// which it decreases, deg/s.
     fn to_go_deg(&self, state: &StateVector) -> Option<(f64, f64)> {
         let Manoeuvre::Zigzag { rudder, switch } = self.manoeuvre else { return None };
         let side = self.swing() * rudder.signum();
@@ -143,10 +150,11 @@ impl Helm {
         Some((to_go, side * state[at::R].to_degrees()))
     }
 
-    /// How long an order is held: to the heading at which the rudder is reversed, where that comes
-    /// within the step.
+    /// Duration of an order, s: to the heading at which the rudder is reversed, if that is reached
+    /// within the step, otherwise the whole step.
     fn lasts_s(&self, state: &StateVector) -> f64 {
         match self.to_go_deg(state).filter(|_| self.at_heading) {
+            // Linear extrapolation of the heading; the lower limit ensures progress.
             Some((to_go, rate)) if rate * self.step_s > to_go => {
                 (to_go / rate).max(LEAST_OF_STEP * self.step_s)
             }
@@ -156,17 +164,20 @@ impl Helm {
 
     fn is_done(&self, state: &StateVector) -> bool {
         match self.manoeuvre {
-            // The state at which a run ends is not kept: twice the heading is well past it.
+            // The state at which a run ends is not kept: twice the heading is well past the change
+            // of interest.
             Manoeuvre::Turn { rudder } if self.figures_only && rudder.abs() == INITIAL_DEG => {
                 rudder.signum() * state[at::PSI] > 2.0 * INITIAL_DEG.to_radians()
             }
             Manoeuvre::Turn { .. } => state[at::PSI].abs() > 3.0 * std::f64::consts::TAU,
+            // The fifth crossing ends the run, so that the overshoot after the fourth reversal is
+            // complete.
             Manoeuvre::Zigzag { .. } => self.reversals_s.len() > 4,
         }
     }
 }
 
-/// The part of a track from a time on, with time counted from there.
+/// Returns the part of a track from a time on, with time counted from there.
 fn after(track: &Trajectory, from_s: f64) -> Trajectory {
     let keep = |index: &usize| track.t_s[*index] >= from_s - 1e-9;
     let mut result = Trajectory::default();

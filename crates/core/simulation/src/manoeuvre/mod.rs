@@ -1,4 +1,4 @@
-//! The standard manoeuvres, sailed by a model.
+//! Simulation of the standard manoeuvres.
 
 mod figures;
 mod further;
@@ -28,27 +28,26 @@ use crate::integrate::Method;
 use crate::ship::{Run, Ship};
 use crate::state::StateVector;
 
-/// How manoeuvres are sailed.
+/// Settings of simulated manoeuvres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ManoeuvreSettings {
-    /// Approach speed, m/s; the model's own where absent.
+    /// Approach speed, m/s; default: that of the model.
     pub speed_m_s: Option<f64>,
-    /// Propeller revolutions, 1/s; those of steady running at the approach speed where absent.
+    /// Propeller revolutions, 1/s; default: those of steady running at the approach speed.
     pub n_rps: Option<f64>,
-    /// Longest duration, s; enough for a turn of three times round where absent.
+    /// Longest duration, s; default: enough for a turn of three full circles.
     pub duration_s: Option<f64>,
-    /// Step, s; where absent 0.1 s, or a fiftieth of the time in which a small ship sails its
-    /// length.
+    /// Step, s; default: 0.1 s, or a fiftieth of length over speed for a small ship.
     pub step_s: Option<f64>,
     /// Integration method.
     pub method: Method,
-    /// Run straight for this long before the rudder is executed, s.
+    /// Duration of the straight approach before the rudder is executed, s.
     pub run_in_s: f64,
-    /// Whether a zigzag's rudder is reversed when the heading is reached within a step, and not at
-    /// the step's end: what coarse steps need for overshoots that differ little.
+    /// True if a zigzag's rudder is reversed when the heading is reached within a step, not at the
+    /// end of the step: needed to compare overshoots that differ little with coarse steps.
     pub reversals_within_steps: bool,
-    /// Whether the initial turns end soon after the change of heading that is asked for, and not
-    /// three times round: their figure needs no more.
+    /// True if the initial turns end soon after the required change of heading, not after three
+    /// full circles: their figure needs no more.
     pub figures_only: bool,
 }
 
@@ -76,12 +75,13 @@ impl ManoeuvreSettings {
         self.n_rps.unwrap_or_else(|| ship.revolutions_at(self.speed(ship)))
     }
 
-    /// Scaled so that a small model and a large ship sail as far: 60 of its lengths.
+    /// Duration, s, scaled with length and speed so that a small model and a large ship cover the
+    /// same distance: 60 lengths.
     fn duration(&self, ship: &Ship) -> f64 {
         self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.speed(ship)) + self.run_in_s
     }
 
-    /// The step, s.
+    /// Step, s.
     pub fn step(&self, ship: &Ship) -> f64 {
         let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.speed(ship));
         self.step_s.unwrap_or(default)
@@ -93,19 +93,19 @@ impl ManoeuvreSettings {
     }
 }
 
-/// Sails a turning circle.
+/// Simulates a turning circle.
 ///
 /// # Errors
-/// Says when and why the motion left the physical range.
+/// Returns an error with time and reason if the motion left the physical range.
 pub fn turn(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> Result<Turn, Stopped> {
     let turn = Manoeuvre::Turn { rudder: rudder_deg };
     Turn::of(sail_together(ship, &[(turn, &[])], settings).remove(0)?, rudder_deg)
 }
 
-/// Sails a zigzag of four reversals.
+/// Simulates a zigzag of four reversals.
 ///
 /// # Errors
-/// Says when and why the motion left the physical range.
+/// Returns an error with time and reason if the motion left the physical range.
 pub fn zigzag(
     ship: &Ship,
     rudder_deg: f64,
@@ -115,8 +115,8 @@ pub fn zigzag(
     zigzags(ship, &[(rudder_deg, switch_deg)], settings).remove(0)
 }
 
-/// Zigzags side by side: rudder and heading at which it is reversed, deg. The errors are those of
-/// [`zigzag`], each its own.
+/// Simulates zigzags in lockstep, each given by the rudder angle and the heading at which it is
+/// reversed, deg. Each has its own error, as in [`zigzag`].
 pub fn zigzags(
     ship: &Ship,
     angles: &[(f64, f64)],

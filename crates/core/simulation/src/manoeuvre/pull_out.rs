@@ -1,4 +1,4 @@
-//! The pull-out test: out of a steady turn the rudder is put amidships.
+//! Pull-out test: the rudder is put amidships out of a steady turn.
 
 use super::ManoeuvreSettings;
 use super::steady::{Steady, to_the_end};
@@ -7,22 +7,22 @@ use crate::metrics::PullOutMetrics;
 use crate::ship::{Order, Ship};
 use crate::state::{StateVector, Trajectory, at, speed, straight};
 
-/// A pull-out that was sailed.
+/// Simulated pull-out.
 #[derive(Debug, Clone)]
 pub struct PullOut {
-    /// Where it went, the turn before it included.
+    /// Track, including the turn before it.
     pub track: Trajectory,
-    /// What came of it.
+    /// Metrics of the pull-out.
     pub metrics: PullOutMetrics,
 }
 
-/// The longest turn and the longest time after it, by the time in which it sails its length.
+/// Longest duration of the turn and of the motion after it, in units of length over speed.
 const MOST_LENGTHS: f64 = 150.0;
 
-/// Sails a steady turn, puts the rudder amidships, and goes on until the yaw rate is steady.
+/// Simulates a steady turn, puts the rudder amidships, and continues until the yaw rate is steady.
 ///
 /// # Errors
-/// Says when and why the motion left the physical range.
+/// Returns an error with time and reason if the motion left the physical range.
 pub fn pull_out(
     ship: &Ship,
     rudder_deg: f64,
@@ -30,6 +30,7 @@ pub fn pull_out(
 ) -> Result<PullOut, Stopped> {
     let approach = settings.speed(ship);
     let most_s = settings.duration_s.unwrap_or(MOST_LENGTHS * ship.lpp_m() / approach);
+    // Once the longest duration for the turn, and once for the motion after it.
     let whole = to_the_end(settings, ship, 2.0 * most_s);
     let mut helm = Helm {
         steady: Steady::new(ship, approach, whole.step(ship)),
@@ -55,9 +56,9 @@ pub fn pull_out(
 struct Helm {
     steady: Steady,
     most_s: f64,
-    /// When the rudder was put amidships, s, and the yaw rate then, rad/s.
+    /// Time at which the rudder was put amidships, s, and the yaw rate at that time, rad/s.
     released: Option<(f64, f64)>,
-    /// The steady state after that.
+    /// Steady state after that.
     ended: Option<StateVector>,
 }
 
@@ -67,6 +68,7 @@ impl Helm {
             return None;
         }
         let steady = self.steady.is_steady(state);
+        // A turn that does not become steady in the allowed time is released as it is.
         match self.released {
             None if steady || t_s >= self.most_s => {
                 self.released = Some((t_s, state[at::R]));
@@ -74,6 +76,7 @@ impl Helm {
                 Some(0.0)
             }
             None => Some(turn_deg),
+            // Steady after the release: the run ends at the next step.
             Some(_) if steady => {
                 self.ended = Some(*state);
                 Some(0.0)

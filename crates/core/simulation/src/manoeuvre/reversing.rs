@@ -1,7 +1,7 @@
-//! Whether a model is told of a propeller that is reversed while the ship goes ahead.
+//! Check that a model covers a propeller that is reversed while the ship moves ahead.
 //!
-//! Most laws have a propeller as in open water ahead; their formulas give numbers for revolutions
-//! astern as well, but nobody has meant or measured them.
+//! Most laws describe a propeller as in open water ahead. Their formulas also give numbers for
+//! revolutions astern, but these numbers rest on no measurement.
 
 use std::collections::BTreeSet;
 
@@ -13,22 +13,22 @@ use crate::plant::Work;
 use crate::ship::Ship;
 use crate::state::{at, straight};
 
-/// Why a model cannot be stopped by reversing the propeller.
+/// Reason for which a model cannot be stopped by reversing the propeller.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotReversing {
-    /// Thrust is no function of revolutions.
+    /// Thrust does not depend on revolutions.
     #[error("law `{law}` takes no propeller revolutions")]
     NoRevolutions {
         /// The law.
         law: String,
     },
-    /// The revolutions of the approach are not known.
+    /// The revolutions of the approach are unknown.
     #[error("{model} gives no revolutions for its approach speed: what is astern of them?")]
     NoApproach {
         /// The model.
         model: String,
     },
-    /// The propeller of the law works ahead.
+    /// The propeller of the law covers revolutions ahead only.
     #[error(
         "the propeller of law `{law}` is that of the first quadrant, ahead with revolutions ahead"
     )]
@@ -36,7 +36,7 @@ pub enum NotReversing {
         /// The law.
         law: String,
     },
-    /// Coefficients of the revolutions were never told what they do astern.
+    /// The coefficients of the revolutions were fitted without revolutions astern.
     #[error(
         "law `{law}` is a polynomial in the revolutions, and the trials of {model} never reversed \
          the propeller"
@@ -52,19 +52,19 @@ pub enum NotReversing {
     DoesNotBrake {
         /// The model.
         model: String,
-        /// At which speed ahead, m/s.
+        /// Speed ahead, m/s.
         speed: String,
     },
 }
 
-/// Checks that a model is told of a propeller that is reversed, and that it brakes by it.
+/// Checks that a model covers a reversed propeller, and that reversing brakes the ship.
 ///
-/// A law is told where its formulas branch on the sign of the revolutions; where coefficients
-/// multiply the revolutions themselves, they are told by trials with the propeller reversed. A model
-/// with a propulsion of its own is told by that.
+/// A law covers it where its formulas branch on the sign of the revolutions; where coefficients
+/// multiply the revolutions themselves, trials with the propeller reversed are needed. A model with
+/// its own propulsion covers it by that.
 ///
 /// # Errors
-/// Says why not.
+/// Returns an error with the reason if the propeller cannot be reversed.
 pub fn check_reversing(model: &Model, law: &Law, ship: &Ship) -> Result<(), NotReversing> {
     if model.propulsion.is_none() {
         is_told(model, law)?;
@@ -76,12 +76,13 @@ pub fn check_reversing(model: &Model, law: &Law, ship: &Ship) -> Result<(), NotR
     brakes(model, ship, ahead_rps)
 }
 
-/// Whether a law says what a reversed propeller does.
+/// Checks that a law, or the trials of a model, cover a reversed propeller.
 fn is_told(model: &Model, law: &Law) -> Result<(), NotReversing> {
     let (of_law, of_model) = (|| law.name.clone(), || model.name.clone());
     if !law.inputs.contains_key("n") {
         return Err(NotReversing::NoRevolutions { law: of_law() });
     }
+    // A polynomial in the revolutions is determined astern only by trials with revolutions astern.
     if law.factors.contains_key("n") {
         let reversed = model.validity.as_ref().and_then(|region| region.ranges.get("n"));
         if reversed.is_none_or(|[least, _]| *least >= 0.0) {
@@ -93,7 +94,8 @@ fn is_told(model: &Model, law: &Law) -> Result<(), NotReversing> {
     Ok(())
 }
 
-/// From the approach speed to rest, revolutions astern slow down more than a stopped propeller.
+/// Checks that from the approach speed to rest, revolutions astern decelerate more than a stopped
+/// propeller.
 fn brakes(model: &Model, ship: &Ship, ahead_rps: f64) -> Result<(), NotReversing> {
     let mut work = Work::default();
     let mut surge =
@@ -101,6 +103,7 @@ fn brakes(model: &Model, ship: &Ship, ahead_rps: f64) -> Result<(), NotReversing
     for share in [1.0, 0.75, 0.5, 0.25, 0.0] {
         let speed = share * ship.approach_speed_m_s();
         let (reversed, stopped) = (surge(speed, -ahead_rps), surge(speed, 0.0));
+        // The ship must decelerate, and more than with a stopped propeller.
         if reversed >= stopped.min(0.0) {
             let speed = format!("{speed:.2}");
             return Err(NotReversing::DoesNotBrake { model: model.name.clone(), speed });
@@ -109,8 +112,9 @@ fn brakes(model: &Model, ship: &Ship, ahead_rps: f64) -> Result<(), NotReversing
     Ok(())
 }
 
-/// Whether some formula compares the revolutions, or a value that follows from them alone.
+/// Returns true if some formula compares the revolutions, or a value that depends on them alone.
 fn branches_on_revolutions(law: &Law) -> bool {
+    // Values are in the order of their dependence, so that one pass finds all that follow from n.
     let mut revolutions = BTreeSet::from(["n"]);
     for (name, value) in &law.values {
         if is_of(value, &revolutions, law) {
@@ -131,7 +135,7 @@ fn compares(formula: &Expr, revolutions: &BTreeSet<&str>, law: &Law) -> bool {
     here || formula.children().into_iter().any(|part| compares(part, revolutions, law))
 }
 
-/// Whether a formula names revolutions, and nothing else that moves.
+/// Returns true if a formula names revolutions, and no other variable of the motion.
 fn is_of(formula: &Expr, revolutions: &BTreeSet<&str>, law: &Law) -> bool {
     let names = formula.names();
     let constant = |name: &str| {

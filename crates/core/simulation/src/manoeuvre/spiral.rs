@@ -13,19 +13,21 @@ const STEPS_DEG: [f64; 8] = [15.0, 10.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0];
 /// Yaw rates of the reverse spiral to each side of none, shares of the greatest: close together
 /// where loops are.
 const SHARES: [f64; 10] = [0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0];
-/// The longest time at one rudder angle or rate, by the time in which it sails its length.
+/// Longest time at one rudder angle or rate, in units of length over speed.
 const MOST_LENGTHS: f64 = 100.0;
 
-/// Sails both spirals.
+/// Simulates the direct and the reverse spiral.
 ///
 /// # Errors
-/// Says when and why the motion left the physical range.
+/// Returns an error with time and reason if the motion left the physical range.
 pub fn spiral(ship: &Ship, settings: &ManoeuvreSettings) -> Result<SpiralMetrics, Stopped> {
+    // From starboard to port and back; each end is visited once.
     let port = STEPS_DEG.iter().rev().skip(1).map(|angle| -angle);
     let there: Vec<f64> = STEPS_DEG.into_iter().chain(port).collect();
     let back = there.iter().rev().skip(1);
     let orders: Vec<f64> = there.iter().chain(back).copied().collect();
     let direct = sail(ship, settings, &orders, |rudder_deg, _: &StateVector| rudder_deg)?;
+    // The reverse spiral covers the range of yaw rates of the direct one.
     let most = direct.iter().map(|point| point.rate_deg_s.abs()).fold(0.0, f64::max);
     let below = SHARES.iter().rev().map(|share| -share);
     let rates: Vec<f64> = below.chain([0.0]).chain(SHARES).map(|share| share * most).collect();
@@ -35,8 +37,8 @@ pub fn spiral(ship: &Ship, settings: &ManoeuvreSettings) -> Result<SpiralMetrics
     Ok(SpiralMetrics::of(direct, reverse, length_s))
 }
 
-/// Sails one order after the other, each until the motion is steady; `rudder_deg` says which
-/// rudder carries an order out.
+/// Simulates one order after the other, each until the motion is steady; `rudder_deg` returns the
+/// rudder angle that carries out an order.
 fn sail(
     ship: &Ship,
     settings: &ManoeuvreSettings,
@@ -51,11 +53,13 @@ fn sail(
     let run = whole.run(ship, straight(approach));
     ship.sail(run, &mut Trajectory::default(), |t_s, state| {
         let is_steady = steady.is_steady(state);
+        // A motion that does not become steady in the allowed time is recorded as it is.
         if is_steady || t_s - since_s >= most_s {
             points.push(point(state, is_steady));
             steady.restart();
             since_s = t_s;
         }
+        // After the last order there is none, which ends the run.
         let order = orders.get(points.len())?;
         Some(Order { delta_rad: rudder_deg(*order, state).to_radians(), n_rps })
     })?;
@@ -70,20 +74,20 @@ fn point(state: &StateVector, steady: bool) -> SpiralPoint {
     }
 }
 
-/// Holds a yaw rate by the rudder, by what is missing and by what has been missing so far.
+/// Proportional-integral controller that holds a yaw rate by the rudder.
 struct RateHelm {
-    /// Rudder by yaw rate, both in the time in which it sails its length.
+    /// Length over speed, s: the unit of time of the gains.
     length_s: f64,
     step_s: f64,
     limit_deg: f64,
-    /// What was missing so far, deg.
+    /// Integral of the rate error, deg.
     missed_deg: f64,
 }
 
-/// Rudder by missing yaw rate, in the time in which it sails its length: above the 1/K' of ships
-/// that are unstable, which are held by it alone.
+/// Proportional gain, rudder angle per yaw rate in units of length over speed: above the 1/K' of
+/// unstable ships, so that it alone stabilises them.
 const BY_RATE: f64 = 4.0;
-/// How fast what is missing adds to the rudder, in that time.
+/// Integral gain, in the same units.
 const BY_SUM: f64 = 1.0;
 
 impl RateHelm {
@@ -99,7 +103,7 @@ impl RateHelm {
     fn rudder_deg(&mut self, rate_deg_s: f64, state: &StateVector) -> f64 {
         let missing_deg = self.length_s * (rate_deg_s - state[at::R].to_degrees());
         let summed = self.missed_deg + BY_SUM * missing_deg * self.step_s / self.length_s;
-        // No more than the rudder can do is remembered.
+        // Anti-windup: the integral is limited to the rudder's range.
         self.missed_deg = summed.clamp(-self.limit_deg, self.limit_deg);
         BY_RATE * missing_deg + self.missed_deg
     }

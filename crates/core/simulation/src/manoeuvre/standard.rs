@@ -1,4 +1,4 @@
-//! The set of manoeuvres by which a ship is judged.
+//! Standard manoeuvres of the assessment of a ship.
 
 use std::collections::BTreeMap;
 
@@ -14,21 +14,21 @@ use crate::metrics::{
 use crate::ship::Ship;
 use crate::state::Trajectory;
 
-/// A turning circle that was sailed.
+/// Simulated turning circle.
 #[derive(Debug, Clone)]
 pub struct Turn {
-    /// Where it went.
+    /// Track.
     pub track: Trajectory,
-    /// What came of it.
+    /// Metrics.
     pub metrics: TurningMetrics,
 }
 
-/// A zigzag that was sailed.
+/// Simulated zigzag.
 #[derive(Debug, Clone)]
 pub struct Zigzag {
-    /// Where it went.
+    /// Track.
     pub track: Trajectory,
-    /// What came of it.
+    /// Metrics.
     pub metrics: ZigzagMetrics,
 }
 
@@ -39,25 +39,25 @@ pub struct StandardManoeuvres {
     pub turns: Vec<TurningMetrics>,
     /// Zigzags 10/10 and 20/20 to both sides.
     pub zigzags: Vec<ZigzagMetrics>,
-    /// Distance sailed until the heading has changed by 10 deg with 10 deg of rudder, the worse
-    /// side, m.
+    /// Distance along the track until the heading has changed by 10 deg with 10 deg of rudder, for
+    /// the worse side, m.
     pub initial_turning_m: Option<f64>,
     /// IMO criteria.
     pub imo: Vec<Criterion>,
     /// Manoeuvres that left the physical range, with the reason.
     pub failures: Vec<String>,
-    /// Manoeuvres that left what the model's trials covered, and how.
+    /// Manoeuvres that left the range covered by the model's trials, with the excursion.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub outside: BTreeMap<String, Excursion>,
-    /// What a learned branch counted for in the mean over each manoeuvre, 0 to 1; nothing for a
-    /// model without one.
+    /// Mean share of the learned correction over each manoeuvre, 0 to 1; empty for a model without
+    /// one.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub branch_share: BTreeMap<String, f64>,
 }
 
 impl StandardManoeuvres {
-    /// Notes how a manoeuvre left what the model's trials covered, if it did, and what a learned
-    /// branch counted for.
+    /// Records how a manoeuvre left the range covered by the model's trials, if it did, and the
+    /// mean share of a learned correction.
     pub fn note_outside(&mut self, name: &str, ship: &Ship, track: &Trajectory) {
         self.outside.extend(ship.leaves(track).map(|excursion| (name.to_owned(), excursion)));
         self.branch_share.extend(ship.branch_share(track).map(|share| (name.to_owned(), share)));
@@ -65,10 +65,10 @@ impl StandardManoeuvres {
 }
 
 impl Turn {
-    /// Of a track that was steered so.
+    /// Evaluates a simulated turning circle.
     ///
     /// # Errors
-    /// Says that the track ends before the rudder is executed.
+    /// Returns an error if the track ends before the rudder is executed.
     pub fn of(sailed: Sailed, rudder_deg: f64) -> Result<Self, Stopped> {
         let metrics = TurningMetrics::of(&sailed.after, rudder_deg).ok_or_else(nothing_sailed)?;
         Ok(Self { track: sailed.track, metrics })
@@ -76,10 +76,10 @@ impl Turn {
 }
 
 impl Zigzag {
-    /// Of a track that was steered so.
+    /// Evaluates a simulated zigzag.
     ///
     /// # Errors
-    /// Says that the track ends before the rudder is executed.
+    /// Returns an error if the track ends before the rudder is executed.
     pub fn of(sailed: Sailed, rudder_deg: f64, switch_deg: f64) -> Result<Self, Stopped> {
         let metrics = ZigzagMetrics::of(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s)
             .ok_or_else(nothing_sailed)?;
@@ -91,8 +91,8 @@ fn nothing_sailed() -> Stopped {
     Stopped { t_s: 0.0, reason: "nothing was sailed".into() }
 }
 
-/// What the standard manoeuvres are: hard turns, zigzags, and turns that begin with 10 deg of
-/// rudder.
+/// The standard manoeuvres: hard turns, zigzags, and turns with 10 deg of rudder for the initial
+/// turning ability.
 pub const STANDARD: [Manoeuvre; 8] = [
     Manoeuvre::Turn { rudder: 35.0 },
     Manoeuvre::Turn { rudder: -35.0 },
@@ -104,13 +104,13 @@ pub const STANDARD: [Manoeuvre; 8] = [
     Manoeuvre::Turn { rudder: -INITIAL_DEG },
 ];
 
-/// Sails the standard manoeuvres; one that diverges is reported and the others go on.
+/// Simulates the standard manoeuvres; one that diverges is reported, and the others continue.
 pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres {
     standard_of_sisters(ship, &[&[]], settings).remove(0)
 }
 
-/// Sails them as [`standard`] does, and gives the tracks as well, in the order of [`STANDARD`];
-/// none of one that diverged.
+/// Simulates the standard manoeuvres as [`standard`] does, and also returns the tracks in the order
+/// of [`STANDARD`]; `None` for one that diverged.
 pub fn standard_with_tracks(
     ship: &Ship,
     settings: &ManoeuvreSettings,
@@ -120,8 +120,8 @@ pub fn standard_with_tracks(
     (judged(ship, settings, sailed.into_iter()), tracks)
 }
 
-/// Sails the standard manoeuvres with every sister in lockstep, each given by its coefficients, as
-/// [`standard`] would.
+/// Simulates the standard manoeuvres in lockstep for several ships that differ in their
+/// coefficients alone, each as [`standard`] would.
 pub fn standard_of_sisters(
     ship: &Ship,
     sisters: &[&[f64]],
@@ -135,7 +135,7 @@ pub fn standard_of_sisters(
     sisters.iter().map(|_| judged(ship, settings, sailed.by_ref().take(STANDARD.len()))).collect()
 }
 
-/// What came of one ship's standard manoeuvres.
+/// Metrics of one ship's standard manoeuvres.
 fn judged(
     ship: &Ship,
     settings: &ManoeuvreSettings,
@@ -148,6 +148,7 @@ fn judged(
             Manoeuvre::Turn { rudder } => {
                 let turn = sailed.and_then(|sailed| Turn::of(sailed, rudder));
                 let turn = kept(ship, turn, &manoeuvre.to_string(), &mut all, |turn| &turn.track);
+                // Turns with 10 deg of rudder serve the initial turning ability only.
                 match turn {
                     Some(turn) if rudder.abs() == INITIAL_DEG => {
                         initial.push(initial_turning_distance(&turn.track, rudder, INITIAL_DEG));
@@ -163,6 +164,7 @@ fn judged(
             }
         }
     }
+    // Both sides must reach the change of heading; the worse side counts.
     let both: Option<Vec<f64>> = initial.into_iter().collect();
     all.initial_turning_m = both.and_then(|both| both.into_iter().reduce(f64::max));
     let speed = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
@@ -170,7 +172,8 @@ fn judged(
     all
 }
 
-/// What was sailed; a failure, or how it left what the trials covered, is noted.
+/// Returns a simulated manoeuvre after recording its excursion; records the failure of one that
+/// stopped.
 fn kept<T>(
     ship: &Ship,
     sailed: Result<T, Stopped>,

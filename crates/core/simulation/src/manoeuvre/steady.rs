@@ -1,4 +1,4 @@
-//! When a motion has become steady.
+//! Detection of a steady motion.
 
 use std::collections::VecDeque;
 
@@ -6,19 +6,18 @@ use super::ManoeuvreSettings;
 use crate::ship::Ship;
 use crate::state::{StateVector, at, speed};
 
-/// A yaw rate is steady where it changes by less than this in the time in which the ship sails its
-/// length, by the rate of one radian in that time. What is left of a motion that dies down with a
-/// time constant of T' lengths is T' times that: below the thousandth by which rates are read even
-/// for a T' of 100.
+/// Largest change of the yaw rate of a steady motion during the time length over speed, in units of
+/// one radian in that time. The remainder of a motion that decays with a time constant of T'
+/// lengths is T' times the change: below the resolution of rates, a thousandth, even for a T' of
+/// 100.
 const RATE_CHANGE: f64 = 1e-5;
-/// The same for the speed, by that of the approach: within a hundredth for a T' of 100.
+/// The same for the speed, relative to that of the approach: within a hundredth for a T' of 100.
 const SPEED_CHANGE: f64 = 1e-4;
 
-/// Step by the time in which the ship sails its length, where nobody asks for another: a steady
-/// motion does not depend on it.
+/// Default step in units of length over speed: a steady motion does not depend on it.
 const STEP: f64 = 0.05;
 
-/// Settings for a motion of which only the steady end counts.
+/// Settings of a simulation of which only the steady end is used.
 pub(super) fn to_the_end(
     settings: &ManoeuvreSettings,
     ship: &Ship,
@@ -29,9 +28,9 @@ pub(super) fn to_the_end(
     ManoeuvreSettings { duration_s, step_s, run_in_s: 0.0, ..*settings }
 }
 
-/// Watches a motion step by step.
+/// Detector of a steady motion, step by step.
 pub(super) struct Steady {
-    /// Yaw rate and speed, without dimension, over the time in which the ship sails its length.
+    /// Non-dimensional yaw rate and speed during the last time of length over speed.
     seen: VecDeque<[f64; 2]>,
     steps: usize,
     length_s: f64,
@@ -39,22 +38,23 @@ pub(super) struct Steady {
 }
 
 impl Steady {
-    /// For a ship that approaches at a speed, m/s, and steps of so many seconds.
+    /// Creates a detector for an approach speed, m/s, and a step, s.
     pub fn new(ship: &Ship, speed_m_s: f64, step_s: f64) -> Self {
         let length_s = ship.lpp_m() / speed_m_s;
         let steps = (length_s / step_s).ceil().max(1.0) as usize;
         Self { seen: VecDeque::with_capacity(steps + 1), steps, length_s, speed_m_s }
     }
 
-    /// Begins anew.
+    /// Discards the history.
     pub fn restart(&mut self) {
         self.seen.clear();
     }
 
-    /// Takes note of a state; whether the motion is steady.
+    /// Adds a state; returns true if the motion is steady.
     pub fn is_steady(&mut self, state: &StateVector) -> bool {
         let now = [state[at::R] * self.length_s, speed(state) / self.speed_m_s];
         self.seen.push_back(now);
+        // The window of one length over speed must be full first.
         if self.seen.len() <= self.steps {
             return false;
         }

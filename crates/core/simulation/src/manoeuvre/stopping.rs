@@ -1,4 +1,4 @@
-//! The full astern stopping test.
+//! Full astern stopping test.
 
 use super::ManoeuvreSettings;
 use super::reversing::{NotReversing, check_reversing};
@@ -9,43 +9,44 @@ use crate::state::{StateVector, Trajectory, at, straight};
 use sistership_model::Model;
 use sistership_model::law::Law;
 
-/// What the engine does in a stopping test.
+/// Order to the engine in a stopping test.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AsternOrder {
-    /// Revolutions astern, 1/s, as a number above 0; as many as ahead where absent.
+    /// Revolutions astern, 1/s, as a positive number; default: those ahead.
     pub astern_rps: Option<f64>,
-    /// How long the revolutions take from those ahead to those astern, in proportion, s.
+    /// Duration of the linear change from revolutions ahead to those astern, s.
     pub reversal_s: f64,
 }
 
-/// A stopping test that was sailed.
+/// Simulated stopping test.
 #[derive(Debug, Clone)]
 pub struct Stopping {
-    /// Where it went.
+    /// Track.
     pub track: Trajectory,
-    /// What came of it.
+    /// Metrics.
     pub metrics: StoppingMetrics,
 }
 
-/// Why there is no stopping test.
+/// Reason for which there is no stopping test.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoStopping {
-    /// The model is not told of a reversed propeller.
+    /// The model does not cover a reversed propeller.
     #[error("not by this model: {0}")]
     NotReversing(#[from] NotReversing),
-    /// It left the physical range.
+    /// The motion left the physical range.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
-/// Runs are ended after so many times the time in which it sails its length: a ship that keeps
-/// to the criterion of 15 lengths needs about twice as many, for its mean speed is half.
+/// Longest duration of a run in units of length over speed: a ship that meets the criterion of 15
+/// lengths needs about twice as many, because its mean speed is half.
 const MOST_LENGTHS: f64 = 120.0;
 
-/// Sails a full astern stopping test with the rudder amidships.
+/// Simulates a full astern stopping test with the rudder amidships.
 ///
 /// # Errors
-/// Says why the model cannot be stopped so, or when and why the motion left the physical range.
+/// Returns an error if the model does not cover a reversed propeller, or with time and reason if
+/// the motion left the physical range.
 pub fn stop(
     model: &Model,
     law: &Law,
@@ -63,7 +64,7 @@ pub fn stop(
     let mut track = Trajectory::default();
     let mut ended = false;
     ship.sail(run.run(ship, straight(speed)), &mut track, |t_s, state: &StateVector| {
-        // The state at which a run ends is not kept: one step goes beyond it.
+        // The state at which a run ends is not kept, so that the run goes one step beyond the stop.
         let going = !std::mem::replace(&mut ended, state[at::U] <= 0.0);
         let part = if order.reversal_s > 0.0 { (t_s / order.reversal_s).min(1.0) } else { 1.0 };
         let n_rps = ahead_rps + part * (astern_rps - ahead_rps);

@@ -1,4 +1,5 @@
-//! IMO Standards for ship manoeuvrability, resolution MSC.137(76), annex, section 5.3.
+//! Criteria of the IMO Standards for ship manoeuvrability, resolution MSC.137(76), annex, section
+//! 5.3.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,15 +8,15 @@ use super::{TurningMetrics, ZigzagMetrics};
 /// One criterion with its limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Criterion {
-    /// Its name.
+    /// Name of the criterion.
     pub criterion: String,
-    /// What was found, in `unit`; absent where the manoeuvre did not reach it.
+    /// Value in `unit`; absent if the manoeuvre did not reach it.
     pub value: Option<f64>,
-    /// The most it may be.
+    /// Largest permitted value.
     pub limit: f64,
     /// Unit of value and limit: `L` (ship lengths) or `deg`.
     pub unit: String,
-    /// Whether it is met; unknown without a value.
+    /// True if the criterion is met; absent without a value.
     pub pass: Option<bool>,
 }
 
@@ -26,9 +27,9 @@ impl Criterion {
     }
 }
 
-/// The criteria: turning at the largest rudder (35 deg), initial turning at 10 deg, zigzags 10/10
-/// and 20/20. Where both sides were sailed the worse counts. `speed_m_s` is the test speed, `lpp_m`
-/// the length.
+/// Returns the criteria: turning at the largest rudder angle (35 deg), initial turning at 10 deg,
+/// zigzags 10/10 and 20/20. If both sides were simulated, the worse side counts. `speed_m_s` is the
+/// test speed, `lpp_m` the length.
 pub fn criteria(
     lpp_m: f64,
     speed_m_s: f64,
@@ -36,6 +37,7 @@ pub fn criteria(
     zigzags: &[ZigzagMetrics],
     initial_turning_m: Option<f64>,
 ) -> Vec<Criterion> {
+    // Half a degree of tolerance on the largest rudder angle of 35 deg.
     let hard = turns.iter().filter(|turn| turn.rudder_deg.abs() >= 34.5);
     let hard: Vec<&TurningMetrics> = hard.collect();
     let lengths = |of: &dyn Fn(&TurningMetrics) -> Option<f64>| {
@@ -75,14 +77,14 @@ pub fn criteria(
     ]
 }
 
-/// The worst of several, unknown as soon as one is unknown.
+/// Returns the largest of several values; `None` if any of them is unknown.
 fn worst(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Option<Vec<f64>> = values.collect();
     values?.into_iter().reduce(f64::max)
 }
 
-/// First overshoot of the 10/10 zigzag: 10 deg below L/V = 10 s, 20 deg from 30 s, 5 + (L/V)/2
-/// between.
+/// Limit of the first overshoot of the 10/10 zigzag: 10 deg below L/V = 10 s, 20 deg from 30 s, 5 +
+/// (L/V)/2 between.
 fn first_limit(time_s: f64) -> f64 {
     if time_s < 10.0 {
         10.0
@@ -93,8 +95,8 @@ fn first_limit(time_s: f64) -> f64 {
     }
 }
 
-/// Second overshoot of the 10/10 zigzag: 25 deg below L/V = 10 s, 40 deg from 30 s, 17.5 + 0.75
-/// (L/V) between.
+/// Limit of the second overshoot of the 10/10 zigzag: 25 deg below L/V = 10 s, 40 deg from 30 s,
+/// 17.5 + 0.75 (L/V) between.
 fn second_limit(time_s: f64) -> f64 {
     if time_s < 10.0 {
         25.0

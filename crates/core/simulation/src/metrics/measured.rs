@@ -1,5 +1,5 @@
-//! The same figures from a recorded trial: what was sailed is told by its name, when the rudder
-//! moved by its record.
+//! Manoeuvre metrics of a recorded trial: the kind of manoeuvre follows from its name, the times of
+//! the reversals from the recorded rudder.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
@@ -7,17 +7,17 @@ use sistership_model::trial::{Channel, Trial};
 use super::{TurningMetrics, ZigzagMetrics};
 use crate::state::{RECORDED, StateVector, Trajectory};
 
-/// The figures of one manoeuvre.
+/// Metrics of one manoeuvre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ManoeuvreMetrics {
-    /// Of a turning circle.
+    /// Metrics of a turning circle.
     Turn(TurningMetrics),
-    /// Of a zigzag.
+    /// Metrics of a zigzag.
     Zigzag(ZigzagMetrics),
 }
 
-/// A trial as a manoeuvre: what it is, from which sample, and when the rudder was reversed.
+/// Manoeuvre of a trial: its kind, its first sample, and the times of the reversals of the rudder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recognised {
     kind: Kind,
@@ -32,14 +32,15 @@ enum Kind {
 }
 
 impl Recognised {
-    /// Reads `turn ...` or `zigzag R/H` in the trial's manoeuvre; `None` for anything else, or
-    /// where the rudder never moves.
+    /// Recognises `turn ...` or `zigzag R/H` in the trial's manoeuvre; `None` for anything else, or
+    /// if the rudder never moves.
     pub fn of(trial: &Trial) -> Option<Self> {
         let name = trial.manoeuvre.as_deref()?.to_lowercase();
         let delta = trial.channel(Channel::Delta)?;
         let start = execution(delta)?;
         let side = delta[start].signum();
         if name.starts_with("turn") {
+            // The median of the second half is robust against the time in which the rudder moves.
             let rudder_deg = median(&delta[start + (delta.len() - start) / 2..])?.to_degrees();
             return Some(Self { kind: Kind::Turn { rudder_deg }, start, reversals_s: Vec::new() });
         }
@@ -48,6 +49,7 @@ impl Recognised {
             text.trim().trim_end_matches("deg").trim().parse::<f64>().ok().map(f64::abs)
         };
         let kind = Kind::Zigzag { rudder_deg: side * angle(rudder)?, switch_deg: angle(switch)? };
+        // A reversal is a change of sign of the rudder, or its first sample at zero.
         let crossing =
             |k: &usize| delta[k - 1] * delta[*k] < 0.0 || (delta[*k] == 0.0 && delta[k - 1] != 0.0);
         let reversals =
@@ -55,9 +57,10 @@ impl Recognised {
         Some(Self { kind, start, reversals_s: reversals.collect() })
     }
 
-    /// The figures of a track whose states belong to the given samples of the trial.
+    /// Returns the metrics of a track whose states belong to the given samples of the trial.
     pub fn metrics(&self, track: &Trajectory, samples: &[usize]) -> Option<ManoeuvreMetrics> {
         let first = samples.iter().position(|&k| k >= self.start)?;
+        // Time counts from the execution of the rudder.
         let mut after = Trajectory::default();
         for k in first..track.states.len() {
             after.push(track.t_s[k] - track.t_s[first], track.states[k], track.n_rps[k]);
@@ -74,7 +77,7 @@ impl Recognised {
     }
 }
 
-/// A trial as a track; `None` where velocities, heading or position were not recorded.
+/// Returns a trial as a track; `None` if velocities, heading or position were not recorded.
 pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
     let needed = &RECORDED[..6];
     let columns: Vec<(usize, &[f64])> = needed
@@ -93,8 +96,8 @@ pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
     Some(track)
 }
 
-/// The sample at which the rudder leaves its first angle by a tenth of its range and by more than
-/// half a degree.
+/// Returns the sample at which the rudder leaves its first angle by a tenth of its range and by
+/// more than half a degree.
 fn execution(delta: &[f64]) -> Option<usize> {
     let rest = *delta.first()?;
     let range = delta.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);

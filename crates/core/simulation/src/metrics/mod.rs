@@ -1,4 +1,4 @@
-//! The figures by which a ship's manoeuvring is judged, by their ITTC and IMO names.
+//! Figures of a ship's manoeuvring, by their ITTC and IMO names.
 
 mod imo;
 mod measured;

@@ -1,35 +1,38 @@
-//! The pull-out test: MSC/Circ.1053, appendix 4, 5; ITTC 7.5-04-02-01.
+//! Pull-out test: MSC/Circ.1053, appendix 4, 5; ITTC 7.5-04-02-01.
 
 use serde::{Deserialize, Serialize};
 
-/// What is left of a turn to one side after the rudder was put amidships.
+/// Metrics of the motion after the rudder was put amidships out of a turn to one side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PullOutMetrics {
     /// Rudder of the turn, deg, positive to starboard.
     pub rudder_deg: f64,
     /// Yaw rate of the turn when the rudder was put amidships, deg/s.
     pub turning_rate_deg_s: f64,
-    /// Yaw rate that is left, deg/s; absent where it had not become steady when the run ended.
+    /// Residual yaw rate, deg/s; absent if it had not become steady when the run ended.
     pub residual_rate_deg_s: Option<f64>,
-    /// The same by speed over length at the end.
+    /// The same in units of speed over length at the end.
     pub residual_rate_by_length: Option<f64>,
 }
 
-/// A turn about a radius of a thousand lengths: less is not told from another.
+/// Smallest difference of non-dimensional yaw rates that can be distinguished: a turn of a radius
+/// of a thousand lengths.
 const ALIKE: f64 = 1e-3;
-/// A turn about a radius of a hundred lengths: less is a straight course.
+/// Non-dimensional yaw rate of a turn of a radius of a hundred lengths: below it the course is
+/// straight.
 const STRAIGHT: f64 = 1e-2;
 
-/// Whether a ship is stable on a straight course: after turns to both sides it goes straight. None
-/// where one was not sailed or did not become steady, or where both sides end in the same turn: a
-/// ship that is not the same on both sides goes straight at another rudder than amidships, and
-/// spirals tell how it is there.
+/// Returns true if a ship is stable on a straight course: after turns to both sides it runs
+/// straight. `None` if one side was not simulated or did not become steady, or if both sides end in
+/// the same turn: an asymmetric ship runs straight at another rudder angle than amidships, and only
+/// spirals show its stability there.
 pub fn is_straight_line_stable(pull_outs: &[PullOutMetrics]) -> Option<bool> {
     let side = |starboard: bool| {
         let of = |one: &&PullOutMetrics| (one.rudder_deg > 0.0) == starboard;
         pull_outs.iter().find(of)?.residual_rate_by_length
     };
     let (starboard, port) = (side(true)?, side(false)?);
+    // Both sides end in different turns: the straight course between them is unstable.
     match (starboard - port).abs() < 2.0 * ALIKE {
         false => Some(false),
         true => (starboard.abs().max(port.abs()) < STRAIGHT).then_some(true),

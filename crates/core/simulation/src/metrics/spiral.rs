@@ -1,19 +1,19 @@
-//! Spirals: MSC/Circ.1053, appendix 4, 2; ITTC 7.5-04-02-01.
+//! Spiral tests: MSC/Circ.1053, appendix 4, 2; ITTC 7.5-04-02-01.
 
 use serde::{Deserialize, Serialize};
 
-/// A steady turn: rudder and yaw rate.
+/// Rudder angle and yaw rate of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpiralPoint {
     /// Rudder, deg, positive to starboard.
     pub rudder_deg: f64,
     /// Yaw rate, deg/s.
     pub rate_deg_s: f64,
-    /// Whether it had become steady when the next rudder angle, or rate, was ordered.
+    /// True if the motion had become steady when the next rudder angle, or rate, was ordered.
     pub steady: bool,
 }
 
-/// What two spirals tell of a ship.
+/// Metrics of the direct and the reverse spiral.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpiralMetrics {
     /// The direct spiral (Dieudonné): the rudder from starboard to port and back, in this order.
@@ -26,15 +26,15 @@ pub struct SpiralMetrics {
     /// Width of the loop by the reverse spiral, deg of rudder; 0 for a ship that is stable on a
     /// straight course.
     pub loop_width_deg: f64,
-    /// From one side to the other without rudder, deg/s: the height of the loop.
+    /// Height of the loop: yaw rate from one side to the other with the rudder amidships, deg/s.
     pub loop_height_deg_s: f64,
-    /// What the width should not exceed at this length and speed, deg: not a criterion of
-    /// MSC.137(76), but of classification societies.
+    /// Largest acceptable width at this length and speed, deg: not a criterion of MSC.137(76), but
+    /// of classification societies.
     pub width_limit_deg: f64,
 }
 
 impl SpiralMetrics {
-    /// Of points in the order in which they were sailed; `length_s` is length by speed, s.
+    /// Evaluates points in the order of their simulation; `length_s` is length over speed, s.
     pub fn of(direct: Vec<SpiralPoint>, reverse: Vec<SpiralPoint>, length_s: f64) -> Self {
         Self {
             direct_loop_width_deg: direct_width(&direct),
@@ -46,25 +46,27 @@ impl SpiralMetrics {
         }
     }
 
-    /// Whether the ship is stable on a straight course: it has no loop.
+    /// Returns true if the ship is stable on a straight course, which means that there is no loop.
     pub fn is_stable(&self) -> bool {
         self.loop_width_deg < NO_LOOP_DEG
     }
 }
 
-/// What is no loop, deg of rudder: five times what a held rate leaves open of its rudder (0.02
-/// deg). At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
+/// Smallest width of a loop, deg of rudder: five times the resolution of the rudder at a held rate
+/// (0.02 deg). At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
 const NO_LOOP_DEG: f64 = 0.1;
 
-/// The width of the loop that is acceptable, deg: none below L/V = 9 s, 12 deg above 45 s,
-/// (L/V)/3 - 3 between (American Bureau of Shipping 2006, Guide for vessel maneuverability, sec. 2;
-/// its text was not at hand).
+/// Acceptable width of the loop, deg: none below L/V = 9 s, 12 deg above 45 s, (L/V)/3 - 3 between
+/// (American Bureau of Shipping 2006, Guide for vessel maneuverability, sec. 2; its text was not at
+/// hand).
 pub fn width_limit(length_s: f64) -> f64 {
     (length_s / 3.0 - 3.0).clamp(0.0, 12.0)
 }
 
-/// Between the rudder angles at which the yaw rate changes its sign on the way to port and back.
+/// Returns the difference of the rudder angles at which the yaw rate changes its sign on the way to
+/// port and back, deg.
 fn direct_width(points: &[SpiralPoint]) -> f64 {
+    // The smallest rudder angle separates the way to port from the way back.
     let least = points.iter().enumerate().min_by(|a, b| a.1.rudder_deg.total_cmp(&b.1.rudder_deg));
     let Some((turned, _)) = least else { return 0.0 };
     let changes = |way: &[SpiralPoint]| {
@@ -75,8 +77,10 @@ fn direct_width(points: &[SpiralPoint]) -> f64 {
     there.zip(back).map_or(0.0, |(there, back)| (back - there).max(0.0))
 }
 
-/// How far the rudder must be put against the turn to hold small yaw rates, from side to side.
+/// Returns the range of rudder angles against the turn that hold small yaw rates, from side to
+/// side, deg.
 fn reverse_width(points: &[SpiralPoint]) -> f64 {
+    // In a loop, rates to port are held by a rudder to starboard of that of rates to starboard.
     let port = points.iter().filter(|point| point.rate_deg_s <= 0.0);
     let starboard = points.iter().filter(|point| point.rate_deg_s >= 0.0);
     let most = port.map(|point| point.rudder_deg).fold(f64::NEG_INFINITY, f64::max);
@@ -84,10 +88,12 @@ fn reverse_width(points: &[SpiralPoint]) -> f64 {
     if most.is_finite() && least.is_finite() { (most - least).max(0.0) } else { 0.0 }
 }
 
-/// Between the yaw rates with the rudder amidships on the way to port and back.
+/// Returns the difference of the yaw rates with the rudder amidships on the way to port and back,
+/// deg/s.
 fn height(points: &[SpiralPoint]) -> f64 {
     let amidships = points.iter().filter(|point| point.rudder_deg.abs() < 0.05);
     let rates: Vec<f64> = amidships.map(|point| point.rate_deg_s).collect();
+    // Amidships is passed once on each way; other counts belong to an incomplete spiral.
     match rates[..] {
         [there, back] => (there - back).abs(),
         _ => 0.0,

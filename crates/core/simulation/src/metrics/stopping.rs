@@ -1,25 +1,25 @@
-//! The full astern stopping test: IMO MSC.137(76), annex, 5.3.4; MSC/Circ.1053, 1.2.2 and
-//! appendix 3.
+//! Full astern stopping test: IMO MSC.137(76), annex, 5.3.4; MSC/Circ.1053, 1.2.2 and appendix 3.
 
 use serde::{Deserialize, Serialize};
 
 use super::Criterion;
 use crate::state::{StateVector, Trajectory, at};
 
-/// Most track reach, ship lengths: MSC.137(76), 5.3.4.
+/// Largest track reach, ship lengths: MSC.137(76), 5.3.4.
 const TRACK_REACH: f64 = 15.0;
-/// What an Administration may allow where a ship's displacement makes that impracticable, ship
-/// lengths: ibid.
+/// Track reach that an Administration may allow where a ship's displacement makes the limit
+/// impracticable, ship lengths: ibid.
 pub const TRACK_REACH_ALLOWED: f64 = 20.0;
 
-/// A stopping test, measured from the order to reverse until the ship is dead in the water.
+/// Metrics of a stopping test, measured from the order to reverse until the ship is dead in the
+/// water.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StoppingMetrics {
-    /// Revolutions astern that were ordered, 1/s, below 0.
+    /// Ordered revolutions astern, 1/s, below 0.
     pub astern_rps: f64,
-    /// The time in which they were reached from those ahead, in proportion, s.
+    /// Duration of the linear change from revolutions ahead, s.
     pub reversal_s: f64,
-    /// Distance along the track, m; absent where it did not stop.
+    /// Distance along the track, m; absent if the ship did not stop.
     pub track_reach_m: Option<f64>,
     /// Distance along the first heading, m.
     pub head_reach_m: Option<f64>,
@@ -27,12 +27,12 @@ pub struct StoppingMetrics {
     pub lateral_deviation_m: Option<f64>,
     /// Change of heading, deg, positive to starboard.
     pub heading_change_deg: Option<f64>,
-    /// Time until it is dead in the water, s.
+    /// Time until the ship is dead in the water, s.
     pub time_s: Option<f64>,
 }
 
 impl StoppingMetrics {
-    /// From a track that starts at the order.
+    /// Evaluates a track that starts at the order to reverse; `None` for an empty track.
     pub fn of(track: &Trajectory, astern_rps: f64, reversal_s: f64) -> Option<Self> {
         let first = track.states.first()?;
         let stopped = dead_in_the_water(track);
@@ -53,23 +53,25 @@ impl StoppingMetrics {
         })
     }
 
-    /// The criterion of stopping ability, for a ship of a length in m.
+    /// Criterion of stopping ability for a ship of length `lpp_m`, m.
     pub fn criterion(&self, lpp_m: f64) -> Criterion {
         let lengths = self.track_reach_m.map(|metres| metres / lpp_m);
         Criterion::new("stopping: track reach", lengths, TRACK_REACH, "L")
     }
 }
 
-/// When the speed ahead is lost, s, and the state then, between two samples in proportion.
+/// Returns the time at which the speed ahead is lost, s, and the state at that time, interpolated
+/// linearly between two samples.
 fn dead_in_the_water(track: &Trajectory) -> Option<(f64, StateVector)> {
     let k = track.states.iter().position(|state| state[at::U] <= 0.0).filter(|&k| k > 0)?;
     let (before, after) = (&track.states[k - 1], &track.states[k]);
+    // Linear interpolation of the surge velocity to zero.
     let part = before[at::U] / (before[at::U] - after[at::U]);
     let t_s = track.t_s[k - 1] + part * (track.t_s[k] - track.t_s[k - 1]);
     Some((t_s, before + part * (after - before)))
 }
 
-/// The length of the track to a time and the state then, m.
+/// Length of the track up to a time and the state at that time, m.
 fn sailed(track: &Trajectory, until_s: f64, end: &StateVector) -> f64 {
     let states = track.states.iter().zip(&track.t_s);
     let before: Vec<&StateVector> =

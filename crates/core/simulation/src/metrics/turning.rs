@@ -1,11 +1,11 @@
-//! Turning circle: ITTC 7.5-04-02-01, section on turning tests.
+//! Turning circle test: ITTC 7.5-04-02-01, section on turning tests.
 
 use serde::{Deserialize, Serialize};
 
 use crate::state::{StateVector, Trajectory, at, speed};
 
-/// A turning circle, measured from the execution of the rudder. Lengths are positive towards the
-/// side of the turn.
+/// Metrics of a turning circle, measured from the execution of the rudder. Lengths are positive
+/// towards the side of the turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TurningMetrics {
     /// Ordered rudder angle, deg, positive to starboard.
@@ -27,7 +27,7 @@ pub struct TurningMetrics {
 }
 
 impl TurningMetrics {
-    /// From a track that starts at the execution of the rudder.
+    /// Evaluates a track that starts at the execution of the rudder; `None` for an empty track.
     pub fn of(track: &Trajectory, rudder_deg: f64) -> Option<Self> {
         let (first, last) = (track.states.first()?, track.last()?);
         let seen = View::new(first, rudder_deg);
@@ -42,6 +42,7 @@ impl TurningMetrics {
             advance_m: seen.at_turn(track, 90.0, &along),
             transfer_m: seen.at_turn(track, 90.0, &across),
             tactical_diameter_m: seen.at_turn(track, 180.0, &across),
+            // A motion without yaw has no radius.
             steady_radius_m: (rate > 1e-9).then(|| speed(last) / rate),
             max_advance_m: largest(&along),
             max_transfer_m: largest(&across),
@@ -50,14 +51,15 @@ impl TurningMetrics {
     }
 }
 
-/// The distance sailed until the heading has changed by `change_deg`, m; with 10 deg of rudder and
-/// of change, IMO's initial turning ability.
+/// Returns the distance along the track until the heading has changed by `change_deg`, m; with 10
+/// deg of rudder and of change this is IMO's initial turning ability.
 pub fn initial_turning_distance(
     track: &Trajectory,
     rudder_deg: f64,
     change_deg: f64,
 ) -> Option<f64> {
     let first = track.states.first()?;
+    // Cumulative distance along the track.
     let mut sailed = vec![0.0];
     for pair in track.states.windows(2) {
         let leg = (pair[1][at::X] - pair[0][at::X]).hypot(pair[1][at::Y] - pair[0][at::Y]);
@@ -67,7 +69,7 @@ pub fn initial_turning_distance(
     Some(sailed[k - 1] + w * (sailed[k] - sailed[k - 1]))
 }
 
-/// The plane as seen from the start of the turn.
+/// Coordinates with the origin and the first heading of the turn.
 struct View {
     origin: StateVector,
     side: f64,
@@ -94,14 +96,15 @@ impl View {
         self.side * (y * cos - x * sin)
     }
 
-    /// The sample after which the heading has changed by an angle, and how far between the two
-    /// samples.
+    /// Returns the sample at which the heading has changed by an angle, and the fraction of the
+    /// step before it.
     fn crossing(&self, track: &Trajectory, change_deg: f64) -> Option<(usize, f64)> {
         let turned = |state: &StateVector| {
             self.side * (state[at::PSI] - self.origin[at::PSI]) - change_deg.to_radians()
         };
         let k = track.states.iter().position(|state| turned(state) >= 0.0).filter(|&k| k > 0)?;
         let (before, after) = (turned(&track.states[k - 1]), turned(&track.states[k]));
+        // Linear interpolation between the samples before and after the crossing.
         Some((k, before / (before - after)))
     }
 

@@ -1,17 +1,17 @@
-//! Zigzag: ITTC 7.5-04-02-01, section on zigzag tests.
+//! Zigzag test: ITTC 7.5-04-02-01, section on zigzag tests.
 
 use serde::{Deserialize, Serialize};
 
 use crate::state::{Trajectory, at};
 
-/// A zigzag, measured from the first execution of the rudder.
+/// Metrics of a zigzag, measured from the first execution of the rudder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ZigzagMetrics {
     /// Rudder angle, deg, positive where the first execution is to starboard.
     pub rudder_deg: f64,
     /// Change of heading at which the rudder is reversed, deg.
     pub switch_deg: f64,
-    /// How far the heading goes beyond the switching angle after the first reversal, deg.
+    /// Change of heading beyond the switching angle after the first reversal, deg.
     pub first_overshoot_deg: Option<f64>,
     /// The same after the second reversal, deg.
     pub second_overshoot_deg: Option<f64>,
@@ -22,7 +22,7 @@ pub struct ZigzagMetrics {
 }
 
 impl ZigzagMetrics {
-    /// From a track that starts at the first execution, and the times of the reversals, s.
+    /// Evaluates a track that starts at the first execution, with the times of the reversals, s.
     pub fn of(
         track: &Trajectory,
         rudder_deg: f64,
@@ -34,7 +34,9 @@ impl ZigzagMetrics {
         let side = if rudder_deg < 0.0 { -1.0 } else { 1.0 };
         let overshoot = |index: usize| {
             let from = *reversals_s.get(index)?;
+            // The last swing ends with the track.
             let until = reversals_s.get(index + 1).copied().unwrap_or(end);
+            // Swings alternate between the sides.
             let side = if index.is_multiple_of(2) { side } else { -side };
             let window =
                 track.t_s.iter().zip(&track.states).filter(|(t, _)| (from..=until).contains(*t));

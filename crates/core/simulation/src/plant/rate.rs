@@ -1,4 +1,4 @@
-//! The equations of motion at a state, for a block of ships in lockstep.
+//! Evaluation of the equations of motion for a block of ships in lockstep.
 
 use nalgebra::{Matrix4, Vector4};
 
@@ -6,13 +6,13 @@ use super::{Inputs, Plant};
 use crate::state::{StateVector, States, at, lane_of};
 use crate::tape::{Lanes, Slots};
 
-/// States that the tape takes, in its order.
+/// States that the tape takes, in order.
 const ON_TAPE: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 
-/// Room to evaluate in, kept from step to step so that the time loop allocates nothing.
+/// Workspace of the evaluation, kept from step to step so that the time loop allocates nothing.
 #[derive(Debug)]
 pub struct Work<const N: usize = 1> {
-    /// What the tape takes: states, inputs of the law, open coefficients.
+    /// Inputs of the tape: states, inputs of the law, open coefficients.
     point: Vec<Lanes<N>>,
     work: Slots<N>,
     coefficients: Vec<Lanes<N>>,
@@ -35,12 +35,13 @@ impl<const N: usize> Work<N> {
     pub fn set_coefficients(&mut self, lane: usize, values: &[f64]) {
         self.coefficients.resize(values.len(), [0.0; N]);
         self.coefficients.iter_mut().zip(values).for_each(|(lanes, value)| lanes[lane] = *value);
-        // The point is made anew with them.
+        // Forces `fill` to rebuild the point with the new coefficients.
         self.point.clear();
     }
 
     fn fill(&mut self, states: &States<N>, inputs: &[Lanes<N>]) {
         let fixed = ON_TAPE.len() + inputs.len();
+        // The point is rebuilt when the number of inputs or coefficients has changed.
         if self.point.len() != fixed + self.coefficients.len() {
             self.point.clear();
             self.point.resize(fixed, [0.0; N]);
@@ -52,16 +53,16 @@ impl<const N: usize> Work<N> {
 }
 
 impl Plant {
-    /// The rate of change of the state; that of the rudder is left at zero, the steering gear's
-    /// business.
+    /// Rate of change of the state; that of the rudder is zero, because the steering gear
+    /// determines it.
     pub fn rate(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
         let states = std::array::from_fn(|place| [state[place]]);
         let inputs = inputs.map(|value| [value]);
         lane_of(&self.rates(&states, &inputs, work), 0)
     }
 
-    /// The rates of change of the states of several ships, each with its own inputs and open
-    /// coefficients. `inputs` has at least as many as the law takes.
+    /// Rates of change of the states of several ships, each with its own inputs and open
+    /// coefficients. `inputs` has at least as many entries as the law has inputs.
     pub fn rates<const N: usize>(
         &self,
         states: &States<N>,
@@ -79,6 +80,8 @@ impl Plant {
     fn accelerate<const N: usize>(&self, work: &[Lanes<N>], rates: &mut States<N>) {
         let read =
             |output: Option<usize>| output.map_or([0.0; N], |output| self.tape.read(output, work));
+        // `M (nu' - a) = F`: forces times the inverse mass matrix, plus the accelerations of
+        // effects.
         let forces = self.layout.forces.map(read);
         let accelerations = match &self.mobility {
             Some(mobility) => product(mobility, &forces),
@@ -94,7 +97,8 @@ impl Plant {
         }
     }
 
-    /// Where masses change with the motion, each ship has its own.
+    /// Accelerations for masses that change with the motion: the mass matrix is solved for each
+    /// ship.
     fn solved<const N: usize>(&self, work: &[Lanes<N>], forces: &[Lanes<N>; 4]) -> [Lanes<N>; 4] {
         let mut out = [[0.0; N]; 4];
         for lane in 0..N {
@@ -104,6 +108,7 @@ impl Plant {
                     self.tape.at(output, work)[lane]
                 })
             };
+            // A singular matrix gives NaN, which the check of the envelope reports.
             let own = Vector4::from_fn(|row, _| forces[row][lane]);
             let solved = Matrix4::from_fn(entry)
                 .lu()
@@ -114,9 +119,10 @@ impl Plant {
         out
     }
 
-    /// Where it goes, and how its attitude changes.
+    /// Sets the rates of position and attitude.
     fn turn<const N: usize>(&self, states: &States<N>, work: &[Lanes<N>], rates: &mut States<N>) {
         let (u, v) = (&states[at::U], &states[at::V]);
+        // Default: motion in the horizontal plane; rates that the law defines replace it below.
         for lane in 0..N {
             let (sin, cos) = states[at::PSI][lane].sin_cos();
             rates[at::X][lane] = u[lane] * cos - v[lane] * sin;
@@ -139,7 +145,7 @@ fn product<const N: usize>(matrix: &Matrix4<f64>, vectors: &[Lanes<N>; 4]) -> [L
     for (row, out) in out.iter_mut().enumerate() {
         for (column, vector) in vectors.iter().enumerate() {
             let factor = matrix[(row, column)];
-            // An axis that the law does not have adds nothing, and may not be a number.
+            // Skips axes that the law does not have, whose force may be NaN.
             if factor != 0.0 {
                 (0..N).for_each(|lane| out[lane] += factor * vector[lane]);
             }

@@ -1,4 +1,4 @@
-//! A gap-free part of a trial, on which a simulation runs without starting anew.
+//! Gap-free part of a trial, which is simulated without a restart.
 
 use std::ops::Range;
 
@@ -11,18 +11,19 @@ use crate::plant::{Inputs, Work};
 use crate::ship::Ship;
 use crate::state::{StateVector, Trajectory, at};
 
+/// Simulation of one part of a trial.
 pub struct Part<'a> {
-    /// Place of the trial among all.
+    /// Index of the trial among all.
     trial: usize,
     record: &'a Record<'a>,
     coefficients: &'a [f64],
     part: Range<usize>,
     /// Longest step, s.
     longest_s: f64,
-    /// The sample behind, and the steps taken since.
+    /// Last sample that was passed, and the number of steps since.
     sample: usize,
     taken: usize,
-    /// Steps from that sample to the next; none before the first.
+    /// Number of steps from that sample to the next; zero before the first sample.
     steps: usize,
     track: Trajectory,
     samples: Vec<usize>,
@@ -54,19 +55,21 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Adds what was simulated to that of its trial.
+    /// Appends the simulated samples to the result of the trial.
     pub fn join(self, replays: &mut [Replay]) {
         let replay = &mut replays[self.trial];
         replay.track.append(self.track);
         replay.samples.extend(self.samples);
+        // The first stop of a trial is the one to report.
         if replay.stopped.is_none() {
             replay.stopped = self.stopped;
         }
     }
 
-    /// At a sample: how far to the next step, s.
+    /// Records the state at a sample; returns the length of the next step, s, or `None` at the end.
     fn at_sample(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64> {
         let (k, trial) = (self.sample, self.record.trial);
+        // The recorded rudder drives the simulation.
         state[at::DELTA] = self.record.delta[k];
         if let Err(stopped) = ship.envelope().check(trial.t_s[k], state) {
             self.stopped = Some(stopped);
@@ -78,6 +81,7 @@ impl<'a> Part<'a> {
         if k + 1 >= self.part.end {
             return None;
         }
+        // The tolerance avoids an additional step caused by rounding.
         self.steps = (self.interval_s() / self.longest_s - 1e-9).ceil().max(1.0) as usize;
         self.taken = 0;
         Some(self.interval_s() / self.steps as f64)

@@ -1,4 +1,4 @@
-//! The rates of change that a model gives along a recorded trial.
+//! Rates of change that a model gives along a recorded trial.
 
 use sistership_model::trial::Trial;
 
@@ -7,11 +7,11 @@ use crate::branch::Instant;
 use crate::plant::Work;
 use crate::ship::Ship;
 
-/// What a learned branch would see at each sample of a trial, with the ship's own rates at the
-/// recorded states.
+/// Returns the inputs of a learned correction at each sample of a trial, with the ship's own rates
+/// at the recorded states.
 ///
 /// # Errors
-/// As [`replay`](super::replay).
+/// The errors of [`replay`](super::replay).
 pub fn instants_along(ship: &Ship, trial: &Trial) -> Result<Vec<Instant>, MissingChannel> {
     let record = Record::new(ship, trial)?;
     let mut work = Work::default();

@@ -1,4 +1,4 @@
-//! A trial as a simulation reads it.
+//! Channels of a trial in the form that a simulation reads.
 
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
@@ -8,22 +8,22 @@ use crate::plant::{Inputs, MAX_INPUTS};
 use crate::ship::Ship;
 use crate::state::{RECORDED, StateVector, at};
 
-/// Why a trial cannot be simulated at all.
+/// Error of a trial that cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("trial `{trial}` has no channel `{channel}`, which the simulation needs")]
 pub struct MissingChannel {
     /// The trial.
     pub trial: String,
-    /// The channel it lacks.
+    /// The missing channel.
     pub channel: Channel,
 }
 
-/// The channels of a trial that a simulation reads.
+/// Channels of a trial that a simulation reads.
 pub struct Record<'a> {
     pub trial: &'a Trial,
     pub delta: &'a [f64],
     pub n: Option<&'a [f64]>,
-    /// Each input of the law: recorded, or constant.
+    /// Each input of the law: recorded, or a constant.
     inputs: Vec<Result<MonotoneCubic<'a>, f64>>,
     start: Vec<(usize, &'a [f64])>,
 }
@@ -35,8 +35,8 @@ impl<'a> Record<'a> {
                 .channel(channel)
                 .ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel })
         };
-        // Velocities must be known at the start of a part; heading and position start at zero where
-        // they are not.
+        // Velocities must be known at the start of a part; heading and position start at zero if
+        // they were not recorded.
         for (channel, _) in &RECORDED[..3] {
             need(*channel)?;
         }
@@ -68,7 +68,7 @@ impl<'a> Record<'a> {
         state
     }
 
-    /// The inputs at a fraction of the way from a sample to the next.
+    /// Inputs at a fraction of the way from a sample to the next.
     pub fn inputs_at(&self, k: usize, w: f64) -> Inputs {
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, input) in inputs.iter_mut().zip(&self.inputs) {
@@ -78,8 +78,8 @@ impl<'a> Record<'a> {
     }
 }
 
-/// An input of the law on a trial: time, its channel, the trial's constant depth, or the law's
-/// default.
+/// Returns an input of the law on a trial: time, its channel, the trial's constant depth, or the
+/// law's default.
 fn input<'a>(
     trial: &'a Trial,
     name: &str,
@@ -87,6 +87,7 @@ fn input<'a>(
     (lag_s, band): (f64, f64),
 ) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
     if name == TIME {
+        // Time counts from the first sample of the trial.
         let start = trial.t_s.first().copied().unwrap_or_default();
         return Ok(Ok(MonotoneCubic::new(
             &trial.t_s,
@@ -95,6 +96,7 @@ fn input<'a>(
     }
     let channel = input_channel(name);
     if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
+        // The lag acts before the dead band.
         let late = (lag_s > 0.0).then(|| lagged(&trial.t_s, column, lag_s));
         let held = (band > 0.0).then(|| within_band(late.as_deref().unwrap_or(column), band));
         return Ok(Ok(match held.or(late) {
@@ -102,6 +104,7 @@ fn input<'a>(
             None => MonotoneCubic::new(&trial.t_s, column),
         }));
     }
+    // Precedence: recorded channel, constant depth of the trial, default of the law.
     let constant =
         if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
     match (constant, channel) {

@@ -1,23 +1,23 @@
-//! What a simulation of a trial gives.
+//! Result of the simulation of a trial.
 
 use sistership_model::validity::Excursion;
 
 use crate::envelope::Stopped;
 use crate::state::Trajectory;
 
-/// A simulated trial.
+/// Simulated trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
-    /// Simulated states at the recorded times, as the instruments would say them; after a
-    /// divergence, until then only.
+    /// Simulated readings of the instruments at the recorded times; after a divergence, until then
+    /// only.
     pub track: Trajectory,
-    /// Sample of the trial to which each state belongs.
+    /// Sample of the trial for each state.
     pub samples: Vec<usize>,
-    /// Why the simulation stopped early, if it did.
+    /// Reason of an early stop, if any.
     pub stopped: Option<Stopped>,
-    /// Whether roll was simulated.
+    /// True if roll was simulated.
     pub has_roll: bool,
-    /// How the motion left what the model's trials covered, if it did.
+    /// Excursion from the range covered by the model's trials, if any.
     pub outside: Option<Excursion>,
 }
 

@@ -1,4 +1,4 @@
-//! A recorded trial as instruments would have shown it that do not err.
+//! Correction of a recorded trial for known errors of the instruments.
 
 use sistership_model::trial::Trial;
 
@@ -7,12 +7,12 @@ use crate::plant::Work;
 use crate::ship::Ship;
 use crate::state::RECORDED;
 
-/// A trial with the errors undone that a ship's instruments are known to have. Rates of change,
-/// which a late instrument needs, are those of the ship at the recorded state: they are not rougher
-/// than the record.
+/// Returns a trial with the known errors of a ship's instruments removed. The rates of change,
+/// which an instrument with a delay needs, are those of the ship at the recorded state, so that
+/// they are no rougher than the record.
 ///
 /// # Errors
-/// As [`replay`](super::replay).
+/// The errors of [`replay`](super::replay).
 pub fn as_true_instruments_say(ship: &Ship, trial: &Trial) -> Result<Trial, MissingChannel> {
     let record = Record::new(ship, trial)?;
     let (mut truth, mut work) = (trial.clone(), Work::default());

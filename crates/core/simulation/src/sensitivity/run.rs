@@ -1,4 +1,4 @@
-//! Simulation of a block of lanes with their sensitivities; nothing is allocated from step to step.
+//! Simulation of a block of lanes with their sensitivities; no step allocates memory.
 
 use super::small::Small;
 use super::sums::{Sums, WIDE};
@@ -8,25 +8,25 @@ use crate::state::{StateVector, at};
 use crate::tape::{Lanes, Slots};
 use crate::wide::{Wide, widest};
 
-/// Runs in lockstep: states and sensitivities of each lane.
+/// Runs in lockstep, with the states and sensitivities of each lane.
 #[derive(Debug)]
 pub struct SensitiveRun<'a, const L: usize> {
     system: &'a SensitiveSystem,
     states: Vec<Lanes<L>>,
-    /// By lane, state and column: coefficients, then the starting state; after them room to read
-    /// on.
+    /// Sensitivities by lane, state and column: coefficients, then the initial state; followed by
+    /// padding for block reads.
     sensitivities: Vec<f64>,
     columns: usize,
     stages: [Stage<L>; 4],
     room: Room<L>,
 }
 
-/// What a stage of a step leaves behind.
+/// Results of one stage of a step.
 #[derive(Debug, Clone)]
 struct Stage<const L: usize> {
     rate: Vec<Lanes<L>>,
     slopes: Small<L>,
-    /// Regressors by lane; after them room to read on.
+    /// Regressors by lane, followed by padding for block reads.
     regressors: Vec<f64>,
     mobility: Vec<Lanes<L>>,
 }
@@ -39,12 +39,12 @@ struct Room<const L: usize> {
     gains: [Small<L>; 4],
     product: Small<L>,
     transition: Small<L>,
-    /// Gain times mobility of each stage: state by axis.
+    /// Gain times mobility of each stage, state by axis.
     reach: [Vec<Lanes<L>>; 4],
 }
 
 impl<'a, const L: usize> SensitiveRun<'a, L> {
-    /// Of nothing yet; every lane must be started.
+    /// Creates a run without states; every lane must be started.
     pub fn new(system: &'a SensitiveSystem) -> Self {
         let (order, axes, count) =
             (system.states.len(), system.axes.len(), system.regressors.len());
@@ -52,6 +52,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         let stage = || Stage {
             rate: vec![[0.0; L]; order],
             slopes: Small::zeros(order),
+            // The padding lets the last block be read at full width.
             regressors: vec![0.0; L * count + WIDE],
             mobility: vec![[0.0; L]; axes * axes],
         };
@@ -76,8 +77,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         }
     }
 
-    /// Starts a lane anew at a state: sensitivities to coefficients are zero, those to the starting
-    /// state one.
+    /// Starts a lane at a state: sensitivities to coefficients are zero, those to the initial state
+    /// are the identity.
     pub fn start(&mut self, lane: usize, state: &StateVector) {
         let order = self.states.len();
         for (row, &place) in self.system.states.iter().enumerate() {
@@ -90,7 +91,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         (0..order).for_each(|row| own[row * self.columns + count + row] = 1.0);
     }
 
-    /// The state of a lane; what does not move is zero.
+    /// State of a lane; states that do not move are zero.
     pub fn state(&self, lane: usize) -> StateVector {
         let mut state = StateVector::zeros();
         self.system
@@ -101,14 +102,14 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         state
     }
 
-    /// The sensitivities of one state of a lane: to each coefficient, then to each state at the
-    /// start. `row` counts as [`SensitiveSystem::states`] does.
+    /// Sensitivities of one state of a lane: to each coefficient, then to each initial state. `row`
+    /// is counted as in [`SensitiveSystem::states`].
     pub fn sensitivity(&self, lane: usize, row: usize) -> &[f64] {
         let start = (lane * self.states.len() + row) * self.columns;
         &self.sensitivities[start..start + self.columns]
     }
 
-    /// One step of every lane; `inputs` are those of the law at its start, middle and end.
+    /// Advances every lane by one step; `inputs` are those of the law at its start, middle and end.
     pub fn step(&mut self, method: Method, step_s: f64, inputs: [&[Lanes<L>]; 3]) {
         match method {
             Method::Euler => self.euler(step_s, inputs[0]),
@@ -118,6 +119,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
 
     fn euler(&mut self, h: f64, inputs: &[Lanes<L>]) {
         self.stage(0, 0.0, inputs);
+        // Euler's method: `P = 1 + h A_1`, and its only gain is `h`.
         self.room.transition.set(1.0, h, &self.stages[0].slopes);
         let Room { gains, product, .. } = &mut self.room;
         product.entries.fill([0.0; L]);
@@ -127,6 +129,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 
     fn rk4(&mut self, h: f64, [start, middle, end]: [&[Lanes<L>]; 3]) {
+        // Reach and inputs of the four stages.
         for (i, (reach, inputs)) in
             [(0.0, start), (0.5 * h, middle), (0.5 * h, middle), (h, end)].into_iter().enumerate()
         {
@@ -136,7 +139,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         widest(Chain { run: self, step_s: h });
     }
 
-    /// Evaluates the rate, its slopes and regressors at the state reached along the stage before.
+    /// Evaluates the rate, its derivatives and the regressors at the state moved along the rate of
+    /// the stage before.
     fn stage(&mut self, i: usize, reach: f64, inputs: &[Lanes<L>]) {
         let Self { system, states, stages, room, .. } = self;
         for (row, at) in room.at.iter_mut().enumerate() {
@@ -146,6 +150,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
                 (0..L).for_each(|lane| at[lane] += reach * rate[lane]);
             }
         }
+        // States that a 3-DOF law does not have are zero on the tape.
         let place = |wanted: usize| system.states.iter().position(|&place| place == wanted);
         let value = |wanted: usize| place(wanted).map_or([0.0; L], |row| room.at[row]);
         let given = [at::U, at::V, at::R, at::P, at::PHI, at::PSI].map(value);
@@ -156,7 +161,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         stages[i].read(system, &room.work);
     }
 
-    /// Gains of each stage and the transition of a step of the classical Runge-Kutta method.
+    /// Computes the gains of each stage and the transition of a step of the classical Runge-Kutta
+    /// method.
     #[inline(always)]
     fn gains(&mut self, h: f64) {
         let Room { gains, product, transition, .. } = &mut self.room;
@@ -164,6 +170,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         transition.set(1.0, 0.0, product);
         let weights = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
         let reaches = [0.5 * h, 0.5 * h, h, 0.0];
+        // Backwards: `G_i = weight_i + reach_i G_{i+1} A_{i+1}`; `product` holds `G_{i+1} A_{i+1}`.
         for i in (0..4).rev() {
             gains[i].set(weights[i], reaches[i], product);
             product.set_product(&gains[i], &self.stages[i].slopes);
@@ -189,7 +196,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         }
     }
 
-    /// Gain times mobility of a stage.
+    /// Computes the gain times the mobility of a stage.
     #[inline(always)]
     fn reach(&mut self, i: usize) {
         let axes = self.system.axes.len();
@@ -206,7 +213,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         }
     }
 
-    /// `P S`, and what the coefficients push at each stage, for a lane.
+    /// Computes `P S` and the contributions of the coefficients at each stage, for one lane.
     #[inline(always)]
     fn transport(&mut self, lane: usize, stages: usize) {
         let (order, axes, columns) = (self.states.len(), self.system.axes.len(), self.columns);
@@ -218,7 +225,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         });
         let starting = count..columns;
         for (axis, range) in system.of_axis.iter().chain(std::iter::once(&starting)).enumerate() {
-            // Where it started pushes no more.
+            // Coefficients act through the accelerations of their axis; the initial state has no
+            // such term.
             let pushes = if axis < axes { stages } else { 0 };
             let mut sums = Sums::new(order);
             for row in 0..order {
@@ -234,7 +242,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 }
 
-/// The chain rule through the stages of a step.
+/// Chain rule through the stages of a step.
 struct Chain<'r, 'a, const L: usize> {
     run: &'r mut SensitiveRun<'a, L>,
     step_s: f64,
@@ -255,25 +263,28 @@ impl<const L: usize> Stage<L> {
         system.mobility(work, &mut self.mobility);
         self.rate.fill([0.0; L]);
         self.slopes.entries.fill([0.0; L]);
+        // Rate and derivatives of a force have the same factor, its mobility.
         for (axis, force) in system.forces.iter().enumerate() {
             for row in 0..axes {
                 let mobility = self.mobility[row * axes + axis];
                 self.add(row, &mobility, force, &read);
             }
         }
+        // Accelerations of effects are added without a mobility.
         for (row, addition) in system.additions.iter().enumerate() {
             addition.iter().for_each(|addition| self.add(row, &[1.0; L], addition, &read));
         }
         for (row, kinematic) in (axes..order).zip(&system.kinematics) {
             self.add(row, &[1.0; L], kinematic, &read);
         }
+        // Regressors are stored by lane, since a lane is transported at a time.
         for (j, &output) in system.regressors.iter().enumerate() {
             let value = read(output);
             (0..L).for_each(|lane| self.regressors[lane * count + j] = value[lane]);
         }
     }
 
-    /// Adds a multiple of a value with its slopes to the rate of a state.
+    /// Adds a multiple of a value and its derivatives to the rate of a state.
     fn add(
         &mut self,
         row: usize,

@@ -1,8 +1,8 @@
-//! Small square matrices, every entry in lanes.
+//! Small square matrices whose entries are lanes.
 
 use crate::tape::Lanes;
 
-/// Rows one after the other.
+/// Square matrix, stored by rows.
 #[derive(Debug, Clone)]
 pub(super) struct Small<const L: usize> {
     pub order: usize,
@@ -24,7 +24,7 @@ impl<const L: usize> Small<L> {
         &mut self.entries[row * self.order + column]
     }
 
-    /// `diagonal + factor other`.
+    /// Sets the matrix to `diagonal * I + factor * other`.
     #[inline(always)]
     pub fn set(&mut self, diagonal: f64, factor: f64, other: &Self) {
         for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
@@ -37,7 +37,7 @@ impl<const L: usize> Small<L> {
         }
     }
 
-    /// `a b`.
+    /// Sets the matrix to the product `a b`.
     #[inline(always)]
     pub fn set_product(&mut self, a: &Self, b: &Self) {
         let order = self.order;

@@ -1,16 +1,16 @@
-//! Rows replaced by sums of themselves and of others, a few columns at a time.
+//! Replacement of rows by linear combinations of rows, a block of columns at a time.
 
 use std::ops::Range;
 
-/// Columns that are done at once: what is replaced, and what is added, must be so many longer than
-/// it is.
+/// Number of columns in a block; the arrays that are replaced and added must have as many elements
+/// of padding.
 pub(super) const WIDE: usize = 16;
-/// Most rows that are replaced: eight states move.
+/// Largest number of rows that are replaced: eight states move.
 const ROWS: usize = 8;
-/// Most rows of a sum: those, and one of each stage of a step.
+/// Largest number of terms of a row: those rows, and one of each stage of a step.
 const TERMS: usize = ROWS + 4;
 
-/// By row, what it becomes: factors of rows, those that are replaced first.
+/// Linear combination for each row: factors and source rows, the replaced rows first.
 pub(super) struct Sums {
     rows: usize,
     terms: [[(f64, u8); TERMS]; ROWS],
@@ -23,7 +23,7 @@ impl Sums {
         Self { rows, terms: [[(0.0, 0); TERMS]; ROWS], counts: [0; ROWS] }
     }
 
-    /// Adds a multiple of a row to what a row becomes; nothing where the factor is zero.
+    /// Adds a multiple of a source row to the combination of a row; a factor of zero adds nothing.
     #[inline(always)]
     pub fn add(&mut self, row: usize, of: usize, factor: f64) {
         if factor != 0.0 {
@@ -32,8 +32,8 @@ impl Sums {
         }
     }
 
-    /// Replaces some columns of rows that lie one after the other, `stride` apart, by the sums of
-    /// them and of `others`.
+    /// Replaces columns of the rows, which are `stride` apart in `own`, by their combinations of
+    /// the old rows and of `others`.
     #[inline(always)]
     pub fn replace(
         &self,
@@ -45,6 +45,8 @@ impl Sums {
         let mut block = [[0.0; WIDE]; TERMS];
         let mut from = columns.start;
         while from < columns.end {
+            // All rows of the block are copied first, because every combination reads the old
+            // values.
             for row in 0..self.rows {
                 block[row].copy_from_slice(&own[row * stride + from..][..WIDE]);
             }
@@ -55,8 +57,8 @@ impl Sums {
             for row in 0..self.rows {
                 let mut sum = self.sum(row, &block);
                 for k in 0..WIDE {
-                    // What stands beyond the columns is written as it was: that is faster than to
-                    // write less.
+                    // Columns beyond the range are written back unchanged: faster than a shorter
+                    // write.
                     sum[k] = if k < width { sum[k] } else { block[row][k] };
                 }
                 own[row * stride + from..][..WIDE].copy_from_slice(&sum);

@@ -1,4 +1,4 @@
-//! A model with the slopes of its rates on one tape.
+//! Model with the derivatives of its rates on one tape.
 
 use std::ops::Range;
 
@@ -13,17 +13,18 @@ use crate::equations::{
 use crate::plant::check_inputs;
 use crate::tape::{Lanes, Tape};
 
-/// The states that move by their places in the state vector.
+/// Names of the moving states by their places in the state vector.
 const NAMES: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "x", "y"];
 
-/// A value on the tape and its slopes by the states, in their order; absent slopes are zero.
+/// Value on the tape and its derivatives with respect to the states, in order; absent derivatives
+/// are zero.
 #[derive(Debug, Clone)]
 pub(super) struct Sloped {
     pub value: usize,
     pub slopes: Vec<(usize, usize)>,
 }
 
-/// A model ready to be simulated with sensitivities.
+/// Model prepared for simulation with sensitivities.
 #[derive(Debug, Clone)]
 pub struct SensitiveSystem {
     pub(super) tape: Tape,
@@ -32,24 +33,24 @@ pub struct SensitiveSystem {
     pub(super) forces: Vec<Sloped>,
     pub(super) additions: Vec<Option<Sloped>>,
     pub(super) kinematics: Vec<Sloped>,
-    /// Mass matrix entries over the axes, row by row.
+    /// Outputs of the mass matrix entries over the axes, row by row.
     mass: Vec<Option<usize>>,
-    /// What a force on each axis accelerates, where masses do not change.
+    /// Accelerations per unit force on each axis, where masses do not change.
     constant: Option<Vec<f64>>,
-    /// Regressors of the coefficients with their scale.
+    /// Outputs of the regressors of the coefficients, with their scale.
     pub(super) regressors: Vec<usize>,
-    /// The coefficients of each axis among all.
+    /// Range of the coefficients of each axis among all.
     pub(super) of_axis: Vec<Range<usize>>,
     names: Vec<String>,
     input_names: Vec<String>,
 }
 
 impl SensitiveSystem {
-    /// For every coefficient that a model has.
+    /// Prepares a model with sensitivities to all of its coefficients.
     ///
     /// # Errors
-    /// Names what the model does not give; refuses masses that change with the motion, and effects
-    /// on instruments or lags.
+    /// Returns an error that names what the model does not give, or if masses change with the
+    /// motion, or if the model has effects on instruments or lags.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
@@ -58,23 +59,23 @@ impl SensitiveSystem {
             .build()
     }
 
-    /// The coefficients, in the order of the sensitivities' columns.
+    /// Names of the coefficients, in the order of the columns of the sensitivities.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Places in the state vector of the sensitivities' rows.
+    /// Places in the state vector of the rows of the sensitivities.
     pub fn states(&self) -> &'static [usize] {
         self.states
     }
 
-    /// The inputs that the law takes, in their order.
+    /// Names of the inputs of the law, in order.
     pub fn input_names(&self) -> &[String] {
         &self.input_names
     }
 
-    /// Accelerations per force on each axis, row by row over the axes, for a lane of an evaluated
-    /// tape.
+    /// Computes the accelerations per unit force on each axis, row by row over the axes, from an
+    /// evaluated tape.
     pub(super) fn mobility<const L: usize>(&self, work: &[Lanes<L>], out: &mut [Lanes<L>]) {
         if let Some(constant) = &self.constant {
             out.iter_mut().zip(constant).for_each(|(out, value)| *out = [*value; L]);
@@ -96,10 +97,10 @@ struct Builder<'e> {
     lowering: Lowering<'e>,
 }
 
-/// Coefficients and their regressors on the tape.
+/// Coefficients and the outputs of their regressors.
 struct Regressors {
     names: Vec<String>,
-    /// Those of each axis among all.
+    /// Range of the coefficients of each axis.
     of_axis: Vec<Range<usize>>,
     outputs: Vec<usize>,
 }
@@ -116,6 +117,7 @@ impl Builder<'_> {
             .collect::<Result<_, _>>()?;
         let mass = self.mass()?;
         let Regressors { names, of_axis, outputs: regressors } = self.regressors()?;
+        // All outputs must be on the tape before it is finished.
         let tape = self.lowering.finish();
         let constant = constant_mobility(equations, &tape, &mass)?;
         let input_names = equations.law().inputs.keys().cloned().collect();
@@ -159,7 +161,7 @@ impl Builder<'_> {
         self.sloped(&expr)
     }
 
-    /// The mass matrix row by row, which must not change with the motion.
+    /// Adds the mass matrix row by row; it must not change with the motion.
     fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
         let (axes, states) = (self.equations.axes(), self.equations.states());
         let mut all = Vec::new();
@@ -167,6 +169,7 @@ impl Builder<'_> {
             axes.iter().flat_map(|row| axes.iter().map(move |column| (row, column)))
         {
             let output = self.lowering.mass(row, column)?;
+            // The gains of a step assume masses whose derivatives are zero.
             if output.is_some_and(|o| {
                 states.iter().any(|&s| self.lowering.derivative(o, NAMES[s]).is_some())
             }) {
@@ -180,6 +183,7 @@ impl Builder<'_> {
     fn regressors(&mut self) -> Result<Regressors, PlantError> {
         let mut all = Regressors { names: Vec::new(), of_axis: Vec::new(), outputs: Vec::new() };
         for &axis in self.equations.axes() {
+            // The coefficients of an axis form one range of columns.
             let start = all.names.len();
             for name in self.equations.coefficients(axis) {
                 all.outputs.push(self.lowering.output(&self.equations.regressor(name)?)?);

@@ -1,16 +1,17 @@
-//! Derivatives as further operations on the same tape: what they share with the values is computed
-//! once, and all of it runs for a block of lanes.
+//! Derivatives as further operations on the same tape: subexpressions shared with the values are
+//! computed once, and all of it runs for a block of lanes.
 
 use sistership_formula::{Comparison, Function};
 
 use super::{Op, Slot, TapeBuilder};
 
 impl TapeBuilder<'_> {
-    /// Adds the derivative of an output by an input; `None` where it is zero whatever the inputs
-    /// are. At a kink, the derivative towards larger arguments.
+    /// Adds the derivative of an output with respect to an input; `None` if it is zero for all
+    /// inputs. At a kink, this is the derivative towards larger arguments.
     pub fn derivative(&mut self, output: usize, input: &str) -> Option<usize> {
         let input = self.inputs.iter().position(|known| known == input)? as u32;
         let slot = self.slope_of(self.outputs[output], input);
+        // A derivative that is zero for all inputs needs no output.
         if self.constant(slot) == Some(0.0) {
             return None;
         }
@@ -18,15 +19,17 @@ impl TapeBuilder<'_> {
         Some(self.outputs.len() - 1)
     }
 
-    /// The slot of a slot's derivative. A sum of thousands of terms is as deep: those of the
-    /// operands are made before, in the order in which recursion would make them.
+    /// Returns the slot of a slot's derivative. A sum of thousands of terms is nested as deeply:
+    /// the derivatives of operands are therefore made first in a loop, in the order of a recursion.
     fn slope_of(&mut self, slot: Slot, input: u32) -> Slot {
         if let Some(&known) = self.slopes.get(&(slot, input)) {
             return known;
         }
+        // Depth-first search with an explicit stack.
         let mut waiting = vec![slot];
         while let Some(&next) = waiting.last() {
             let needed = self.ops[next as usize].differentiated().into_iter().flatten();
+            // A slot stays on the stack until the derivatives of all its operands exist.
             match needed.into_iter().find(|operand| !self.slopes.contains_key(&(*operand, input))) {
                 Some(operand) if !self.slopes.contains_key(&(next, input)) => waiting.push(operand),
                 _ => {
@@ -38,7 +41,7 @@ impl TapeBuilder<'_> {
         self.known_slope(slot, input)
     }
 
-    /// The derivative of a slot whose operands' are there.
+    /// Returns the derivative of a slot whose operands have theirs.
     fn known_slope(&mut self, slot: Slot, input: u32) -> Slot {
         if let Some(&known) = self.slopes.get(&(slot, input)) {
             return known;
@@ -80,7 +83,7 @@ impl TapeBuilder<'_> {
         self.push(make(a, b))
     }
 
-    /// A choice between equal things is no choice.
+    /// Adds a selection, unless both alternatives are the same slot.
     fn either(&mut self, comparison: Comparison, a: Slot, b: Slot, c: Slot, d: Slot) -> Slot {
         if c == d { c } else { self.push(Op::Select(comparison, a, b, c, d)) }
     }
@@ -96,6 +99,7 @@ impl TapeBuilder<'_> {
     }
 
     fn quotient_rule(&mut self, quotient: Slot, a: Slot, b: Slot, input: u32) -> Slot {
+        // `(a / b)' = (a' - (a / b) b') / b`
         let (da, db) = (self.slope_of(a, input), self.slope_of(b, input));
         let taken = self.times(quotient, db);
         let above = self.push(Op::Subtract(da, taken));
@@ -104,6 +108,7 @@ impl TapeBuilder<'_> {
 
     fn power_rule(&mut self, power: Slot, a: Slot, b: Slot, input: u32) -> Slot {
         let (da, db) = (self.slope_of(a, input), self.slope_of(b, input));
+        // `(a^b)' = b a^(b - 1) a' + a^b ln(a) b'`
         let one = self.number(1.0);
         let less = self.push(Op::Subtract(b, one));
         let lower = self.push(Op::Power(a, less));
@@ -116,6 +121,7 @@ impl TapeBuilder<'_> {
 
     fn chain_rule(&mut self, value: Slot, function: Function, a: Slot, input: u32) -> Slot {
         let da = self.slope_of(a, input);
+        // The outer derivative is not added to the tape if the inner one is zero.
         if self.constant(da) == Some(0.0) {
             return da;
         }
@@ -123,7 +129,7 @@ impl TapeBuilder<'_> {
         self.times(outer, da)
     }
 
-    /// The slope of a function of one argument; `value` is the function there.
+    /// Derivative of a function of one argument; `value` is the slot of the function's value.
     fn slope_by_argument(&mut self, value: Slot, function: Function, a: Slot) -> Slot {
         let one = self.number(1.0);
         match function {
@@ -155,6 +161,7 @@ impl TapeBuilder<'_> {
             }
             Function::Exp => value,
             Function::Log => self.push(Op::Divide(one, a)),
+            // `sign` is constant on either side of zero; the others have two arguments.
             Function::Sign | Function::Atan2 | Function::Min | Function::Max => self.number(0.0),
         }
     }
@@ -168,7 +175,7 @@ impl TapeBuilder<'_> {
         }
     }
 
-    /// `(b da - a db) / (a^2 + b^2)`, and nothing where both are zero.
+    /// Derivative of atan2: `(b da - a db) / (a^2 + b^2)`, and zero where both arguments are zero.
     fn of_atan2(&mut self, a: Slot, b: Slot, da: Slot, db: Slot) -> Slot {
         let (left, right) = (self.times(b, da), self.times(a, db));
         let above = self.push(Op::Subtract(left, right));

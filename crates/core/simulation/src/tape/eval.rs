@@ -6,15 +6,15 @@ use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 use crate::wide::{Wide, widest};
 
 impl Tape {
-    /// Evaluates every operation; `work` is reused from call to call and holds the results
-    /// afterwards. `inputs[i]` are the lanes of input `i`.
+    /// Evaluates every operation; `work` is reused from call to call and holds the results.
+    /// `inputs[i]` are the lanes of input `i`.
     pub fn run<const N: usize>(&self, inputs: &[Lanes<N>], work: &mut Slots<N>) {
         work.resize(self.len());
         widest(Evaluation { tape: self, inputs, work });
     }
 
-    /// Evaluates some of the operations, in this order; the others keep what `work` holds after a
-    /// [`Tape::run`].
+    /// Evaluates some of the operations, in the given order; the others keep the results that
+    /// `work` holds after a [`Tape::run`].
     pub fn run_among<const N: usize>(
         &self,
         among: &[Slot],
@@ -24,12 +24,12 @@ impl Tape {
         widest(PartialEvaluation { tape: self, among, inputs, work });
     }
 
-    /// An output after [`Tape::run`].
+    /// Returns an output after [`Tape::run`].
     pub fn read<const N: usize>(&self, output: usize, work: &[Lanes<N>]) -> Lanes<N> {
         work[self.outputs[output] as usize]
     }
 
-    /// As [`Tape::read`], without a copy.
+    /// Returns a reference to an output after [`Tape::run`].
     #[inline(always)]
     pub(crate) fn at<'w, const N: usize>(
         &self,
@@ -39,7 +39,7 @@ impl Tape {
         &work[self.outputs[output] as usize]
     }
 
-    /// Every output at one point, for callers in no hurry.
+    /// Evaluates every output at one point; allocates, so that it is not for inner loops.
     pub fn values(&self, inputs: &[f64]) -> Vec<f64> {
         let inputs: Vec<Lanes<1>> = inputs.iter().map(|&value| [value]).collect();
         let mut work = Slots::default();
@@ -48,7 +48,7 @@ impl Tape {
     }
 }
 
-/// Every instruction in turn; `work` is as long as there are instructions.
+/// Evaluation of every instruction in order; `work` has one element for each instruction.
 struct Evaluation<'a, const N: usize> {
     tape: &'a Tape,
     inputs: &'a [Lanes<N>],
@@ -64,7 +64,7 @@ impl<const N: usize> Wide for Evaluation<'_, N> {
     }
 }
 
-/// Some instructions in turn.
+/// Evaluation of some instructions in order.
 struct PartialEvaluation<'a, const N: usize> {
     tape: &'a Tape,
     among: &'a [Slot],
@@ -114,6 +114,7 @@ fn step<const N: usize>(op: &Op, inputs: &[Lanes<N>], work: &[Lanes<N>]) -> Lane
         Op::Call1(function, a) => call(function, at(a)),
         Op::Call2(function, a, b) => zip(at(a), at(b), |x, y| function.apply(x, y)),
         Op::Select(comparison, a, b, c, d) => {
+            // Both alternatives are evaluated for all lanes; the comparison selects lane by lane.
             let (mut out, other) = (*at(c), at(d));
             for k in 0..N {
                 if !comparison.holds(at(a)[k], at(b)[k]) {
@@ -130,6 +131,7 @@ fn products<const N: usize>(first: Slot, terms: &[[Slot; 2]], work: &[Lanes<N>])
     let mut sum = work[first as usize];
     for &[a, b] in terms {
         let (a, b) = (&work[a as usize], &work[b as usize]);
+        // Separate multiplication and addition: a fused one would round differently.
         for k in 0..N {
             sum[k] += a[k] * b[k];
         }
@@ -150,8 +152,8 @@ pub(super) fn zip<const N: usize>(
     out
 }
 
-/// A loop, since `map` on arrays is not always inlined, and a call a lane costs more than what it
-/// calculates.
+/// Applies a function to each lane. A loop, since `map` on arrays is not always inlined, and a call
+/// for each lane costs more than the function.
 #[inline(always)]
 pub(super) fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lanes<N> {
     let mut out = [0.0; N];
@@ -161,13 +163,14 @@ pub(super) fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lane
     out
 }
 
-/// The cheap functions are spelled out, so that their loops over the lanes become vector
-/// instructions.
+/// Applies a function of one argument. The cheap functions are written out, so that their loops
+/// over the lanes become vector instructions.
 #[inline(always)]
 fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
     match function {
         Function::Sqrt => each(a, f64::sqrt),
         Function::Abs => each(a, f64::abs),
+        // Functions without a vector form are evaluated lane by lane.
         _ => each(a, |x| function.apply(x, 0.0)),
     }
 }

@@ -1,33 +1,35 @@
-//! Sums of products as single instructions: a polynomial's are most of what a law calculates, and
-//! one after the other they wait for each other's results.
+//! Fusion of sums of products into single instructions: these are most of what a law calculates,
+//! and as separate operations each would wait for the result of the one before.
 
 use super::instruction::{Instruction, Tape};
 use super::listing::Listing;
 use super::{Op, Slot};
 
-/// A sum so far.
+/// Sum of products that is being built.
 struct Sum {
     first: Slot,
     terms: Vec<[Slot; 2]>,
 }
 
-/// Which operations become part of others.
+/// State of the fusion of operations.
 struct Fusing<'a> {
     ops: &'a [Op],
     uses: Vec<u32>,
     sums: Vec<Option<Sum>>,
-    /// Done by another instruction.
+    /// True for operations that are part of another instruction.
     absorbed: Vec<bool>,
 }
 
 impl Listing {
-    /// The tape that does the same, rounding as it does.
+    /// Returns the tape of the listing with fused products; its rounding is the same.
     pub fn fused(self) -> Tape {
         let mut fusing = Fusing::new(&self);
         (0..self.ops.len()).for_each(|index| fusing.look(index));
         let Fusing { sums, absorbed, .. } = fusing;
+        // Place of each operation's instruction.
         let mut place = vec![0; self.ops.len()];
         let (mut instructions, mut terms) = (Vec::new(), Vec::new());
+        // Operands precede their operation, so that their new places are known.
         for (index, sum) in sums.iter().enumerate().filter(|(index, _)| !absorbed[*index]) {
             place[index] = instructions.len() as Slot;
             let to = |slot: Slot| place[slot as usize];
@@ -59,10 +61,11 @@ impl<'a> Fusing<'a> {
         }
     }
 
-    /// A product that an addition reads, and nothing else, becomes a term; so does the sum before
-    /// it.
+    /// Fuses an addition with a product that only this addition reads, and with the sum before it
+    /// if only this addition reads that.
     fn look(&mut self, index: usize) {
         let Op::Add(a, b) = self.ops[index] else { return };
+        // Either operand of the addition may be the product.
         let Some((before, product, factors)) = self.product(a, b).or_else(|| self.product(b, a))
         else {
             return;

@@ -1,17 +1,18 @@
-//! What depends on some inputs alone, taken out of a listing: a sine of a recorded rudder is the
-//! same for every model.
+//! Separation of the operations of a listing that depend on some inputs alone: the sine of a
+//! recorded rudder is the same for every model.
 
 use super::listing::Listing;
 use super::{Op, Slot};
 
 impl Listing {
-    /// Splits off what calls functions or divides and depends on no input before `from`: the first
-    /// calculates that from all inputs, and the second, whose outputs are those of this one, takes
-    /// the results after its inputs.
+    /// Splits off the operations that call functions or divide and that depend on no input before
+    /// `from`: the first listing calculates them from all inputs; the second has the outputs of
+    /// this listing and takes the results of the first after its inputs.
     pub fn hoisted(mut self, from: usize) -> (Self, Self) {
         let ahead = self.ahead(from);
         let front = Self { outputs: ahead.clone(), ..self.clone() }.needed();
         let given = self.inputs.len();
+        // A hoisted operation becomes an input that takes the value calculated in advance.
         for (place, &slot) in ahead.iter().enumerate() {
             self.ops[slot as usize] = Op::Input((given + place) as u32);
             self.inputs.push(format!("hoisted {place}"));
@@ -19,8 +20,10 @@ impl Listing {
         (front, self.needed())
     }
 
-    /// The operations that are worth doing ahead.
+    /// Operations that are worth calculating in advance.
     fn ahead(&self, from: usize) -> Vec<Slot> {
+        // True for operations that depend on an input before `from`, directly or through an
+        // operand.
         let mut later = vec![false; self.ops.len()];
         for (index, op) in self.ops.iter().enumerate() {
             later[index] = match *op {
@@ -28,6 +31,7 @@ impl Listing {
                 _ => op.operands().into_iter().flatten().any(|slot| later[slot as usize]),
             };
         }
+        // Cheap operations are not worth an additional input.
         let dear =
             |op: &Op| matches!(op, Op::Call1(..) | Op::Call2(..) | Op::Power(..) | Op::Divide(..));
         let kept = self.ops.iter().enumerate().filter(|(index, op)| !later[*index] && dear(op));

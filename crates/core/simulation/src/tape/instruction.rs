@@ -1,66 +1,66 @@
-//! A tape as it is kept: instructions in the order in which they are evaluated.
+//! Tape in its final form: instructions in the order of their evaluation.
 
 use super::{Op, Slot};
 
-/// What a tape does at one place.
+/// One instruction of a tape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Instruction {
     /// One operation.
     Op(Op),
-    /// A result, and added to it one after the other the products of the [terms](Tape::terms) from
-    /// a place to another.
+    /// A result plus the products of a range of the [terms](Tape::terms), added one after the
+    /// other.
     Products {
-        /// What the products are added to.
+        /// Slot to which the products are added.
         first: Slot,
-        /// The place of the first term.
+        /// Index of the first term.
         from: u32,
-        /// The place after the last one.
+        /// Index after the last term.
         to: u32,
     },
 }
 
-/// A list of instructions with named inputs and numbered outputs.
+/// List of instructions with named inputs and numbered outputs.
 #[derive(Debug, Clone, Default)]
 pub struct Tape {
     pub(super) inputs: Vec<String>,
     pub(super) instructions: Vec<Instruction>,
-    /// Factors of the sums of products.
+    /// Pairs of factors of the sums of products.
     pub(super) terms: Vec<[Slot; 2]>,
     pub(super) outputs: Vec<Slot>,
 }
 
 impl Tape {
-    /// The names of the inputs, in the order in which values are given.
+    /// Names of the inputs, in the order of their values.
     pub fn inputs(&self) -> &[String] {
         &self.inputs
     }
 
-    /// What it does, in this order; each reads results of earlier ones by their place.
+    /// Instructions in the order of their evaluation; each reads earlier results by their slots.
     pub fn instructions(&self) -> &[Instruction] {
         &self.instructions
     }
 
-    /// The pairs of factors of sums of products, by which [`Instruction::Products`] counts.
+    /// Pairs of factors of the sums of products, which [`Instruction::Products`] indexes.
     pub fn terms(&self) -> &[[Slot; 2]] {
         &self.terms
     }
 
-    /// The place of the instruction that gives an output.
+    /// Slot of the instruction that computes an output.
     pub fn slot(&self, output: usize) -> Slot {
         self.outputs[output]
     }
 
-    /// How many instructions it takes.
+    /// Number of instructions.
     pub fn len(&self) -> usize {
         self.instructions.len()
     }
 
-    /// Whether it computes nothing.
+    /// Returns true if the tape has no instructions.
     pub fn is_empty(&self) -> bool {
         self.instructions.is_empty()
     }
 
-    /// The value of an output that does not depend on the inputs.
+    /// Value of an output that does not depend on the inputs; `None` for any other output.
     pub fn constant_output(&self, output: usize) -> Option<f64> {
         match self.instructions[self.outputs[output] as usize] {
             Instruction::Op(Op::Constant(value)) => Some(value),

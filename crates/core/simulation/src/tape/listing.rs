@@ -1,8 +1,8 @@
-//! Operations one by one, before they are made a tape.
+//! List of operations before it is made a tape.
 
 use super::{Op, Slot};
 
-/// Operations with named inputs and numbered outputs; each reads what earlier ones gave.
+/// Operations with named inputs and numbered outputs; each reads results of earlier ones.
 #[derive(Debug, Clone)]
 pub(super) struct Listing {
     pub inputs: Vec<String>,
@@ -11,16 +11,18 @@ pub(super) struct Listing {
 }
 
 impl Listing {
-    /// Without operations that no output needs.
+    /// Returns the listing without operations that no output needs.
     pub fn needed(&self) -> Self {
         let Self { inputs, ops, outputs } = self;
         let mut wanted = vec![false; ops.len()];
         outputs.iter().for_each(|&slot| wanted[slot as usize] = true);
+        // Backwards, because an operation is needed if a later one that is needed reads it.
         for (index, op) in ops.iter().enumerate().rev() {
             if wanted[index] {
                 op.operands().into_iter().flatten().for_each(|slot| wanted[slot as usize] = true);
             }
         }
+        // New index of each operation that is kept.
         let mut place = vec![0; ops.len()];
         let mut kept = Vec::new();
         for (index, op) in ops.iter().enumerate().filter(|(index, _)| wanted[*index]) {

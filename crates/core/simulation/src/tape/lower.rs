@@ -1,4 +1,4 @@
-//! From formulas to the tape: constant folding and shared subexpressions.
+//! Lowering of formulas to the tape: constant folding and shared subexpressions.
 
 use std::collections::HashMap;
 
@@ -7,22 +7,22 @@ use sistership_formula::{Comparison, Expr, Function, builtin};
 use super::listing::Listing;
 use super::{Op, Slot, Tape};
 
-/// What a name stands for while a formula is lowered.
+/// Meaning of a name while a formula is lowered.
 pub enum Binding {
-    /// A number, folded in.
+    /// A number, which is folded in.
     Constant(f64),
     /// Another formula.
     Formula(Expr),
 }
 
-/// A name that nothing stands for.
+/// Error of a name without a meaning.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("nothing stands for `{0}`")]
 pub struct Unbound(pub String);
 
 type Make = fn(Slot, Slot) -> Op;
 
-/// The two sides of a sum, difference, product or quotient, and its operation.
+/// Returns the two sides of a sum, difference, product or quotient, and its operation.
 fn sides(expr: &Expr) -> Option<(&Expr, &Expr, Make)> {
     match expr {
         Expr::Add(a, b) => Some((a, b, Op::Add)),
@@ -33,10 +33,10 @@ fn sides(expr: &Expr) -> Option<(&Expr, &Expr, Make)> {
     }
 }
 
-/// What a name stands for that is no input.
+/// Resolver of the names that are not inputs.
 type Bind<'a> = dyn Fn(&str) -> Option<Binding> + 'a;
 
-/// Builds a tape from formulas.
+/// Builder of a tape from formulas.
 pub struct TapeBuilder<'a> {
     pub(super) inputs: Vec<String>,
     bind: Box<Bind<'a>>,
@@ -44,12 +44,12 @@ pub struct TapeBuilder<'a> {
     seen: HashMap<[u64; 6], Slot>,
     named: HashMap<String, Slot>,
     pub(super) outputs: Vec<Slot>,
-    /// Derivatives that are there already, by slot and input.
+    /// Slots of derivatives that exist already, by slot and input.
     pub(super) slopes: HashMap<(Slot, u32), Slot>,
 }
 
 impl<'a> TapeBuilder<'a> {
-    /// A builder whose tape takes `inputs`; `bind` says what every other name stands for.
+    /// Creates a builder whose tape has `inputs`; `bind` resolves every other name.
     pub fn new(inputs: &[&str], bind: impl Fn(&str) -> Option<Binding> + 'a) -> Self {
         let inputs = inputs.iter().map(|&name| name.to_owned()).collect();
         Self {
@@ -66,17 +66,17 @@ impl<'a> TapeBuilder<'a> {
     /// Adds an output and returns its number.
     ///
     /// # Errors
-    /// Names what nothing stands for.
+    /// Returns an error that names a name without a meaning.
     pub fn output(&mut self, expr: &Expr) -> Result<usize, Unbound> {
         let slot = self.lower(expr)?;
         self.outputs.push(slot);
         Ok(self.outputs.len() - 1)
     }
 
-    /// Adds a formula to an output that may be there already.
+    /// Adds a formula to an existing output, or a new output if `output` is `None`.
     ///
     /// # Errors
-    /// Names what nothing stands for.
+    /// Returns an error that names a name without a meaning.
     pub fn sum(&mut self, output: Option<usize>, expr: &Expr) -> Result<usize, Unbound> {
         let Some(output) = output else { return self.output(expr) };
         let slot = self.lower(expr)?;
@@ -84,13 +84,14 @@ impl<'a> TapeBuilder<'a> {
         Ok(output)
     }
 
-    /// The finished tape, without operations that no output needs.
+    /// Returns the finished tape, without operations that no output needs.
     pub fn finish(self) -> Tape {
         self.listing().needed().fused()
     }
 
-    /// In two parts: what calls functions or divides and depends on no input before `from`, and the
-    /// rest, which takes the results of the first after its inputs.
+    /// Returns the finished tape in two parts: the operations that call functions or divide and
+    /// depend on no input before `from`, and the rest, which takes the results of the first part
+    /// after its inputs.
     pub fn finish_hoisted(self, from: usize) -> (Tape, Tape) {
         let (front, rest) = self.listing().needed().hoisted(from);
         (front.fused(), rest.fused())
@@ -100,15 +101,17 @@ impl<'a> TapeBuilder<'a> {
         Listing { inputs: self.inputs, ops: self.ops, outputs: self.outputs }
     }
 
-    /// Sums lean to the left, that of an axis by thousands of terms: they are followed in a loop,
-    /// all else by recursion.
+    /// Lowers a formula. Sums are nested to the left, for an axis by thousands of terms: these are
+    /// followed in a loop, everything else by recursion.
     fn lower(&mut self, expr: &Expr) -> Result<Slot, Unbound> {
         let (mut first, mut after) = (expr, Vec::new());
+        // Collects the right operands on the way to the leftmost operand.
         while let Some((a, b, make)) = sides(first) {
             after.push((b, make));
             first = a;
         }
         let mut slot = self.operand(first)?;
+        // Applies them from the left.
         while let Some((b, make)) = after.pop() {
             let b = self.lower(b)?;
             slot = self.push(make(slot, b));
@@ -136,12 +139,14 @@ impl<'a> TapeBuilder<'a> {
     }
 
     fn name(&mut self, name: &str) -> Result<Slot, Unbound> {
+        // A name is lowered once; later uses share its slot.
         if let Some(&slot) = self.named.get(name) {
             return Ok(slot);
         }
         let slot = if let Some(index) = self.inputs.iter().position(|input| input == name) {
             self.push(Op::Input(index as u32))
         } else {
+            // Bindings take precedence over built-in constants.
             match (self.bind)(name).or_else(|| Some(Binding::Constant(builtin(name)?.0))) {
                 Some(Binding::Constant(value)) => self.push(Op::Constant(value)),
                 Some(Binding::Formula(expr)) => self.lower(&expr)?,
@@ -173,18 +178,21 @@ impl<'a> TapeBuilder<'a> {
         Ok(self.push(Op::Select(comparison, slots[0], slots[1], slots[2], slots[3])))
     }
 
-    /// Whole powers become products: faster than `powf`, and defined for negative bases.
+    /// Lowers a power. Whole powers become products: faster than `powf`, and defined for negative
+    /// bases.
     fn power(&mut self, base: &Expr, exponent: &Expr) -> Result<Slot, Unbound> {
         let (base, exponent) = (self.lower(base)?, self.lower(exponent)?);
         let Op::Constant(number) = self.ops[exponent as usize] else {
             return Ok(self.push(Op::Power(base, exponent)));
         };
+        // `sqrt` has a vector instruction, `powf` has none.
         if number == 0.5 {
             return Ok(self.push(Op::Call1(Function::Sqrt, base)));
         }
         if number.fract() != 0.0 || number.abs() > 16.0 {
             return Ok(self.push(Op::Power(base, exponent)));
         }
+        // Partial products are shared with other powers of the same base.
         let mut product = self.push(Op::Constant(1.0));
         for _ in 0..number.abs() as u32 {
             product = self.push(Op::Multiply(product, base));
@@ -204,6 +212,7 @@ impl<'a> TapeBuilder<'a> {
         if let Some(same) = self.neutral(op) {
             return same;
         }
+        // Equal operations share one slot (common subexpressions).
         let op = self.folded(op).map_or(op, Op::Constant);
         let key = op.key();
         if let Some(&slot) = self.seen.get(&key) {
@@ -215,7 +224,8 @@ impl<'a> TapeBuilder<'a> {
         slot
     }
 
-    /// `x * 1`, `x + 0`, `x / 1`: the operand itself; `x * 0` and `0 / x` are zero.
+    /// Returns the operand to which an operation reduces: `x * 1`, `x + 0`, `x / 1` are the operand
+    /// itself; `x * 0` and `0 / x` are zero.
     fn neutral(&self, op: Op) -> Option<Slot> {
         let is = |slot: Slot, value: f64| self.constant(slot) == Some(value);
         match op {

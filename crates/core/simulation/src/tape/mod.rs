@@ -1,4 +1,4 @@
-//! The tape: formulas as one flat list of operations, evaluated for a block of lanes at a time.
+//! Tape: formulas as one flat list of operations, evaluated for a block of lanes at a time.
 //!
 //! Lowering shares common subexpressions and folds constants, so that a model's coefficients and
 //! particulars cost nothing per step. Lanes are states, trials, ships or tangent directions in

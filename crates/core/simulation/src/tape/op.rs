@@ -1,16 +1,16 @@
-//! One operation of the tape.
+//! Operations of the tape.
 
 use sistership_formula::{Comparison, Function};
 
 /// Index of an operation's result.
 pub type Slot = u32;
 
-/// One operation on earlier results.
+/// Operation on earlier results.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Op {
     /// A number.
     Constant(f64),
-    /// What is given, by its place among the inputs.
+    /// An input, by its index.
     Input(u32),
     /// `-a`
     Negate(Slot),
@@ -28,12 +28,12 @@ pub enum Op {
     Call1(Function, Slot),
     /// A function of two arguments.
     Call2(Function, Slot, Slot),
-    /// The third where the first compares so with the second, else the fourth.
+    /// The third operand where the comparison of the first with the second holds, else the fourth.
     Select(Comparison, Slot, Slot, Slot, Slot),
 }
 
 impl Op {
-    /// The results it needs.
+    /// Slots of the operands.
     pub fn operands(&self) -> [Option<Slot>; 4] {
         match *self {
             Self::Constant(_) | Self::Input(_) => [None; 4],
@@ -46,7 +46,7 @@ impl Op {
         }
     }
 
-    /// The results whose derivatives its own is made of: all but what a choice compares.
+    /// Operands on whose derivatives the derivative depends: all but those of a comparison.
     pub(crate) fn differentiated(&self) -> [Option<Slot>; 4] {
         match *self {
             Self::Select(_, _, _, c, d) => [Some(c), Some(d), None, None],
@@ -54,7 +54,7 @@ impl Op {
         }
     }
 
-    /// The same operation with its operands elsewhere.
+    /// Returns the operation with its operands mapped to other slots.
     pub(crate) fn moved(self, to: &dyn Fn(Slot) -> Slot) -> Self {
         match self {
             Self::Constant(_) | Self::Input(_) => self,
@@ -72,7 +72,7 @@ impl Op {
         }
     }
 
-    /// The value for given operands.
+    /// Value of the operation for given operands; NaN for an input.
     pub(crate) fn apply(&self, [a, b, c, d]: [f64; 4]) -> f64 {
         match *self {
             Self::Constant(value) => value,
@@ -94,7 +94,7 @@ impl Op {
         }
     }
 
-    /// Equal operations have equal keys; sums and products also with their operands exchanged.
+    /// Key that equal operations share; sums and products also with exchanged operands.
     pub(crate) fn key(&self) -> [u64; 6] {
         let slots = self.operands().map(|slot| slot.map_or(u64::MAX, u64::from));
         let ordered = |mut pair: [u64; 2]| {
@@ -103,6 +103,7 @@ impl Op {
         };
         let [a, b, c, d] = slots;
         let [low, high] = ordered([a, b]);
+        // The first number identifies the operation.
         match *self {
             Self::Constant(value) => [0, value.to_bits(), 0, 0, 0, 0],
             Self::Input(index) => [1, u64::from(index), 0, 0, 0, 0],

@@ -1,16 +1,16 @@
-//! Where the results of a tape's operations lie.
+//! Memory of the results of a tape's operations.
 
 use std::ops::{Deref, DerefMut};
 
-/// Bytes of a line of the processor's cache.
+/// Bytes of a cache line of the processor.
 const LINE: usize = 64;
 
 /// Values of one quantity in every lane.
 pub type Lanes<const N: usize> = [f64; N];
 
-/// The result of each operation of a tape in every lane, kept from one evaluation to the next. They
-/// begin where a line of the cache does: an operation that reads what one just before it wrote over
-/// the end of a line waits many times as long.
+/// Result of each operation of a tape in every lane, kept from one evaluation to the next. The
+/// memory is aligned to a cache line: an operation that reads a result which was just written
+/// across the end of a line waits many times as long.
 #[derive(Debug, Clone, Default)]
 pub struct Slots<const N: usize> {
     room: Vec<f64>,
@@ -19,11 +19,13 @@ pub struct Slots<const N: usize> {
 }
 
 impl<const N: usize> Slots<N> {
-    /// As many results; what was kept is lost where that takes more room.
+    /// Changes the number of results; earlier results are lost if the memory grows.
     pub(super) fn resize(&mut self, count: usize) {
+        // One cache line more than needed, so that the start can be aligned.
         let least = count * N + LINE / size_of::<f64>();
         if self.room.len() < least {
             self.room = vec![0.0; least];
+            // Skips the elements before the first cache line of the allocation.
             self.start = self.room.as_ptr().align_offset(LINE).min(least - count * N);
         }
         self.count = count;

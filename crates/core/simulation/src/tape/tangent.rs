@@ -1,5 +1,5 @@
-//! Derivatives along a tape that has been evaluated for a block of lanes: forwards, along one input
-//! at a time, at the points of all lanes together.
+//! Tangents along a tape that has been evaluated for a block of lanes: forward mode, along one
+//! input at a time, at the points of all lanes together.
 
 use sistership_formula::Function;
 
@@ -7,35 +7,35 @@ use super::eval::{each, zip};
 use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 use crate::wide::{Wide, widest};
 
-/// An input along which a tape is differentiated, and the derivatives.
+/// Input along which a tape is differentiated, and the derivatives.
 #[derive(Debug, Clone)]
 pub struct Direction<const N: usize> {
     input: u32,
-    /// The instructions that depend on it, in their order.
+    /// Instructions that depend on the input, in order.
     reached: Vec<Slot>,
-    /// Nothing where an instruction does not depend on it.
+    /// Derivatives; zero for instructions that do not depend on the input.
     tangents: Slots<N>,
 }
 
 impl<const N: usize> Direction<N> {
-    /// The instructions that depend on the input, in their order.
+    /// Instructions that depend on the input, in order.
     pub fn reached(&self) -> &[Slot] {
         &self.reached
     }
 
-    /// The derivatives after [`Tape::differentiate`], to be read as values are.
+    /// Derivatives after [`Tape::differentiate`], which are read in the same way as values.
     pub fn tangents(&self) -> &[Lanes<N>] {
         &self.tangents
     }
 }
 
-/// By what the derivative of an operation follows those of its operands, the first and the second,
-/// where that takes more than looking at their values.
+/// Factors of the derivatives of the first and the second operand in the derivative of an
+/// operation, where these are not trivial.
 #[derive(Debug, Clone, Default)]
 pub struct Slopes<const N: usize>([Slots<N>; 2]);
 
 impl Tape {
-    /// What is to be differentiated along an input.
+    /// Prepares the differentiation along an input.
     pub fn along<const N: usize>(&self, input: usize) -> Direction<N> {
         let mut tangents = Slots::default();
         tangents.resize(self.len());
@@ -62,12 +62,14 @@ impl Tape {
         (0..self.len()).filter(|&index| depends[index]).map(|index| index as Slot).collect()
     }
 
-    /// The slopes at the points that `primal` holds after a [`Tape::run`], for all directions.
+    /// Computes the local slopes at the points that `primal` holds after a [`Tape::run`]; all
+    /// directions share them.
     pub fn slopes<const N: usize>(&self, primal: &[Lanes<N>], slopes: &mut Slopes<N>) {
         let [by_a, by_b] = &mut slopes.0;
         by_a.resize(self.len());
         by_b.resize(self.len());
         for (index, instruction) in self.instructions.iter().enumerate() {
+            // Fused products need no factors: their tangents follow from the values.
             let Instruction::Op(op) = instruction else { continue };
             if let Some([a, b]) = self.slopes_of(op, index, primal) {
                 (by_a[index], by_b[index]) = (a, b);
@@ -83,12 +85,15 @@ impl Tape {
     ) -> Option<[Lanes<N>; 2]> {
         let at = |slot: Slot| &primal[slot as usize];
         Some(match *op {
+            // `d(x / y) = dx / y - x dy / y^2`
             Op::Divide(a, b) => [each(at(b), |y| 1.0 / y), zip(at(a), at(b), |x, y| -x / (y * y))],
             Op::Power(a, b) => {
+                // A constant exponent has no derivative, and ln of a negative base would be NaN.
                 let by_exponent = match self.instructions[b as usize] {
                     Instruction::Op(Op::Constant(_)) => [0.0; N],
                     _ => zip(&primal[index], at(a), |z, x| z * x.ln()),
                 };
+                // `d(x^y) = y x^(y - 1) dx + x^y ln(x) dy`
                 [zip(at(a), at(b), |x, y| y * x.powf(y - 1.0)), by_exponent]
             }
             Op::Call1(function, a) => [each(at(a), |x| slope(function, x)), [0.0; N]],
@@ -100,8 +105,8 @@ impl Tape {
         })
     }
 
-    /// The derivatives along the input of a direction at the points that `primal` holds after a
-    /// [`Tape::run`], by the slopes there.
+    /// Computes the derivatives along the input of a direction, with the local slopes at the points
+    /// that `primal` holds after a [`Tape::run`].
     pub fn differentiate<const N: usize>(
         &self,
         direction: &mut Direction<N>,
@@ -111,7 +116,7 @@ impl Tape {
         widest(Differentiation { tape: self, direction, primal, slopes });
     }
 
-    /// The derivative of every output with respect to every input: rows are outputs.
+    /// Derivative of every output with respect to every input; rows are outputs.
     pub fn jacobian(&self, inputs: &[f64]) -> Vec<Vec<f64>> {
         let point: Vec<Lanes<1>> = inputs.iter().map(|&value| [value]).collect();
         let (mut primal, mut slopes) = (Slots::default(), Slopes::default());
@@ -129,7 +134,7 @@ impl Tape {
     }
 }
 
-/// All that a direction reaches, in turn.
+/// Differentiation of all instructions that depend on an input, in order.
 struct Differentiation<'a, const N: usize> {
     tape: &'a Tape,
     direction: &'a mut Direction<N>,
@@ -147,6 +152,7 @@ impl<const N: usize> Wide for Differentiation<'_, N> {
             let index = slot as usize;
             let d = |slot: Slot| &tangents[slot as usize];
             let value = |slot: Slot| &primal[slot as usize];
+            // `d(a b) = b da + a db`
             let product = |a: Slot, b: Slot| sum(&times(d(a), value(b)), &times(d(b), value(a)));
             tangents[index] = match tape.instructions[index] {
                 Instruction::Products { first, from, to } => {
@@ -189,12 +195,11 @@ fn sum<const N: usize>(a: &Lanes<N>, b: &Lanes<N>) -> Lanes<N> {
 
 #[inline(always)]
 fn times<const N: usize>(lanes: &Lanes<N>, factors: &Lanes<N>) -> Lanes<N> {
-    // No direction is moved by an infinite slope that it does not meet.
+    // Zero times an infinite slope is zero: a direction that does not reach the operand.
     zip(lanes, factors, |x, factor| if x == 0.0 { 0.0 } else { x * factor })
 }
 
-/// The derivative of a function of one argument; at a kink, that of the side towards larger
-/// arguments.
+/// Derivative of a function of one argument; at a kink, that of the side towards larger arguments.
 fn slope(function: Function, x: f64) -> f64 {
     match function {
         Function::Sin => x.cos(),
@@ -220,6 +225,7 @@ fn slopes(function: Function, a: f64, b: f64) -> (f64, f64) {
     match function {
         Function::Atan2 => {
             let square = a * a + b * b;
+            // The angle of a zero vector is undefined; its derivative is set to zero.
             if square == 0.0 { (0.0, 0.0) } else { (b / square, -a / square) }
         }
         Function::Min if a <= b => (1.0, 0.0),

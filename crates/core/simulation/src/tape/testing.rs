@@ -5,7 +5,7 @@ use sistership_formula::parse;
 
 use super::{Tape, TapeBuilder};
 
-/// Of one formula of `u` and `v`.
+/// Tape of one formula of `u` and `v`.
 pub(super) fn tape(text: &str) -> Tape {
     let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
     builder.output(&parse(text).unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! The archive that an FMU is.
+//! Archive file of an FMU.
 
 use std::borrow::Cow;
 use std::io::{Cursor, Write};
@@ -8,25 +8,25 @@ use zip::write::SimpleFileOptions;
 
 use crate::error::ExportError;
 
-/// A file of the archive.
+/// File of the archive.
 pub struct Entry {
     place: Cow<'static, str>,
     bytes: Cow<'static, [u8]>,
 }
 
 impl Entry {
-    /// Bytes at a place.
+    /// Creates a file with a path and its bytes.
     pub fn new(place: impl Into<Cow<'static, str>>, bytes: impl Into<Cow<'static, [u8]>>) -> Self {
         Self { place: place.into(), bytes: bytes.into() }
     }
 
-    /// A file of the library's sources.
+    /// Creates a file of the library's sources.
     pub fn source(&(name, text): &(&'static str, &'static str)) -> Self {
         Self::new(format!("sources/{name}"), text.as_bytes())
     }
 }
 
-/// The sources of the library by name; headers are those of the standard, with their licence.
+/// Sources of the library by name; headers are those of the standard, with their licence.
 pub const SOURCES: [(&str, &str); 10] = [
     ("model.h", include_str!("../../runtime/model.h")),
     ("model.c", include_str!("../../runtime/model.c")),
@@ -40,16 +40,18 @@ pub const SOURCES: [(&str, &str); 10] = [
     ("headers/fmi3PlatformTypes.h", include_str!("../../runtime/headers/fmi3PlatformTypes.h")),
 ];
 
-/// The archive; the same files give the same bytes.
+/// Returns the bytes of the archive; the same files give the same bytes.
 ///
 /// # Errors
-/// Says why it cannot be packed.
+/// Returns an error if it cannot be packed.
 pub fn packed(entries: &[Entry]) -> Result<Vec<u8>, ExportError> {
     let pack = || -> zip::result::ZipResult<Vec<u8>> {
         let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+        // Fixed times, so that the bytes do not depend on the clock.
         let time = zip::DateTime::default();
         let plain = SimpleFileOptions::default().last_modified_time(time).unix_permissions(0o644);
         for Entry { place, bytes } in entries {
+            // Shared libraries are executable.
             let mode = if place.ends_with(".so") { 0o755 } else { 0o644 };
             writer.start_file(place.as_ref(), plain.unix_permissions(mode))?;
             writer.write_all(bytes)?;

@@ -1,8 +1,8 @@
 //! Functional mock-up units: FMI 2.0 and 3.0, for co-simulation and model exchange.
 //!
 //! An FMU is an archive with a description (FMI 2.0.4, Sec. 2.2; FMI 3.0.1, Sec. 2.4), a library
-//! for Linux on x86-64, which is the same for every model, the model as operations among the
-//! resources, and the sources of the library for other machines.
+//! for Linux on x86-64, which is the same for every model, the operations of the model as a
+//! resource, and the sources of the library for other machines.
 
 mod archive;
 mod resource;
@@ -16,11 +16,11 @@ use crate::format::Format;
 use crate::plan::Plan;
 use archive::{Entry, SOURCES, packed};
 
-/// FMI 2.0.
+/// FMU for FMI 2.0.
 #[derive(Debug)]
 pub struct Fmu2;
 
-/// FMI 3.0.
+/// FMU for FMI 3.0.
 #[derive(Debug)]
 pub struct Fmu3;
 
@@ -38,6 +38,7 @@ impl Format for Fmu2 {
 
     fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
         let mut entries = common(plan, version2::description(plan));
+        // Empty for other targets: such an FMU has only the sources of its library.
         if !LIBRARY_2.is_empty() {
             let place = format!("binaries/linux64/{}.so", plan.identifier);
             entries.push(Entry::new(place, LIBRARY_2));
@@ -71,6 +72,7 @@ impl Format for Fmu3 {
     }
 }
 
+/// Files that both versions have.
 fn common(plan: &Plan, description: String) -> Vec<Entry> {
     vec![
         Entry::new("modelDescription.xml", description.into_bytes()),

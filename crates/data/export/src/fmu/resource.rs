@@ -1,4 +1,4 @@
-//! The model as the library of an FMU reads it: `runtime/model.c` has the other side.
+//! Model as a resource for the library of an FMU; `runtime/model.c` reads it.
 
 use std::fmt::Write;
 
@@ -8,11 +8,12 @@ use sistership_simulation::tape::{Instruction, Op, Slot};
 use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE, distance_reference};
 use crate::plan::{Operand, Plan};
 
-/// The file: whole numbers, and doubles by their bits.
+/// Content of the file: whole numbers, and the bits of doubles.
 pub fn text(plan: &Plan) -> String {
     let listed = plan.listed();
     let (tape, moving) = (listed.tape, plan.states().collect::<Vec<_>>());
     let starts = variables::starts(plan);
+    // The sizes come first, so that the library can allocate its memory.
     let counts = [starts.len(), tape.len(), tape.terms().len(), moving.len()];
     let mut lines = vec![format!("sistership-fmu-2 {}", plan.sha256), whole(counts), whole(moving)];
     lines.push(bits(&starts));
@@ -23,6 +24,7 @@ pub fn text(plan: &Plan) -> String {
     lines.push(places(&listed.accelerations));
     lines.push(places(&listed.kinematics));
     lines.push(places(&[listed.distance, distance_reference(plan)]));
+    // Gear, roll and constant mass matrix.
     let flags = [plan.gear.is_some(), plan.has_roll, listed.mobility.is_some()];
     lines.push(whole(flags.map(usize::from)));
     lines.push(bits(listed.mobility.unwrap_or_default().as_flattened()));
@@ -30,6 +32,7 @@ pub fn text(plan: &Plan) -> String {
     lines.join("\n") + "\n"
 }
 
+/// Figures of the steering gear and of the physical range, in the order of `runtime/model.c`.
 fn figures(plan: &Plan) -> [f64; 7] {
     let gear = plan
         .gear
@@ -43,6 +46,7 @@ fn whole<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {
     numbers.into_iter().map(|number| number.to_string()).collect::<Vec<_>>().join(" ")
 }
 
+/// Bits of doubles in hexadecimal, so that none is rounded.
 fn bits(numbers: &[f64]) -> String {
     numbers.iter().fold(String::new(), |mut text, number| {
         let _ = write!(text, "{:x} ", number.to_bits());
@@ -50,13 +54,15 @@ fn bits(numbers: &[f64]) -> String {
     })
 }
 
+/// Slots as numbers, -1 for none.
 fn places(slots: &[Option<Slot>]) -> String {
     whole(slots.iter().map(|slot| slot.map_or(-1, i64::from)))
 }
 
-/// A code, four operands and a number.
+/// Instruction as a code, four operands and a number.
 fn instruction(plan: &Plan, one: &Instruction) -> String {
     let (code, operands, number) = match *one {
+        // Codes and order of the operands are those of `runtime/model.c`.
         Instruction::Products { first, from, to } => (25, [first, from, to, 0], 0.0),
         Instruction::Op(Op::Constant(number)) => (0, [0; 4], number),
         Instruction::Op(Op::Input(input)) => (1, [variable(plan, input), 0, 0, 0], 0.0),
@@ -75,7 +81,7 @@ fn operands(op: Op) -> [Slot; 4] {
     }
 }
 
-/// The value reference of an input of the tape.
+/// Value reference of an input of the tape.
 fn variable(plan: &Plan, input: u32) -> u32 {
     match plan.operands[input as usize] {
         Operand::State(place) => FIRST_STATE + place as u32,
@@ -84,7 +90,7 @@ fn variable(plan: &Plan, input: u32) -> u32 {
     }
 }
 
-/// In the order of the enumeration of `runtime/model.c`.
+/// Operation code, in the order of the enumeration of `runtime/model.c`.
 fn code(op: Op) -> u32 {
     match op {
         Op::Constant(_) => 0,

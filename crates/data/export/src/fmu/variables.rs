@@ -1,51 +1,52 @@
-//! The variables of an FMU, in the order of their value references.
+//! Variables of an FMU, in the order of their value references.
 
 use crate::header::remark;
 use crate::plan::{Coefficient, DELTA, Plan, STATES};
 use crate::range;
 
-/// The value reference of the first state; that of time is zero.
+/// Value reference of the first state; that of time is zero.
 pub const FIRST_STATE: u32 = 1;
-/// The value reference of the rate of the first state.
+/// Value reference of the rate of the first state.
 const FIRST_RATE: u32 = 10;
-/// The value reference of the ordered rudder.
+/// Value reference of the ordered rudder.
 const ORDER: u32 = 19;
-/// The value reference of the first further input; coefficients and the longest step follow.
+/// Value reference of the first external input; coefficients, the distance outside the range and
+/// the largest step follow.
 pub const FIRST_OUTSIDE: u32 = 20;
-/// Deep water: formats that know no infinity, and tools that do not read it, have this, m.
+/// Depth of deep water, m, for formats without infinity and tools that do not read it.
 const DEEP_M: f64 = 1e9;
 
-/// What a variable is to an FMU.
+/// Role of a variable in an FMU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// A state, whose start can be set; an output.
+    /// State, whose start value can be set; also an output.
     State,
-    /// The rate of a state.
+    /// Rate of a state.
     Rate,
-    /// An input.
+    /// Input.
     Input,
-    /// A parameter that can be set before the simulation.
+    /// Parameter that can be set before the simulation.
     Parameter,
-    /// What follows from states and inputs.
+    /// Output that follows from states and inputs.
     Output,
 }
 
-/// A variable.
+/// Variable of an FMU.
 #[derive(Debug, Clone)]
 pub struct Variable {
-    /// Its value reference.
+    /// Value reference.
     pub reference: u32,
-    /// Its name.
+    /// Name of the variable.
     pub name: String,
-    /// Its unit, where it is one of [`UNITS`].
+    /// Unit, if it is in the list of units.
     pub unit: Option<String>,
-    /// What it is.
+    /// Description of the variable.
     pub description: String,
-    /// What it is to the FMU.
+    /// Role in the FMU.
     pub role: Role,
-    /// What it is where nobody says; rates have none.
+    /// Start value; rates and computed outputs have none.
     pub start: Option<f64>,
-    /// Its range.
+    /// Smallest and largest value, if limited.
     pub range: [Option<f64>; 2],
 }
 
@@ -61,7 +62,7 @@ pub const UNITS: [(&str, [i32; 4]); 8] = [
     ("rad/s2", [0, 0, -2, 1]),
 ];
 
-/// Every variable.
+/// Returns all variables.
 pub fn all(plan: &Plan) -> Vec<Variable> {
     let mut all: Vec<Variable> = plan.states().map(|place| state(plan, place)).collect();
     all.extend(plan.states().map(rate));
@@ -77,6 +78,7 @@ pub fn all(plan: &Plan) -> Vec<Variable> {
     }));
     let first = FIRST_OUTSIDE + plan.outside.len() as u32;
     all.extend(plan.coefficients.iter().zip(first..).map(coefficient));
+    // The references are without gaps: inputs, coefficients, distance if any, step.
     let last = first + plan.coefficients.len() as u32;
     if let Some(distance) = distance_reference(plan) {
         all.push(distance_variable(distance));
@@ -87,8 +89,8 @@ pub fn all(plan: &Plan) -> Vec<Variable> {
     all
 }
 
-/// The value reference of how far the motion is outside of what trials covered; none where that is
-/// not known.
+/// Value reference of the distance outside the range covered by trials; `None` if that range is not
+/// known.
 pub fn distance_reference(plan: &Plan) -> Option<u32> {
     plan.listed().distance?;
     Some(FIRST_OUTSIDE + (plan.outside.len() + plan.coefficients.len()) as u32)
@@ -106,10 +108,11 @@ fn distance_variable(reference: u32) -> Variable {
     }
 }
 
-/// What every variable is where nobody says, by value reference.
+/// Start values of all variables, by value reference.
 pub fn starts(plan: &Plan) -> Vec<f64> {
     let distance = usize::from(distance_reference(plan).is_some());
     let count =
+        // One more for the largest step.
         FIRST_OUTSIDE as usize + plan.outside.len() + plan.coefficients.len() + distance + 1;
     let mut starts = vec![0.0; count];
     for variable in all(plan) {
@@ -118,6 +121,7 @@ pub fn starts(plan: &Plan) -> Vec<f64> {
     starts
 }
 
+/// Unit, if it is in the list of units.
 fn known(unit: &str) -> Option<String> {
     UNITS.iter().any(|(known, _)| *known == unit).then(|| unit.to_owned())
 }
@@ -137,6 +141,7 @@ fn state(plan: &Plan, place: usize) -> Variable {
 
 fn rate(place: usize) -> Variable {
     let (name, unit, meaning) = STATES[place];
+    // Unit of the time derivative; angles and unknown units become rad/s.
     let unit = match unit {
         "m/s" => "m/s2",
         "rad/s" => "rad/s2",

@@ -6,11 +6,12 @@ use super::variables::{Role, Variable, all};
 use super::xml::{attributes, escaped, summary, units};
 use crate::plan::Plan;
 
-/// The description.
+/// Returns the model description.
 pub fn description(plan: &Plan) -> String {
     let variables = all(plan);
     let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
     let places = |roles: &[Role]| -> String {
+        // FMI 2.0 refers to variables by their position, from 1.
         let of = variables.iter().zip(1..).filter(|(variable, _)| roles.contains(&variable.role));
         of.map(|(_, index)| format!("      <Unknown index=\"{index}\"/>\n")).collect()
     };

@@ -6,12 +6,13 @@ use super::variables::{Role, Variable, all};
 use super::xml::{attributes, escaped, summary, units};
 use crate::plan::Plan;
 
-/// The description.
+/// Returns the model description.
 pub fn description(plan: &Plan) -> String {
     let variables = all(plan);
     let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
     let structure = |roles: &[Role], element: &str| -> String {
         let of = variables.iter().filter(|variable| roles.contains(&variable.role));
+        // FMI 3.0 refers to variables by their value reference.
         of.map(|one| format!("    <{element} valueReference=\"{}\"/>\n", one.reference)).collect()
     };
     let (name, model, summary) = (escaped(&plan.name), &plan.identifier, summary(plan));
@@ -64,7 +65,7 @@ fn variable(variable: &Variable, all: &[Variable]) -> String {
     )
 }
 
-/// How others build the library from its sources.
+/// Returns the build description, for compiling the library from its sources.
 pub fn build(plan: &Plan) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\

@@ -1,17 +1,18 @@
-//! Pieces of XML that both versions have.
+//! XML elements that both versions have.
 
 use super::variables::{UNITS, Variable};
 use crate::header;
 use crate::plan::Plan;
 
-/// A text as an attribute or content.
+/// Text escaped for an attribute or content, on one line.
 pub fn escaped(text: &str) -> String {
+    // The ampersand first, as the other replacements contain it.
     let marked = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     let marked = marked.replace('"', "&quot;");
     marked.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Units with what they are made of.
+/// Elements of the units, with their base units.
 pub fn units() -> String {
     let unit = |(name, exponents): (&str, [i32; 4])| {
         let of = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
@@ -22,7 +23,7 @@ pub fn units() -> String {
     UNITS.into_iter().map(unit).collect()
 }
 
-/// Unit, range and start of a variable as attributes.
+/// Unit, range and start value of a variable as attributes.
 pub fn attributes(variable: &Variable) -> String {
     let [low, high] = variable.range;
     let numbers = [("min", low), ("max", high), ("start", variable.start)];
@@ -33,12 +34,12 @@ pub fn attributes(variable: &Variable) -> String {
     unit.chain(numbers).collect()
 }
 
-/// What the description says of the model in one line.
+/// Summary of the model in one line.
 pub fn summary(plan: &Plan) -> String {
     escaped(&plan.provenance.iter().take(4).cloned().collect::<Vec<_>>().join(". "))
 }
 
-/// A page with all that a reader must know.
+/// HTML page with the header of the export.
 pub fn documentation(plan: &Plan) -> String {
     let lines: String = header::lines(plan).iter().map(|line| escaped(line) + "\n").collect();
     let name = escaped(&plan.name);

@@ -1,4 +1,4 @@
-//! Without a yaw rate, the track tells whether a heading is in degrees.
+//! Check of the unit of a heading against the track, for recordings without a yaw rate.
 
 use std::f64::consts::PI;
 
@@ -8,13 +8,14 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::stats::{blocks, range};
 
-/// Agreement of heading and course (1: the same throughout) below which the declared unit is
-/// doubted, and above which degrees are believed.
+/// Agreement of heading and course (1: constant difference) below which the declared unit is
+/// doubted, and above which degrees are accepted.
 const DOUBTED: f64 = 0.5;
 const BELIEVED: f64 = 0.9;
-/// rad; a course that hardly turns agrees with anything.
+/// rad; with less turning, a course agrees with any heading.
 const TURNED: f64 = 0.5;
-/// rad and rad/s; beyond these a heading with nothing to compare it with is taken for degrees.
+/// rad and rad/s; beyond these a heading without positions to compare with is assumed to be in
+/// degrees.
 const MANY_TURNS: f64 = 100.0;
 const FAST: f64 = 0.2;
 
@@ -26,6 +27,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     }
     let doubtful = match (recording.channel(Channel::X), recording.channel(Channel::Y)) {
         (Some(x), Some(y)) => {
+            // A constant difference is allowed, so that an offset of the compass does not matter.
             let agreement = |scale: f64| agreement(recording, psi, scale, x, y);
             range(psi) * PI / 180.0 > TURNED
                 && agreement(1.0) < DOUBTED
@@ -39,11 +41,12 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Length of the mean unit vector of course less scaled heading, weighted by distance.
+/// Returns the length of the mean unit vector of course less scaled heading, weighted by distance.
 fn agreement(recording: &Recording, psi: &[f64], scale: f64, x: &[f64], y: &[f64]) -> f64 {
     let (mut north, mut east, mut distance) = (0.0, 0.0, 0.0);
     for block in blocks(recording) {
         let (dx, dy) = (block.change(x), block.change(y));
+        // Mean heading of the block: the displacement is rotated into ship-fixed axes.
         let heading = scale * 0.5 * (psi[block.first] + psi[block.last]);
         north += dx * heading.cos() + dy * heading.sin();
         east += dy * heading.cos() - dx * heading.sin();

@@ -1,4 +1,5 @@
-//! Steps between two samples that no ship makes, with room for what instruments do.
+//! Check for steps between two samples that are impossible for a ship, with a margin for
+//! instruments.
 
 use std::f64::consts::PI;
 
@@ -10,16 +11,16 @@ use crate::stats::quantile;
 
 /// m/s; faster than any ship.
 const MAX_SPEED: f64 = 40.0;
-/// m; what a satellite fix may step on its own account.
+/// m; a step of a satellite fix without any motion.
 const FIX_STEP: f64 = 10.0;
-/// rad; a heading step in one sample, and the rate (rad/s) that widens it when samples are far
-/// apart.
+/// rad; a heading step between two samples, and the rate (rad/s) that widens it for long sampling
+/// intervals.
 const HEADING_STEP: f64 = PI / 3.0;
 const HEADING_RATE: f64 = 0.1;
 /// m/s and m/s2; a step of a speed sensor, and an acceleration beyond any ship's.
 const SPEED_STEP: f64 = 5.0;
 const ACCELERATION: f64 = 2.0;
-/// A position step this many times the usual one is remarked.
+/// Multiple of the usual position step from which a step is reported.
 const UNUSUAL: f64 = 10.0;
 
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
@@ -37,6 +38,7 @@ fn position(recording: &Recording, findings: &mut Findings) {
     let (t, header) = (recording.time(), recording.header(Channel::X));
     let step = |k: usize| (x[k] - x[k - 1]).hypot(y[k] - y[k - 1]);
     let jumps = |k: usize| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]);
+    // A jump across a gap is only a warning: segments begin there, and nothing is fitted across it.
     let begins = |k: usize| recording.segments.iter().any(|segment| segment.start == k);
     let gaps = recording.hits(1..t.len(), |k| jumps(k) && begins(k));
     findings.rows(Severity::Warning, header, &gaps, |k| {
@@ -55,8 +57,9 @@ fn position(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Steps of a satellite fix are kept, but told: the largest of them and how many.
+/// Reports steps of a satellite fix, which are kept: the largest and their number.
 fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Findings) {
+    // The 95 % quantile is the usual step; only steps within segments are reported.
     let typical = quantile((1..recording.trial.len()).map(&step), 0.95);
     let steady = recording.segments.iter().flat_map(|segment| segment.start + 1..segment.end);
     let unusual = steady.filter(|&k| step(k) > UNUSUAL * typical && typical > 0.0);
@@ -76,6 +79,7 @@ fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Fi
 fn heading(recording: &Recording, findings: &mut Findings) {
     let Some(psi) = recording.channel(Channel::Psi) else { return };
     let (t, header) = (recording.time(), recording.header(Channel::Psi));
+    // Steps across gaps are not checked.
     let within = |k: usize| !recording.segments.iter().any(|segment| segment.start == k);
     let limit = |k: usize| HEADING_STEP.max(HEADING_RATE * (t[k] - t[k - 1]));
     let hits = recording.hits(1..t.len(), |k| (psi[k] - psi[k - 1]).abs() > limit(k) && within(k));

@@ -1,4 +1,4 @@
-//! What must hold of a recording before anybody fits a model to it.
+//! Checks of a recording before a model is fitted to it.
 
 mod course;
 mod jumps;
@@ -12,13 +12,15 @@ mod yaw;
 use crate::findings::Findings;
 use crate::recording::Recording;
 
-/// Runs every check. Those that need time to run forwards are left out when it does not.
+/// Runs every check. Those that need increasing time are skipped if time does not increase.
 pub(crate) fn run(recording: &mut Recording, findings: &mut Findings) {
     shape::check(recording, findings);
     ranges::check(recording, findings);
     if !time::in_order(recording, findings) {
         return;
     }
+    // Sampling interval and segments are only defined once time increases; the checks below use
+    // them.
     recording.settle_time();
     time::gaps(recording, findings);
     jumps::check(recording, findings);

@@ -1,4 +1,4 @@
-//! Values that no ship and no model basin produces, and what they most likely are instead.
+//! Check for values that neither ships nor model basins produce, with their most likely cause.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -8,7 +8,7 @@ use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
 use crate::stats::quantile;
 
-/// Channel, largest magnitude, what to do about more.
+/// Channel, largest magnitude, and advice where it is exceeded.
 ///
 /// The limits hold for a one-metre model as for a tanker: 40 m/s is beyond any displacement ship,
 /// 1.5 rad/s (86 deg/s) beyond a free-running model at full rudder, 200 turns per second beyond a
@@ -77,6 +77,7 @@ fn beyond(
     let Some(values) = recording.channel(channel) else { return };
     let hits = recording.hits(0..values.len(), |k| wrong(values[k]));
     let unit = recording.canonical_unit(channel);
+    // The value is in canonical units: name the declared one if it differs.
     let note = converted(recording, channel, unit);
     findings.rows(Severity::Error, recording.header(channel), &hits, |k| {
         format!("{:.4} {unit}{note}: {advice}", values[k])
@@ -89,7 +90,7 @@ fn converted(recording: &Recording, channel: Channel, canonical: &str) -> String
     if same { String::new() } else { format!(" (converted from {declared})") }
 }
 
-/// A rudder that never leaves a degree is one recorded in radians and declared in degrees.
+/// Warns of a rudder that never exceeds a degree: it is probably recorded in radians.
 fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
     let Some(values) =
         recording.channel(Channel::Delta).filter(|_| recording.unit(Channel::Delta) == "deg")
@@ -97,6 +98,7 @@ fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
         return;
     };
     let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs())) * 180.0 / PI;
+    // A rudder below 0.03 deg is amidships throughout.
     if (0.03..1.0).contains(&most) {
         let message =
             format!("the rudder never exceeds {most:.2} deg; if these are radians declare `rad`");
@@ -106,6 +108,7 @@ fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
 
 fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     let Some(values) = recording.channel(Channel::N) else { return };
+    // The median, as single values may be faults.
     let typical = quantile(values.iter().map(|value| value.abs()), 0.5);
     if typical > 40.0 {
         let message = format!(

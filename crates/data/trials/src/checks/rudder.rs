@@ -1,9 +1,9 @@
-//! Positive rudder turns the ship to starboard.
+//! Check that positive rudder turns the ship to starboard.
 //!
-//! Two witnesses are heard. The yaw rate some moments later correlates with the rudder; and in
+//! Two indications are combined. The yaw rate some moments later correlates with the rudder; and in
 //! Nomoto's first-order model, dr/dt = a r + b delta + c, fitted over blocks, b has the rudder's
-//! sign. Either alone errs at times: the first when the ship swings slowly, the second when a turn
-//! is so tight that the model does not fit. A trial is refused when both agree that the sign is
+//! sign. Either alone is wrong at times: the first when the ship swings slowly, the second when a
+//! turn is so tight that the model does not fit. A trial is refused if both agree that the sign is
 //! wrong.
 
 use nalgebra::{Matrix3, Vector3};
@@ -13,15 +13,15 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::stats::{Block, blocks, correlation, quantile, spread};
 
-/// rad; less rudder or less swing than this is course keeping, in which the rudder follows the yaw
+/// rad; with less rudder or less swing the ship keeps its course, and the rudder follows the yaw
 /// rate.
 const RUDDER: f64 = 0.05;
 const SWING: f64 = 0.25;
-/// Blocks with speed ahead that are needed.
+/// Minimum number of blocks with speed ahead.
 const ENOUGH: usize = 15;
-/// Lags of the yaw rate, as parts of the recording.
+/// Lags of the yaw rate behind the rudder, as fractions of the recording.
 const LAGS: [f64; 4] = [0.0, 0.005, 0.01, 0.02];
-/// Each witness must be below the first, both together below the second.
+/// Each correlation must be below the first limit, their sum below the second.
 const EACH: f64 = 0.25;
 const BOTH: f64 = -0.6;
 
@@ -49,10 +49,12 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Samples with way ahead: a ship going astern answers its rudder the other way or not at all.
+/// Flags the samples with way ahead: a ship going astern responds to its rudder with the other sign
+/// or not at all.
 fn ahead(recording: &Recording) -> Vec<bool> {
     let all = vec![true; recording.trial.len()];
     let Some(u) = recording.channel(Channel::U) else { return all };
+    // Slow parts of the recording are excluded as well.
     let enough = 0.5 * quantile(u.iter().copied(), 0.95);
     let n = recording.channel(Channel::N);
     (0..u.len()).map(|k| u[k] > 0.0 && u[k] > enough && n.is_none_or(|n| n[k] > 0.0)).collect()
@@ -62,13 +64,14 @@ fn manoeuvres(recording: &Recording, r: &[f64], delta: &[f64]) -> bool {
     let mut heading = 0.0;
     let t = recording.time();
     let swing = (1..t.len()).map(|k| {
+        // The heading from the yaw rate, since a trial may have no heading.
         heading += r[k] * (t[k] - t[k - 1]);
         heading
     });
     spread(swing) > SWING && quantile(delta.iter().map(|value| value.abs()), 0.95) > RUDDER
 }
 
-/// The correlation that is largest in magnitude among the lags.
+/// Returns the correlation that is largest in magnitude among the lags.
 fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
     let at = |part: &f64| {
         let lag = (part * r.len() as f64) as usize;
@@ -78,8 +81,8 @@ fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
     LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
-/// The partial correlation of rudder and yaw acceleration: b of Nomoto's model over its standard
-/// error, brought to -1 to 1.
+/// Returns the partial correlation of rudder and yaw acceleration: b of Nomoto's model divided by
+/// its standard error, scaled to -1 to 1.
 fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> f64 {
     let t = recording.time();
     let row = |block: &Block| {
@@ -87,6 +90,8 @@ fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> 
     };
     let rows: Vec<(Vector3<f64>, f64)> =
         blocks.iter().map(|block| (row(block), block.change(r))).collect();
+    // Normal equations of the integrated model: change of r over a block on the integrals of r and
+    // delta and on the duration.
     let gram: Matrix3<f64> = rows.iter().map(|(row, _)| row * row.transpose()).sum();
     let moment: Vector3<f64> = rows.iter().map(|(row, change)| row * *change).sum();
     let Some(inverse) = gram.try_inverse() else { return 0.0 };

@@ -1,4 +1,4 @@
-//! Whether there is enough in the recording to be of use.
+//! Check that a recording is long enough and its channels change.
 
 use std::f64::consts::TAU;
 
@@ -8,9 +8,9 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::stats::range;
 
-/// Samples below which nothing can be said of a trial.
+/// Minimum number of samples of a trial.
 const FEWEST: usize = 3;
-/// Part of a full turn that counts as one.
+/// Fraction of a full turn that counts as a full turn.
 const ALMOST: f64 = 0.98;
 
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
@@ -26,7 +26,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     short_turn(recording, findings);
 }
 
-/// A channel that never changes is a dead sensor or a placeholder; depth is constant by nature.
+/// Warns of a channel that never changes, a dead sensor or a placeholder; depth may be constant.
 fn constant(recording: &Recording, findings: &mut Findings) {
     for (&channel, values) in &recording.trial.channels {
         if channel != Channel::Depth && range(values) == 0.0 {
@@ -43,7 +43,7 @@ fn constant(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// A turning circle is measured over a full turn at least.
+/// Warns of a turning circle of less than a full turn.
 fn short_turn(recording: &Recording, findings: &mut Findings) {
     if !is_turn(recording) {
         return;
@@ -67,6 +67,7 @@ fn short_turn(recording: &Recording, findings: &mut Findings) {
 }
 
 fn is_turn(recording: &Recording) -> bool {
+    // By the declared manoeuvre, otherwise by the name of the file.
     let file = recording.trial.name.rsplit(['/', '\\']).next().unwrap_or_default();
     let text = recording.trial.manoeuvre.as_deref().unwrap_or(file).to_lowercase();
     text.split(|c: char| !c.is_alphanumeric()).any(|word| matches!(word, "turn" | "turning"))

@@ -1,12 +1,12 @@
-//! Time runs forwards, and its gaps are told.
+//! Check that time increases, and report of its gaps.
 
 use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
 
-/// Steps longer than this many medians are gaps.
+/// Multiple of the median step from which a step is a gap.
 const GAP: f64 = 1.5;
 
-/// Whether time is strictly increasing; errors name the rows where it is not.
+/// Returns true if time is strictly increasing; errors name the rows where it is not.
 pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
     let t = recording.time();
     let hits = recording.hits(1..t.len(), |k| t[k] <= t[k - 1]);
@@ -22,7 +22,8 @@ pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
     hits.is_empty()
 }
 
-/// Warns of gaps and of a start that is not zero. A gap left by dropped rows has been told already.
+/// Warns of gaps and of a start that is not zero. A gap left by excluded rows has been reported
+/// already.
 pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
     let (t, limit) = (recording.time(), GAP * recording.interval_s);
     let hits = recording.hits(1..t.len(), |k| {

@@ -1,4 +1,4 @@
-//! The positions move as the ship-fixed velocities, turned by the heading, say.
+//! Check of the positions against the ship-fixed velocities, rotated by the heading.
 
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
@@ -7,21 +7,22 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::stats::{Block, blocks, proportion, range};
 
-/// rad; the heading must turn this much before axes can be told apart.
+/// rad; with less turning of the heading, axes cannot be distinguished.
 const TURNED: f64 = 0.5;
-/// An explanation must leave less than this part of what the declared axes leave, and of the whole.
+/// A different set of axes must leave less than this fraction of the squares that the declared axes
+/// leave, and of all squares.
 const MUCH_BETTER: f64 = 0.1;
-/// Part of the mean speed that a steady or unsteady disagreement must reach to be remarked.
+/// Fraction of the mean speed from which a steady or an unsteady disagreement is reported.
 const STEADY: f64 = 0.05;
 const UNSTEADY: f64 = 0.25;
 
 /// A block's displacement north and east, m.
 type Step = (f64, f64);
 
-/// What the axes might be instead of the declared ones: velocity north and east from u, v, cos psi
-/// and sin psi.
+/// Alternative axes: velocity north and east from u, v, cos psi and sin psi.
 type Axes = fn(f64, f64, f64, f64) -> Step;
 
+// Rotation from ship-fixed to earth-fixed axes.
 const DECLARED: Axes = |u, v, c, s| (u * c - v * s, u * s + v * c);
 
 const MISTAKES: [(Axes, &str); 4] = [
@@ -45,7 +46,7 @@ const MISTAKES: [(Axes, &str); 4] = [
     ),
 ];
 
-/// Ratio of measured to predicted track, and the unit mistake it betrays.
+/// Ratio of measured to predicted track, and the wrong unit that explains it.
 const SCALES: [(f64, &str); 5] = [
     (1852.0 / 3600.0, "knots; declare `kn`"),
     (3600.0 / 1852.0, "m/s; declare `m/s`"),
@@ -56,6 +57,7 @@ const SCALES: [(f64, &str); 5] = [
 
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     let Some(track) = Track::of(recording) else { return };
+    // With little turning, different axes explain the track equally well.
     let message =
         if range(track.psi) < TURNED { None } else { track.mistake().or_else(|| track.scale()) };
     match message {
@@ -74,7 +76,7 @@ struct Track<'a> {
     v: &'a [f64],
 }
 
-/// What is left of the track: a steady drift, m/s, and the sum of squares of the rest, m2.
+/// Residual of the track: a steady drift, m/s, and the sum of squares of the rest, m2.
 struct Rest {
     drift: Step,
     squares: f64,
@@ -102,10 +104,12 @@ impl<'a> Track<'a> {
             .collect()
     }
 
-    /// A steady drift is taken out first: it is a current, and no sign of wrong axes.
+    /// Returns the residual of the measured track. A steady drift is subtracted first: it is a
+    /// current, and does not indicate wrong axes.
     fn rest(&self, predicted: &[Step]) -> Rest {
         let left: Vec<Step> =
             self.measured.iter().zip(predicted).map(|(a, b)| (a.0 - b.0, a.1 - b.1)).collect();
+        // The steady drift is the mean residual velocity; blocks have about equal durations.
         let seconds = self.seconds();
         let sum = left.iter().fold((0.0, 0.0), |sum, step| (sum.0 + step.0, sum.1 + step.1));
         let drift = (sum.0 / seconds, sum.1 / seconds);
@@ -124,6 +128,7 @@ impl<'a> Track<'a> {
 
     fn mistake(&self) -> Option<String> {
         let declared = self.rest(&self.predicted(DECLARED)).squares;
+        // Residual of a prediction of no motion: the squares of the track itself.
         let whole = self.rest(&vec![(0.0, 0.0); self.blocks.len()]).squares;
         let left = MISTAKES
             .iter()
@@ -140,6 +145,7 @@ impl<'a> Track<'a> {
             .zip(&self.measured)
             .flat_map(|(a, b)| [(a.0, b.0), (a.1, b.1)])
             .collect();
+        // Both axes together. The high correlation ensures that only the scale is wrong.
         let found = proportion(&pairs).filter(|found| found.correlation > 0.98)?;
         let unit = SCALES.iter().find(|(factor, _)| (found.slope / factor - 1.0).abs() < 0.03)?.1;
         Some(format!(
@@ -154,9 +160,12 @@ impl<'a> Track<'a> {
         let rest = self.rest(&predicted);
         let (n, seconds) = (self.blocks.len() as f64, self.seconds());
         let speed = predicted.iter().map(|step| step.0.hypot(step.1)).sum::<f64>() / seconds;
+        // Root mean square of the residual of a block, divided by the mean duration of a block,
+        // m/s.
         let scatter = (rest.squares / n).sqrt() * n / seconds;
         let drift = rest.drift.0.hypot(rest.drift.1);
         let header = self.recording.header(Channel::X);
+        // Also significant: more than four standard errors of the mean.
         if drift > STEADY * speed && drift > 4.0 * scatter / n.sqrt() {
             let towards =
                 rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;

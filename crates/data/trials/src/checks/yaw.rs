@@ -1,4 +1,4 @@
-//! The heading turns as fast as the yaw rate says.
+//! Check of the heading against the yaw rate.
 
 use std::f64::consts::PI;
 
@@ -10,9 +10,9 @@ use crate::stats::{Proportion, blocks, proportion};
 
 /// Correlation above which the ratio of two series can be trusted.
 const CERTAIN: f64 = 0.9;
-/// Relative width around a factor of units.
+/// Relative tolerance around a factor between units.
 const NEAR: f64 = 0.25;
-/// Relative disagreement that is worth a remark.
+/// Relative disagreement from which a warning is given.
 const MODERATE: f64 = 0.1;
 const DEGREES: f64 = 180.0 / PI;
 
@@ -27,6 +27,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
         .map(|block| (block.integral(recording.time(), |k| r[k]), block.change(psi)))
         .collect();
     let Some(found) = proportion(&pairs) else { return };
+    // Without correlation (a constant heading, or noise) the slope has no meaning.
     if found.correlation.abs() < CERTAIN {
         return;
     }
@@ -38,6 +39,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
 
 fn fault(recording: &Recording, slope: f64) -> Option<String> {
     let near = |factor: f64| (slope / factor - 1.0).abs() < NEAR;
+    // A factor of 57.3 between both means that one is in degrees and the other in radians.
     let (psi, r) = (recording.header(Channel::Psi), recording.header(Channel::R));
     let (psi_unit, r_unit) = (recording.unit(Channel::Psi), recording.unit(Channel::R));
     if near(DEGREES) {

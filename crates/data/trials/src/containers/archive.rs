@@ -1,21 +1,24 @@
-//! A ZIP archive held against the limits before anything is made of it.
+//! Check of a ZIP archive against the limits before it is read.
 
 use std::io::{Read, Seek};
 
 use zip::ZipArchive;
 
-/// Files in an archive.
+/// Largest number of files in an archive.
 const FILES: usize = 10_000;
-/// Unpacked bytes of styles, of each few of which a reader makes a whole description.
+/// Largest number of unpacked bytes of styles; a reader builds a large description from each few of
+/// them.
 const STYLES: u64 = 2 << 20;
-/// How many strings a workbook may announce, since room is made for them at once.
+/// Largest number of strings that a workbook may announce, since memory for them is allocated at
+/// once.
 const STRINGS: u64 = 4_000_000;
-/// The attribute by which it does.
+/// XML attribute that announces the number of strings.
 const ANNOUNCES: &[u8] = b"uniqueCount";
-/// Bytes that are unpacked at a time.
+/// Number of bytes that are unpacked at a time.
 const PIECE: usize = 64 << 10;
 
-/// Bytes that the archive says it holds when unpacked; more are refused by [`check`].
+/// Returns the unpacked size that the archive declares, bytes; a larger content is refused by
+/// [`check_archive`].
 pub fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
@@ -25,15 +28,16 @@ pub fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
     Ok(sizes.map_err(damaged)?.into_iter().fold(0, u64::saturating_add))
 }
 
-/// Unpacks every file of the archive without keeping it.
+/// Unpacks every file of the archive without keeping it, and refuses content beyond the limits.
 ///
-/// What the archive says of sizes is not believed: bytes are counted as they come.
+/// The declared sizes are not trusted: bytes are counted while they are unpacked.
 pub fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     if archive.len() > FILES {
         return Err(format!("an archive of {} files is no workbook", archive.len()));
     }
+    // An Excel workbook has files whose names contain `sheet`.
     let named = |name: &str| name.to_lowercase().contains("sheet");
     if !archive.file_names().any(|name| name.is_ok_and(|name| named(&name))) {
         return Err("a ZIP archive that is no Excel workbook; unpack it".into());
@@ -42,6 +46,7 @@ pub fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
     for index in 0..archive.len() {
         let mut file = archive.by_index(index).map_err(damaged)?;
         let name = file.name().map_err(damaged)?.to_lowercase();
+        // Styles and themes have a limit of their own, since the reader expands them.
         let of_styles = name.ends_with("styles.xml") || name.contains("theme");
         let bound = if of_styles { STYLES.min(left) } else { left };
         let is_text = name.ends_with(".xml") || name.ends_with(".rels");
@@ -50,11 +55,12 @@ pub fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// How many bytes a file has.
+/// Returns the number of unpacked bytes of a file.
 fn unpack(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64, String> {
     let (mut piece, mut kept, mut bytes) = (vec![0; PIECE], 0, 0);
     loop {
-        // The end of the piece before stays in front, so that nothing is missed between two pieces.
+        // The end of the previous piece is kept in front, so that an attribute across two pieces is
+        // found.
         let read = file.read(&mut piece[kept..]).map_err(|error| error.to_string())?;
         bytes += read as u64;
         if bytes > bound {
@@ -73,8 +79,9 @@ fn unpack(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64, String
     }
 }
 
-/// XML in UTF-8 (or another code that contains ASCII) has no such bytes; in others, what is looked
-/// for could hide.
+/// Refuses XML that announces too many strings. Text with control bytes is refused first: XML in
+/// UTF-8 (or another encoding that contains ASCII) has none, and in other encodings the attribute
+/// could not be found.
 fn check_text(text: &[u8]) -> Result<(), String> {
     if text.iter().any(|&byte| byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r')) {
         return Err("is not XML in UTF-8".into());

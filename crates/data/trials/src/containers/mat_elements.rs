@@ -1,4 +1,4 @@
-//! MATLAB 5 files (`save -v7`, `-v6`): data elements one within the other, read as a stream.
+//! MATLAB 5 files (`save -v7`, `-v6`): nested data elements, read as a stream.
 
 use std::io::{self, Read};
 
@@ -6,10 +6,10 @@ use flate2::read::ZlibDecoder;
 
 /// Bytes before the first element.
 const HEADER: usize = 128;
-/// Elements of a file, and structures within each other.
+/// Largest number of elements of a file, and largest depth of nested structures.
 const ELEMENTS: usize = 10_000;
 const DEPTH: usize = 4;
-/// Bytes of names and dimensions.
+/// Largest size of names and dimensions, bytes.
 const SMALL: u64 = 64 << 10;
 
 const COMPRESSED: u32 = 15;
@@ -18,13 +18,13 @@ const STRUCTURE: u8 = 2;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 const COMPLEX: u8 = 0x08;
 
-/// An array of real numbers: its name and size, and its numbers, column by column.
+/// Array of real numbers, stored column by column, whose numbers are read on request.
 pub struct Array<'a> {
-    /// Its name.
+    /// Name of the variable.
     pub name: String,
-    /// Its rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Its columns.
+    /// Number of columns.
     pub columns: usize,
     kind: u32,
     big: bool,
@@ -32,9 +32,13 @@ pub struct Array<'a> {
 }
 
 impl Array<'_> {
-    /// The next so many numbers.
+    /// Reads the next `count` numbers.
+    ///
+    /// # Errors
+    /// Returns an error if the file ends or the type of the numbers is unknown.
     pub fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
         let width = width(self.kind).ok_or_else(|| invalid("numbers of an unknown type"))?;
+        // No memory is reserved for `count`, which the file declares and may not hold.
         let mut numbers = Vec::new();
         let mut bytes = [0; 8];
         for _ in 0..count {
@@ -44,13 +48,17 @@ impl Array<'_> {
         Ok(numbers)
     }
 
-    /// Passes over so many numbers.
+    /// Skips the next `count` numbers.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read or the type of the numbers is unknown.
     pub fn skip(&mut self, count: usize) -> io::Result<()> {
         let width = width(self.kind).ok_or_else(|| invalid("numbers of an unknown type"))?;
         skip(&mut (&mut *self.input).take((count as u64).saturating_mul(width as u64)))
     }
 }
 
+/// Bytes of a number by its type in MATLAB's table.
 fn width(kind: u32) -> Option<usize> {
     match kind {
         1 | 2 => Some(1),
@@ -61,7 +69,7 @@ fn width(kind: u32) -> Option<usize> {
     }
 }
 
-/// A number by the type of MATLAB's table; what an f64 does not hold exactly is rounded.
+/// Decodes a number by its type in MATLAB's table; integers that an f64 cannot hold are rounded.
 fn number(kind: u32, big: bool, bytes: &[u8]) -> f64 {
     let mut low = [0; 8];
     let whole = &mut low[..bytes.len()];
@@ -81,7 +89,12 @@ fn number(kind: u32, big: bool, bytes: &[u8]) -> f64 {
     }
 }
 
-/// Shows every real array of the file to the visitor, those within structures as `structure.field`.
+/// Calls the visitor with every real array of the file; arrays within structures are named
+/// `structure.field`.
+///
+/// # Errors
+/// Returns an error if the file is damaged or unpacks to more than `most` bytes, and the error of
+/// the visitor.
 pub fn visit(
     input: &mut dyn Read,
     most: u64,
@@ -112,7 +125,7 @@ struct Parser<'a> {
     visitor: &'a mut dyn FnMut(Array) -> io::Result<()>,
 }
 
-/// Type, size in bytes, and the data themselves where the tag holds them.
+/// Type, size in bytes, and the data themselves if the tag contains them.
 struct Tag {
     kind: u32,
     size: u64,
@@ -129,6 +142,8 @@ impl Parser<'_> {
         input.read_exact(&mut bytes)?;
         let first = self.word(bytes);
         input.read_exact(&mut bytes)?;
+        // Small element format: the upper half of the first word is the size, and up to four bytes
+        // of data take the place of the size.
         if first >> 16 != 0 {
             let size = u64::from(first >> 16).min(4);
             return Ok(Tag { kind: first & 0xffff, size, inside: Some(bytes) });
@@ -137,12 +152,14 @@ impl Parser<'_> {
     }
 
     fn top(&mut self, input: &mut dyn Read, tag: Tag) -> io::Result<()> {
+        // A small element at the top level is no variable.
         if tag.inside.is_some() {
             return Ok(());
         }
         let mut part = input.take(tag.size);
         match tag.kind {
             COMPRESSED => {
+                // A compressed element holds exactly one element, which has a tag of its own.
                 let mut unpacked = ZlibDecoder::new(&mut part);
                 let inner = self.tag(&mut unpacked)?;
                 if inner.kind == MATRIX && inner.inside.is_none() {
@@ -155,7 +172,7 @@ impl Parser<'_> {
         skip(&mut part)
     }
 
-    /// Counts bytes before they are read.
+    /// Subtracts bytes from those that may still be read, before they are read.
     fn count(&mut self, bytes: u64) -> io::Result<()> {
         self.left = self
             .left
@@ -164,7 +181,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The bytes of a small element.
+    /// Reads the bytes of a small element.
     fn small(&mut self, input: &mut dyn Read) -> io::Result<Vec<u8>> {
         let tag = self.tag(input)?;
         if let Some(inside) = tag.inside {
@@ -203,7 +220,9 @@ impl Parser<'_> {
         let dimensions = dimensions.as_chunks::<4>().0.iter();
         let dimensions: Vec<usize> = dimensions.map(|bytes| self.word(*bytes) as usize).collect();
         let name = String::from_utf8_lossy(&self.small(input)?).into_owned();
+        // Fields of a structure have an empty name of their own.
         let name = if depth == 0 { name } else { outer.to_owned() };
+        // Arrays of more than two dimensions are skipped by the caller.
         let &[rows, columns] = dimensions.as_slice() else { return Ok(()) };
         match class {
             STRUCTURE if (rows, columns) == (1, 1) && depth < DEPTH => {
@@ -224,6 +243,8 @@ impl Parser<'_> {
     }
 
     fn structure(&mut self, input: &mut dyn Read, name: &str, depth: usize) -> io::Result<()> {
+        // Names of fields have a fixed length, padded by zeros; the fields follow in the same
+        // order.
         let length = self.small(input)?;
         let length = length.first_chunk().map_or(0, |bytes| self.word(*bytes) as usize);
         let names = self.small(input)?;
@@ -240,7 +261,7 @@ impl Parser<'_> {
     }
 }
 
-/// Bytes after an element up to the next multiple of eight.
+/// Returns the number of bytes after an element up to the next multiple of eight.
 fn padding(size: u64) -> u64 {
     size.next_multiple_of(8) - size
 }

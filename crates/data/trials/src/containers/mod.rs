@@ -1,5 +1,5 @@
-//! How files hold their bytes: pages of Parquet, elements of MATLAB 5, the archive of a workbook.
-//! What each declares is held against limits before anything is unpacked.
+//! Containers of files: pages of Parquet, elements of MATLAB 5, the archive of a workbook. Declared
+//! sizes are checked against limits before anything is unpacked.
 
 pub mod archive;
 pub mod mat_elements;

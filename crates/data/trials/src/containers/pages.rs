@@ -1,9 +1,9 @@
 //! The pages of a Parquet file's columns, measured by their headers before anything is
 //! decompressed.
 //!
-//! The library allocates what a page's header declares, and gives gzip whatever it grows to:
-//! headers are read here first, by Thrift's compact protocol, and gzip is let run to its end
-//! without keeping any of it.
+//! The library allocates what the header of a page declares, and unpacks gzip to any size. Headers
+//! are therefore read here first, by Thrift's compact protocol, and gzip is unpacked to its end
+//! without keeping the output.
 
 use std::io::{self, Read};
 
@@ -14,15 +14,15 @@ use parquet::file::reader::ChunkReader;
 
 use crate::containers::parquet_format::{self, FieldKind, Format};
 
-/// Structures within structures of a page header; the format has two.
+/// Largest depth of nested structures of a page header; the format has two.
 const DEPTH: usize = 4;
-/// The same of what a file says of itself; the format has eight.
+/// Largest depth of nested structures of the footer; the format has eight.
 const FOOTER_DEPTH: usize = 16;
-/// Bytes of a page header, its statistics included.
+/// Largest size of a page header with its statistics, bytes.
 const HEADER_BYTES: u64 = 64 << 10;
 
-/// What reading a column holds at a time, bytes: its dictionary, and a page as it lies in the file
-/// and as it is in memory.
+/// Memory needed to read a column, bytes: its dictionary, and a page both as stored and as
+/// unpacked.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Held {
     dictionary: u64,
@@ -30,21 +30,21 @@ pub struct Held {
 }
 
 impl Held {
-    /// Bytes in all.
+    /// Returns the sum of both, bytes.
     pub fn bytes(self) -> u64 {
         self.dictionary + self.page
     }
 
-    /// The larger of each.
+    /// Returns the larger dictionary and the larger page of two columns.
     pub fn max(self, other: Self) -> Self {
         Self { dictionary: self.dictionary.max(other.dictionary), page: self.page.max(other.page) }
     }
 }
 
-/// Goes through the pages of a column.
+/// Checks the pages of a column, and returns the memory needed to read it.
 ///
 /// # Errors
-/// A page is larger than `most` bytes, or not what its header says.
+/// Returns an error if a page is larger than `most` bytes, or differs from its header.
 pub fn held<R: ChunkReader>(
     input: &R,
     chunk: &ColumnChunkMetaData,
@@ -57,6 +57,7 @@ pub fn held<R: ChunkReader>(
                 .into(),
         );
     }
+    // Pages follow one another without an index: each header gives the place of the next.
     let (mut at, length) = chunk.byte_range();
     let end =
         at.checked_add(length).filter(|end| *end <= input.len()).ok_or("lies outside the file")?;
@@ -81,7 +82,7 @@ pub fn held<R: ChunkReader>(
                 .map_err(|error| format!("has a page that cannot be unpacked: {error}"))?;
         }
         let one = match header.is_dictionary {
-            // It is decoded as a whole.
+            // The dictionary is stored, unpacked and decoded at the same time.
             true => Held { dictionary: 2 * header.uncompressed + header.compressed, page: 0 },
             false => Held { dictionary: 0, page: header.uncompressed + header.compressed },
         };
@@ -91,12 +92,12 @@ pub fn held<R: ChunkReader>(
     Ok(held)
 }
 
-/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library
-/// believes the length of each list, and goes on for seconds over one that is said to have two
-/// thousand million entries in a file of fifty bytes.
+/// Checks the footer of a file: `bytes` of Thrift before the last eight bytes. The library trusts
+/// the length of each list, and spends seconds on a list of two thousand million declared entries
+/// in a file of fifty bytes.
 ///
 /// # Errors
-/// It holds less than it says, or is nested too deeply.
+/// Returns an error if the footer holds less than it declares, or is nested too deeply.
 pub fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
     let at = input.len().checked_sub(bytes + 8).ok_or_else(|| invalid("it is too short"))?;
     let reader = input.get_read(at).map_err(io::Error::other)?.take(bytes);
@@ -104,15 +105,15 @@ pub fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
     thrift.structure(FOOTER_DEPTH, &mut |_, _| ())
 }
 
-/// What is read of a page header.
+/// Fields of a page header that are used.
 #[derive(Debug, Default)]
 struct Header {
     is_dictionary: bool,
     uncompressed: u64,
     compressed: u64,
-    /// Bytes before what is compressed: the levels of the second form of data pages.
+    /// Uncompressed bytes before the compressed data: the levels of data pages of version 2.
     levels: u64,
-    /// Its own bytes.
+    /// Size of the header itself, bytes.
     length: u64,
 }
 
@@ -126,6 +127,8 @@ impl Header {
                 wrong = wrong || value < 0;
                 u64::try_from(value).unwrap_or(0)
             };
+            // Field numbers of `PageHeader`: type, uncompressed and compressed size, and the
+            // lengths of both kinds of levels in a data page of version 2.
             match path {
                 [1] => header.is_dictionary = value == 2,
                 [2] => header.uncompressed = positive(),
@@ -138,7 +141,7 @@ impl Header {
         if wrong { Err(invalid("a size is negative")) } else { Ok(header) }
     }
 
-    /// Runs gzip to its end, or to more than the header says.
+    /// Unpacks gzip to its end, or up to one byte more than the header declares.
     fn unpacked<R: ChunkReader>(&self, input: &R, at: u64) -> io::Result<()> {
         let packed = input.get_read(at + self.length + self.levels).map_err(io::Error::other)?;
         let packed = packed.take(self.compressed.saturating_sub(self.levels));
@@ -152,14 +155,14 @@ fn invalid(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
-/// A reader of Thrift's compact protocol that keeps integers only.
+/// Reader of Thrift's compact protocol that reports integers only.
 struct Thrift<R> {
     reader: R,
     format: Format,
     read: u64,
 }
 
-/// Told the path of fields and the value of an integer.
+/// Callback with the path of field numbers and the value of an integer.
 type Take<'a> = &'a mut dyn FnMut(&[i16], i64);
 
 impl<R: Read> Thrift<R> {
@@ -175,6 +178,8 @@ impl<R: Read> Thrift<R> {
             if byte == 0 {
                 return Ok(());
             }
+            // The upper half of the byte is the increment of the field number, or 0 if the number
+            // follows.
             id = match byte >> 4 {
                 0 => {
                     i16::try_from(self.integer()?).map_err(|_| invalid("a field has no number"))?
@@ -189,7 +194,7 @@ impl<R: Read> Thrift<R> {
         }
     }
 
-    /// A field's value, which is of the kind that the format says.
+    /// Reads the value of a field, which must be of the kind that the format defines.
     fn value(
         &mut self,
         kind: u8,
@@ -215,7 +220,7 @@ impl<R: Read> Thrift<R> {
         take: Take<'_>,
     ) -> io::Result<()> {
         match kind {
-            // Truth is in the kind.
+            // The kind itself is the truth value.
             1 | 2 => Ok(()),
             3 => self.byte().map(drop),
             4..=6 => {
@@ -234,9 +239,9 @@ impl<R: Read> Thrift<R> {
         }
     }
 
-    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in
-    /// neither a footer nor a page header, and the library passes over one without reading a byte
-    /// of it, however long it says to be.
+    /// Reads a list. Each entry takes at least one byte, so that a false count ends at the end of
+    /// the file. Lists of truth values are refused: neither a footer nor a page header has one, and
+    /// the library skips them without reading a byte, whatever count they declare.
     fn list(
         &mut self,
         path: &mut Vec<i16>,
@@ -246,6 +251,7 @@ impl<R: Read> Thrift<R> {
     ) -> io::Result<()> {
         let deeper = depth.checked_sub(1).ok_or_else(|| invalid("it is nested too deeply"))?;
         let head = self.byte()?;
+        // The upper half of the byte is the count, or 15 if a longer count follows.
         let (entries, count) = (head & 15, u64::from(head >> 4));
         let count = if count == 15 { self.varint()? } else { count };
         if count > 0 && expected.is_some_and(|expected| !expected.holds(entries)) {
@@ -279,7 +285,7 @@ impl<R: Read> Thrift<R> {
         Err(invalid("a number does not end"))
     }
 
-    /// Signs alternate.
+    /// Reads a zigzag-encoded integer.
     fn integer(&mut self) -> io::Result<i64> {
         let value = self.varint()?;
         Ok((value >> 1) as i64 ^ -((value & 1) as i64))

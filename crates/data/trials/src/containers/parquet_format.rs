@@ -1,11 +1,11 @@
-//! What kind of value each field of a Parquet footer and page header has (parquet-format 2.12,
+//! Kinds of value of the fields of a Parquet footer and page header (parquet-format 2.12,
 //! `parquet.thrift`).
 //!
-//! The library reads a field by its number and does not look at the kind that the file says it has.
-//! Where the two differ, it goes on from another byte than a reader by kinds does, so that what
-//! such a reader has found harmless says nothing. A file in which they differ is refused.
+//! The library reads a field by its number and ignores the kind that the file declares. Where the
+//! two differ, it continues at another byte than a reader that follows the kinds, so that the
+//! checks of such a reader would be worthless. A file in which they differ is refused.
 
-/// Kinds of Thrift's compact protocol; a truth is 1 or 2.
+/// Kinds of Thrift's compact protocol; a truth value is 1 or 2.
 const TRUTH: u8 = 1;
 const BYTE: u8 = 3;
 const I16: u8 = 4;
@@ -15,7 +15,7 @@ const BINARY: u8 = 8;
 const LIST: u8 = 9;
 const STRUCT: u8 = 12;
 
-/// The kind of a field, and of a list's entries.
+/// Kind of a field, and of the entries of a list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct FieldKind {
     kind: u8,
@@ -23,6 +23,7 @@ pub(crate) struct FieldKind {
 }
 
 impl FieldKind {
+    /// Both truth values, 1 and 2, are of one kind.
     pub fn is(self, kind: u8) -> bool {
         self.kind == if kind == 2 { TRUTH } else { kind }
     }
@@ -32,7 +33,8 @@ impl FieldKind {
     }
 }
 
-/// The kinds of fields by their path; none of those that the format does not know.
+/// Kinds of fields by their path of field numbers; `None` for fields that the format does not
+/// define.
 pub(crate) type Format = fn(&[i16]) -> Option<FieldKind>;
 
 fn of(kind: u8) -> Option<FieldKind> {
@@ -51,6 +53,7 @@ pub(crate) fn footer(path: &[i16]) -> Option<FieldKind> {
         [3] => of(I64),
         [6 | 9] => of(BINARY),
         [8] | [7, _] => of(STRUCT),
+        // Lists add nothing to the path: the fields of an entry follow the field of the list.
         [2, rest @ ..] => schema_element(rest),
         [4, rest @ ..] => row_group(rest),
         [5, rest @ ..] => key_value(rest),

@@ -1,4 +1,4 @@
-//! Where controls move, and how long the ship answers them.
+//! Detection of the cells in which controls move and the ship responds.
 
 use std::ops::Range;
 
@@ -6,12 +6,12 @@ use crate::segmentation::cells::Cells;
 use crate::segmentation::level::Levels;
 use crate::segmentation::thresholds::StretchThresholds;
 
-/// Judges cells one by one.
+/// Classification of single cells.
 pub(crate) struct Activity<'a> {
     cells: &'a Cells,
     levels: &'a Levels,
     limits: &'a StretchThresholds,
-    /// Cells in which the ship sails its length.
+    /// Number of cells in which the ship travels its length.
     lag: usize,
 }
 
@@ -20,7 +20,8 @@ impl<'a> Activity<'a> {
         Self { cells, levels, limits: &cells.limits, lag: cells.count(1.0) }
     }
 
-    /// Cells from the first movement of a control to the last answer of the ship, in order.
+    /// Returns the ranges of cells from the first movement of a control to the last response of the
+    /// ship, in order.
     pub(crate) fn manoeuvres(&self) -> Vec<Range<usize>> {
         let mut found: Vec<Range<usize>> = Vec::new();
         let apart = self.cells.count(self.limits.join);
@@ -31,6 +32,7 @@ impl<'a> Activity<'a> {
                 continue;
             }
             let end = self.answered(self.run(at));
+            // Movements that follow soon after the last response belong to the same manoeuvre.
             match found
                 .last_mut()
                 .filter(|last| at <= last.end + apart && self.is_whole(last.end, at))
@@ -40,17 +42,18 @@ impl<'a> Activity<'a> {
             }
             at = end;
         }
+        // Last, since joined movements may have a common response.
         found.retain(|range| self.is_answered(range));
         found
     }
 
-    /// The end of the cells in which controls go on moving.
+    /// Returns the end of the cells in which controls keep moving.
     fn run(&self, from: usize) -> usize {
         let next = |at: &usize| self.cells.follows(*at) && self.is_moved(*at);
         (from + 1..self.cells.all.len()).take_while(next).last().map_or(from + 1, |last| last + 1)
     }
 
-    /// The end of the cells in which the ship still answers.
+    /// Returns the end of the cells in which the ship still responds.
     fn answered(&self, from: usize) -> usize {
         let last = (from + self.cells.count(self.limits.follow)).min(self.cells.all.len());
         let next = |at: &usize| self.cells.follows(*at) && self.answers(*at);
@@ -61,12 +64,12 @@ impl<'a> Activity<'a> {
         (from..=to).all(|at| self.cells.follows(at))
     }
 
-    /// How far the rudder must be from its level.
+    /// Returns the deviation of the rudder from its level beyond which it is moved, rad.
     pub(crate) fn rudder_limit(&self, at: usize) -> f64 {
         (self.limits.controls * self.levels.at(at).rudder_scatter).max(self.limits.rudder_rad)
     }
 
-    /// Whether the rudder is off its level, or the revolutions have changed.
+    /// Returns true if the rudder is off its level, or the revolutions have changed.
     fn is_moved(&self, at: usize) -> bool {
         let (cell, steady) = (&self.cells.all[at], self.levels.at(at));
         (cell.rudder - steady.rudder).abs() > self.rudder_limit(at) || self.is_throttled(at)
@@ -78,6 +81,7 @@ impl<'a> Activity<'a> {
             return false;
         };
         let (now, then) = (self.cells.all[at].revolutions, self.cells.all[before].revolutions);
+        // Relative to the larger of both, so that stopping and starting count alike.
         let least = self.limits.revolutions * now.abs().max(then.abs());
         let scatter = self.limits.controls * self.levels.at(at).revolutions_scatter;
         (now - then).abs() > least.max(scatter)
@@ -87,7 +91,7 @@ impl<'a> Activity<'a> {
         self.is_turning(at, self.limits.answer) || self.is_changing_speed(at, self.limits.answer)
     }
 
-    /// Whether the yaw rate is off its level by so many scatters.
+    /// Returns true if the yaw rate is off its level by more than the given number of scatters.
     fn is_turning(&self, at: usize, scatters: f64) -> bool {
         let off = self.cells.all[at].yaw - self.levels.at(at).yaw;
         off.abs() > self.yaw_limit(at, scatters)
@@ -105,8 +109,8 @@ impl<'a> Activity<'a> {
         change > scatter.max(self.limits.speed * self.cells.scale.speed_m_s)
     }
 
-    /// Whether the ship answered beyond what it does in course keeping: a rudder that is tried
-    /// alongside moves no ship.
+    /// Returns true if the ship responded by more than in course keeping: a rudder that is tested
+    /// at the quay moves no ship.
     fn is_answered(&self, range: &Range<usize>) -> bool {
         let (k, mut all) = (self.limits.controls, range.clone());
         all.any(|at| self.is_turning(at, k) || self.is_changing_speed(at, k))

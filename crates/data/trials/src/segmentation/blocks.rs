@@ -1,32 +1,32 @@
-//! Means over short intervals, of which there are at most so many: when they are too many,
-//! neighbours are joined and intervals are twice as long.
+//! Means over short intervals, whose number is bounded: when there are too many, neighbours are
+//! joined and the intervals become twice as long.
 
 use crate::segmentation::sample::Sample;
 
-/// Intervals at most: 20 MB, and 2 s each in a log of eleven days.
+/// Largest number of intervals: 20 MB, and 2 s each in a log of eleven days.
 const MOST: usize = 1 << 19;
-/// The first intervals, s: a model of 3 m sails its length in 4 s.
+/// Initial length of the intervals, s: a model of 3 m travels its length in 4 s.
 const FIRST_S: f64 = 0.25;
 
-/// What is kept of an interval.
+/// Summary of an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Block {
-    /// The interval by its number since the first row.
+    /// Number of the interval, counted from the first row.
     pub at: u32,
     pub rows: u32,
-    /// Means.
+    /// Means of the rows.
     pub rudder: f32,
     pub rudder_square: f32,
     pub revolutions: f32,
     pub speed: f32,
-    /// Lowest and highest.
+    /// Lowest and highest rudder angle.
     pub rudder_low: f32,
     pub rudder_high: f32,
     /// Change of heading, rad.
     pub turned: f32,
 }
 
-/// What is summed of the interval that is being read.
+/// Sums over the current interval.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     rows: u32,
@@ -39,7 +39,7 @@ struct Sums {
     turned: f64,
 }
 
-/// Blocks of a log as it is read.
+/// Blocks of a log that is being read.
 #[derive(Debug)]
 pub(crate) struct Blocks {
     pub done: Vec<Block>,
@@ -47,19 +47,19 @@ pub(crate) struct Blocks {
     pub first_s: f64,
     pub last_s: f64,
     pub rows: u64,
-    /// Whether any row had it.
+    /// Channels that any row has had.
     pub has: Has,
     end_s: f64,
-    /// Between the two rows before.
+    /// Time between the two previous rows, s.
     step_s: f64,
     open: Sums,
-    /// What instruments showed last: a slower one holds until it shows more.
+    /// Last readings: a slower instrument holds its reading until the next.
     revolutions: f64,
     speed: f64,
     heading: f64,
 }
 
-/// Which channels a log has.
+/// Channels that a log has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Has {
     pub revolutions: bool,
@@ -85,7 +85,7 @@ impl Blocks {
         }
     }
 
-    /// Takes a row; one without a rudder angle, or not later than the last, is passed over.
+    /// Adds a row; one without a rudder angle, or not later than the last, is ignored.
     #[inline]
     pub(crate) fn push(&mut self, sample: &Sample) {
         let t_s = sample.t_s;
@@ -123,14 +123,14 @@ impl Blocks {
         }
     }
 
-    /// Change of heading since the row before: by the yaw rate where it is measured, along the
-    /// shorter way round otherwise.
+    /// Returns the change of heading since the previous row: by the yaw rate where it is measured,
+    /// otherwise along the shorter way.
     #[inline]
     fn turned(&mut self, sample: &Sample) -> f64 {
         let rate = sample.yaw_rate_rad_s;
         if rate.is_finite() {
             self.has.yaw = true;
-            // Nothing is known of a gap.
+            // The motion in a gap is not known: the rate counts for two sampling intervals at most.
             return rate * (sample.t_s - self.last_s).min(2.0 * self.step_s);
         }
         if !sample.heading_rad.is_finite() {
@@ -142,17 +142,20 @@ impl Blocks {
         if change.abs() <= std::f64::consts::PI {
             return change;
         }
+        // The first heading has no predecessor: the change is NaN, and counts as none.
         let turns = (change / std::f64::consts::TAU).round();
         if turns.is_finite() { change - turns * std::f64::consts::TAU } else { 0.0 }
     }
 
-    /// Closes the interval and opens that of a time.
+    /// Closes the current interval and opens that of a time.
     #[cold]
     fn next(&mut self, t_s: f64) {
         if self.rows == 0 {
             self.first_s = t_s;
         }
         self.close();
+        // Doubling the width at least halves the blocks of a log without gaps, so that memory stays
+        // bounded.
         while self.done.len() >= MOST || self.number(t_s) >= f64::from(u32::MAX) {
             self.widen();
         }
@@ -189,14 +192,14 @@ impl Blocks {
         self.done = joined(&self.done, 2);
     }
 
-    /// The blocks of the whole log.
+    /// Returns the blocks of the whole log.
     pub(crate) fn finish(mut self) -> Self {
         self.close();
         self
     }
 }
 
-/// Blocks that are so many times as long.
+/// Returns blocks that are `times` as long.
 pub(crate) fn joined(blocks: &[Block], times: u32) -> Vec<Block> {
     let mut out: Vec<Block> = Vec::with_capacity(blocks.len() / times as usize + 1);
     for block in blocks {
@@ -211,7 +214,9 @@ pub(crate) fn joined(blocks: &[Block], times: u32) -> Vec<Block> {
 
 impl Block {
     fn with(&self, other: &Self) -> Self {
+        // Means are weighted by the number of rows.
         let (own, others) = (self.rows as f32, other.rows as f32);
+        // A channel that one of the blocks lacks (NaN) has the mean of the other.
         let mean = |a: f32, b: f32| match (a.is_nan(), b.is_nan()) {
             (false, true) => a,
             (true, false) => b,

@@ -1,5 +1,5 @@
-//! The intervals that a log is judged by: about half of the time in which the ship sails its
-//! length.
+//! Cells, the intervals by which a log is judged: about half of the time in which the ship travels
+//! its length.
 
 use crate::segmentation::blocks::{Blocks, joined};
 use crate::segmentation::thresholds::StretchThresholds;
@@ -21,17 +21,17 @@ pub(crate) struct Cell {
     pub yaw: f64,
 }
 
-/// A log as cells, and the scale of time that they were made by.
+/// Log as cells, and the scale of time on which they are based.
 #[derive(Debug)]
 pub(crate) struct Cells {
     pub all: Vec<Cell>,
-    /// Of most cells, s.
+    /// Length of a cell, s.
     pub width_s: f64,
     pub scale: Scale,
     pub limits: StretchThresholds,
 }
 
-/// The ship's length, speed, and the time in which it sails its length.
+/// Length and speed of the ship, and the time in which it travels its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     pub length_m: f64,
@@ -40,7 +40,7 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Without a length that of a ship whose Froude number is usual.
+    /// Returns the scale of a ship; without a length, that of a ship with the usual Froude number.
     fn of(length_m: Option<f64>, speed_m_s: f64, froude: f64) -> Self {
         let usual = || (speed_m_s / froude).powi(2) / GRAVITY;
         let length_m = length_m.unwrap_or_else(usual);
@@ -49,13 +49,14 @@ impl Scale {
 }
 
 impl Cells {
-    /// Nothing where the ship never has way.
+    /// Converts blocks to cells; returns `None` if the ship never has way.
     pub(crate) fn of(
         blocks: &Blocks,
         length_m: Option<f64>,
         limits: StretchThresholds,
     ) -> Option<Self> {
         let scale = Scale::of(length_m, speed_under_way(blocks)?, limits.froude);
+        // A cell is a whole number of blocks, so that no block has to be split.
         let times = (limits.cell * scale.time_s / blocks.width_s).floor().clamp(1.0, 1e9);
         let width_s = times * blocks.width_s;
         let cell = |block: crate::segmentation::blocks::Block| {
@@ -70,6 +71,7 @@ impl Cells {
                 rudder_high: f64::from(block.rudder_high),
                 revolutions: f64::from(block.revolutions),
                 speed: f64::from(block.speed),
+                // The last cell may end before its interval does.
                 yaw: f64::from(block.turned) / width_s.min(blocks.last_s - from_s + 1e-9),
             }
         };
@@ -77,18 +79,18 @@ impl Cells {
         Some(Self { all, width_s, scale, limits })
     }
 
-    /// So many times the scale of time, in cells.
+    /// Returns the number of cells of `times` times the scale of time.
     pub(crate) fn count(&self, times: f64) -> usize {
         (times * self.scale.time_s / self.width_s).ceil() as usize
     }
 
-    /// Whether nothing is missing between a cell and the one before.
+    /// Returns true if no cell is missing between a cell and the previous one.
     pub(crate) fn follows(&self, at: usize) -> bool {
         at > 0 && self.all[at].from_s - self.all[at - 1].to_s < 0.5 * self.width_s
     }
 }
 
-/// The median speed where the ship has way: more than a tenth of the highest hundredth.
+/// Returns the median speed of the ship under way: faster than a tenth of the 99 % quantile.
 fn speed_under_way(blocks: &Blocks) -> Option<f64> {
     let speeds = blocks.done.iter().map(|block| f64::from(block.speed).abs());
     let mut speeds: Vec<f64> = speeds.filter(|speed| speed.is_finite()).collect();
@@ -97,7 +99,7 @@ fn speed_under_way(blocks: &Blocks) -> Option<f64> {
     quantile(&mut moving, 0.5).filter(|speed| *speed > 0.0)
 }
 
-/// The value that so many of all are below; reorders them.
+/// Returns the quantile of the values, which are reordered; `None` for no value.
 pub(crate) fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     let at = ((values.len() as f64 * share) as usize).min(values.len().checked_sub(1)?);
     Some(*values.select_nth_unstable_by(at, f64::total_cmp).1)

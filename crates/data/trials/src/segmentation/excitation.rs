@@ -1,37 +1,39 @@
-//! How much a stretch excites: what a fit can tell of the model depends on it.
+//! Excitation of a segment, on which the information for a fit depends.
 
 use serde::Serialize;
 
 use crate::segmentation::cells::Cell;
 use crate::segmentation::level::Steady;
 
-/// Figures of a stretch.
+/// Measures of the excitation of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Excitation {
     /// Root mean square of the rudder about its steady level, deg.
     pub rudder_rms_deg: f64,
-    /// Lowest and highest rudder angle, deg.
+    /// Lowest rudder angle, deg.
     pub rudder_low_deg: f64,
-    /// See `rudder_low_deg`.
+    /// Highest rudder angle, deg.
     pub rudder_high_deg: f64,
-    /// How often the rudder was put over to the other side.
+    /// Number of times that the rudder was moved to the other side.
     pub rudder_reversals: usize,
     /// Root mean square of the yaw rate, deg/s.
     pub yaw_rate_rms_deg_s: f64,
     /// Highest yaw rate to either side, deg/s.
     pub yaw_rate_max_deg_s: f64,
-    /// From the lowest heading to the highest, deg.
+    /// Range of the heading, deg.
     pub heading_range_deg: f64,
-    /// From the highest speed to the lowest, by the ship's usual speed, dimensionless.
+    /// Range of the speed, divided by the usual speed of the ship, dimensionless.
     pub speed_range: f64,
 }
 
 impl Excitation {
-    /// Of cells, about the steady level.
+    /// Computes the excitation of cells about the steady level.
     pub(crate) fn of(cells: &[Cell], steady: &Steady, reversals: usize, speed_m_s: f64) -> Self {
         let count = cells.len().max(1) as f64;
         let mean = |of: &dyn Fn(&Cell) -> f64| cells.iter().map(of).sum::<f64>() / count;
         let level = steady.rudder;
+        // Mean of (rudder - level)^2 from the means of rudder and rudder^2; rounding may make it
+        // negative.
         let square =
             mean(&|cell| cell.rudder_square - 2.0 * level * cell.rudder + level * level).max(0.0);
         let yaw = mean(&|cell| cell.yaw * cell.yaw);
@@ -50,14 +52,14 @@ impl Excitation {
     }
 }
 
-/// Lowest and highest.
+/// Returns the lowest and the highest value.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     })
 }
 
-/// From the lowest heading to the highest, rad.
+/// Returns the range of the heading, rad, relative to that at the start.
 pub(crate) fn heading(cells: &[Cell]) -> f64 {
     let mut psi = 0.0;
     let (low, high) = range(cells.iter().map(|cell| {

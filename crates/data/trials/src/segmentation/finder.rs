@@ -1,4 +1,4 @@
-//! The whole: rows in, stretches and steady spans out.
+//! Segmentation of a log: rows in, segments and steady spans out.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::segmentation::spans::Span;
 use crate::segmentation::stretch::Stretch;
 use crate::segmentation::thresholds::{StretchThresholds, THRESHOLDS};
 
-/// Takes the rows of a log in order.
+/// Finder of the segments of a log, which takes its rows in order.
 #[derive(Debug)]
 pub struct Finder {
     length_m: Option<f64>,
@@ -19,26 +19,26 @@ pub struct Finder {
     blocks: Blocks,
 }
 
-/// What was found in a log.
+/// Result of the segmentation of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// In order of time; none overlaps another.
+    /// Segments in order of time, without overlap.
     pub stretches: Vec<Stretch>,
-    /// Steady course keeping between them.
+    /// Spans of steady course keeping between the segments.
     pub steady: Vec<Span>,
-    /// From the first row to the last.
+    /// Span from the first row to the last.
     pub whole: Span,
-    /// Rows that were looked at.
+    /// Number of rows that were used.
     pub rows: u64,
-    /// The length by which time is measured, m: as given, or by the speed.
+    /// Length of the ship by which time is scaled, m: as given, or from the speed.
     pub length_m: f64,
-    /// The median speed under way, m/s.
+    /// Median speed under way, m/s.
     pub speed_m_s: f64,
     /// Scatter of the rudder in course keeping, rad.
     pub rudder_scatter_rad: f64,
 }
 
-/// Why a log cannot be searched.
+/// Reason for which a log cannot be segmented.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NotSearched {
     /// There is no row with a rudder angle.
@@ -47,30 +47,31 @@ pub enum NotSearched {
     /// There is no speed.
     #[error("no column of the speed: map `u`, or `speed` over ground")]
     Speed,
-    /// There is nothing that tells how the ship turns.
+    /// There is neither a yaw rate nor a heading.
     #[error("no column of the yaw rate or the heading: map `r` or `psi`")]
     Yaw,
-    /// The ship lies still.
+    /// The ship never moves.
     #[error("the ship never has way")]
     Still,
 }
 
 impl Finder {
-    /// For a ship of a length, m; without one it is guessed by the speed.
+    /// Creates a finder for a ship of the given length, m; without one it is estimated from the
+    /// speed.
     pub fn new(length_m: Option<f64>) -> Self {
         Self { length_m, limits: THRESHOLDS, blocks: Blocks::new() }
     }
 
-    /// Takes the next row.
+    /// Adds the next row.
     #[inline]
     pub fn push(&mut self, sample: &Sample) {
         self.blocks.push(sample);
     }
 
-    /// The stretches, after the last row.
+    /// Returns the segments, after the last row.
     ///
     /// # Errors
-    /// The log lacks a channel without which nothing can be told.
+    /// Returns an error if the log lacks a channel that is needed, or the ship never has way.
     pub fn finish(self) -> Result<Found, NotSearched> {
         let blocks = self.blocks.finish();
         match blocks.has {
@@ -79,6 +80,7 @@ impl Finder {
             has if !has.yaw => return Err(NotSearched::Yaw),
             _ => {}
         }
+        // Each step needs the previous one: cells, levels, movements, spans.
         let cells = Cells::of(&blocks, self.length_m, self.limits).ok_or(NotSearched::Still)?;
         let levels = Levels::of(&cells);
         let activity = Activity::new(&cells, &levels);
@@ -102,23 +104,24 @@ impl Finder {
 }
 
 impl Found {
-    /// Whether it is a log rather than a trial: much longer, and most of it steady.
+    /// Returns true if the record is a log rather than a trial: much longer, and mostly steady.
     pub fn is_log(&self) -> bool {
         let long = THRESHOLDS.log * self.length_m / self.speed_m_s;
         let moved: f64 = self.stretches.iter().map(|stretch| stretch.span.duration_s()).sum();
         self.whole.duration_s() > long && moved <= THRESHOLDS.most * self.whole.duration_s()
     }
 
-    /// Time in steady course keeping, s.
+    /// Returns the time in steady course keeping, s.
     pub fn steady_s(&self) -> f64 {
         self.steady.iter().map(Span::duration_s).sum()
     }
 }
 
-/// With the approach and the time to settle; where two would overlap they meet halfway.
+/// Returns the spans of the ranges with approach and settling time; where two would overlap, they
+/// meet halfway.
 fn spans(cells: &Cells, ranges: &[Range<usize>], whole: Span) -> Vec<Span> {
     let time_s = cells.scale.time_s;
-    // A movement may begin at the end of the cell before that in which it is seen.
+    // A movement may begin at the end of the cell before the one in which it is detected.
     let lead_s = cells.limits.lead * time_s + cells.width_s;
     let core =
         |range: &Range<usize>| (cells.all[range.start].from_s, cells.all[range.end - 1].to_s);

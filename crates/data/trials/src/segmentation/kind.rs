@@ -1,4 +1,4 @@
-//! What was sailed in a stretch, by its controls and the answer to them.
+//! Classification of the manoeuvre in a segment by its controls and the response of the ship.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::segmentation::excitation::heading;
 use crate::segmentation::level::Steady;
 use crate::segmentation::thresholds::KINDS;
 
-/// What a stretch most resembles.
+/// Manoeuvre that a segment most resembles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -23,7 +23,7 @@ pub enum Kind {
     Stop,
     /// The revolutions change, the rudder does not.
     SpeedChange,
-    /// Less than half a turn.
+    /// The heading changes by less than half a turn.
     CourseChange,
     /// The rudder moves, and the heading returns.
     RudderMovement,
@@ -51,12 +51,13 @@ pub(crate) struct Hold {
     pub to_starboard: bool,
 }
 
-/// Runs of cells with much rudder, one for each change of side.
+/// Returns the runs of cells with large rudder angles, one for each change of side.
 pub(crate) fn holds(cells: &[Cell], level: f64, limit: f64) -> Vec<Hold> {
     let largest = cells.iter().map(|cell| (cell.rudder - level).abs()).fold(0.0, f64::max);
     if largest <= limit {
         return Vec::new();
     }
+    // Small angles between two holds, such as meeting a turn, are not holds.
     let least = limit.max(KINDS.hold * largest);
     let mut holds: Vec<Hold> = Vec::new();
     for (at, cell) in cells.iter().enumerate() {
@@ -73,19 +74,19 @@ pub(crate) fn holds(cells: &[Cell], level: f64, limit: f64) -> Vec<Hold> {
     holds
 }
 
-/// What is known of the cells of a manoeuvre.
+/// Data of a manoeuvre by which it is classified.
 pub(crate) struct Observed<'a> {
     pub cells: &'a [Cell],
     pub holds: &'a [Hold],
     pub steady: Steady,
-    /// Yaw rate beyond which the ship turns, rad/s.
+    /// Yaw rate above which the ship turns, rad/s.
     pub yaw_limit: f64,
     /// Angle up to which the rudder is amidships, rad.
     pub rudder_limit: f64,
-    /// Speed and revolutions before.
+    /// Speed and revolutions before the manoeuvre.
     pub speed: f64,
     pub revolutions: f64,
-    /// Cells for which the rudder is amidships in a pull-out.
+    /// Number of cells for which the rudder is amidships in a pull-out.
     pub pull_out: usize,
 }
 
@@ -114,15 +115,18 @@ impl Observed<'_> {
         }
     }
 
-    /// Whether the propeller is stopped or reversed, and most of the speed is lost.
+    /// Returns true if the propeller is stopped or reversed, and most of the speed is lost.
     fn is_stop(&self) -> bool {
         let slowest = self.cells.iter().map(|cell| cell.speed).fold(f64::INFINITY, f64::min);
+        // Relative to the sign of the revolutions before, so that reversed propellers count as
+        // negative.
         let least = self.cells.iter().map(|cell| cell.revolutions * self.revolutions.signum());
         let least = least.fold(f64::INFINITY, f64::min);
         slowest < KINDS.stopped * self.speed && least < 0.1 * self.revolutions.abs()
     }
 
-    /// Whether the ship goes on turning to the side of the rudder while that is amidships.
+    /// Returns true if the ship continues to turn to the side of the rudder while that is
+    /// amidships.
     fn is_pull_out(&self) -> bool {
         let Some(hold) = self.holds.first() else { return false };
         let side = if hold.to_starboard { 1.0 } else { -1.0 };
@@ -130,7 +134,7 @@ impl Observed<'_> {
             (cell.rudder - self.steady.rudder).abs() <= self.rudder_limit
                 && side * (cell.yaw - self.steady.yaw) > self.yaw_limit
         };
-        // The rudder passes through in the first cell.
+        // The first cell is skipped: the rudder moves to amidships in it.
         let after = self.cells[hold.to..].iter().skip(1).take_while(turns_on).count();
         after >= self.pull_out
     }

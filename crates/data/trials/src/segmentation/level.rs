@@ -1,22 +1,22 @@
-//! What is steady in course keeping: the level of rudder and yaw rate and their scatter, hour by
-//! hour from the log itself, since weather and load change.
+//! Steady level and scatter of rudder and yaw rate in course keeping, in moving windows of the log
+//! itself, since weather and load change.
 
 use crate::segmentation::cells::{Cell, Cells, quantile};
 use crate::segmentation::thresholds::StretchThresholds;
 
-/// Level and scatter of what is watched.
+/// Level and scatter of rudder, yaw rate, revolutions and speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Steady {
     pub rudder: f64,
     pub rudder_scatter: f64,
     pub yaw: f64,
     pub yaw_scatter: f64,
-    /// Of the change of revolutions and of speed within the time of a length sailed.
+    /// Scatter of the change of revolutions, and of speed, within the time of one length travelled.
     pub revolutions_scatter: f64,
     pub speed_scatter: f64,
 }
 
-/// The steady level at each cell.
+/// Steady level at each cell.
 #[derive(Debug)]
 pub(crate) struct Levels {
     each: Vec<Steady>,
@@ -25,6 +25,8 @@ pub(crate) struct Levels {
 
 impl Levels {
     pub(crate) fn of(cells: &Cells) -> Self {
+        // Windows of two steps overlap by half, and the levels of a step come from the window about
+        // it.
         let step = (cells.count(cells.limits.level) / 2).max(1);
         let starts = (0..cells.all.len()).step_by(step);
         let own: Vec<Steady> = starts
@@ -41,14 +43,15 @@ impl Levels {
         self.each[(cell / self.step).min(self.each.len() - 1)]
     }
 
-    /// The scatter of the rudder in most of the log.
+    /// Returns the scatter of the rudder in most of the log.
     pub(crate) fn rudder_scatter(&self) -> f64 {
         let mut scatters: Vec<f64> = self.each.iter().map(|steady| steady.rudder_scatter).collect();
         quantile(&mut scatters, 0.5).unwrap_or(0.0)
     }
 }
 
-/// The scatter is the largest nearby: where the sea gets up, half of a window is calm.
+/// Returns the level of a window with the largest scatter of its neighbours: where the sea rises,
+/// half of a window is still calm.
 fn with_neighbours(own: &[Steady], at: usize) -> Steady {
     let near = &own[at.saturating_sub(1)..(at + 2).min(own.len())];
     let most = |of: fn(&Steady) -> f64| near.iter().map(of).fold(0.0, f64::max);
@@ -79,7 +82,8 @@ fn steady(cells: &[Cell], lag: usize, limits: &StretchThresholds) -> Steady {
     }
 }
 
-/// The median, and the standard deviation of a normal distribution whose inner part is as wide.
+/// Returns the median, and the standard deviation of the normal distribution whose inner part is
+/// equally wide.
 fn level(values: &mut dyn Iterator<Item = f64>, limits: &StretchThresholds) -> (f64, f64) {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     let middle = quantile(&mut values, 0.5).unwrap_or(0.0);

@@ -1,9 +1,10 @@
-//! The stretches of a long log in which rudder or propeller move beyond course keeping.
+//! Segmentation of a long log: the segments in which rudder or propeller move beyond course
+//! keeping.
 //!
-//! A [`Finder`] takes the rows of a log one at a time and keeps means of short intervals only, so
-//! that a month needs no more memory than a day. It knows channels and a ship's length, and no
-//! model. [`Found`] has the stretches with what they excite and why they were taken, and the spans
-//! of steady course keeping between them.
+//! A [`SegmentFinder`] takes the rows of a log one at a time and stores means of short intervals
+//! only, so that a month needs no more memory than a day. It uses the channels and the length of
+//! the ship, and no model. [`SegmentationResult`] contains the segments with their excitation and
+//! the reason of their selection, and the spans of steady course keeping between them.
 
 mod active;
 mod blocks;

@@ -1,6 +1,6 @@
-//! One row of a log.
+//! Row of a log.
 
-/// What a row says, in SI units and radians; NaN for what it does not.
+/// Values of a row, in SI units and radians; NaN for missing values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Time, s.
@@ -9,7 +9,7 @@ pub struct Sample {
     pub rudder_rad: f64,
     /// Propeller revolutions, 1/s.
     pub revolutions_rps: f64,
-    /// Yaw rate, rad/s; the heading is taken where it is not measured.
+    /// Yaw rate, rad/s; the heading is used where it is not measured.
     pub yaw_rate_rad_s: f64,
     /// Heading, rad, continuous or not.
     pub heading_rad: f64,

@@ -1,23 +1,24 @@
-//! Times from and to.
+//! Spans of time.
 
 use serde::Serialize;
 
-/// A part of a log.
+/// Span of time of a log.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Span {
-    /// Its first time, s.
+    /// First time, s.
     pub from_s: f64,
-    /// Its last, s.
+    /// Last time, s.
     pub to_s: f64,
 }
 
 impl Span {
-    /// How long it is, s.
+    /// Returns the duration, s.
     pub fn duration_s(&self) -> f64 {
         self.to_s - self.from_s
     }
 
-    /// What is left of a whole between spans in order, where it is so long.
+    /// Returns the parts of a whole between spans in ascending order, if they are at least
+    /// `least_s` long.
     pub(crate) fn between(whole: Self, spans: &[Self], least_s: f64) -> Vec<Self> {
         let starts = std::iter::once(whole.from_s).chain(spans.iter().map(|span| span.to_s));
         let ends = spans.iter().map(|span| span.from_s).chain([whole.to_s]);

@@ -1,4 +1,4 @@
-//! A stretch of a log, and why it was taken.
+//! Segment of a log, and the reason of its selection.
 
 use serde::Serialize;
 
@@ -11,22 +11,23 @@ use crate::segmentation::spans::Span;
 use crate::segmentation::thresholds::KINDS;
 use std::ops::Range;
 
-/// A stretch in which the controls move.
+/// Segment in which the controls move.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stretch {
-    /// With a steady approach, and until the ship is steady again.
+    /// Span with a steady approach, until the ship is steady again.
     #[serde(flatten)]
     pub span: Span,
-    /// What was most likely sailed.
+    /// Most likely manoeuvre.
     pub kind: Kind,
-    /// What it excites.
+    /// Excitation.
     pub excitation: Excitation,
-    /// Why it was taken, in words.
+    /// Reason of the selection, in words.
     pub why: String,
 }
 
 impl Stretch {
-    /// Of cells from the first movement to the last answer; `span` has the time before and after.
+    /// Creates a segment of the cells from the first movement to the last response; `span` includes
+    /// the time before and after.
     pub(crate) fn of(
         cells: &Cells,
         levels: &Levels,
@@ -37,6 +38,8 @@ impl Stretch {
         let (inner, steady) = (&cells.all[range.clone()], levels.at(range.start));
         let limit = activity.rudder_limit(range.start);
         let holds = holds(inner, steady.rudder, limit);
+        // Speed and revolutions one length before the first movement, as the reference of the
+        // manoeuvre.
         let before = &cells.all[range.start.saturating_sub(cells.count(1.0).max(1))];
         let observed = Observed {
             cells: inner,
@@ -49,6 +52,7 @@ impl Stretch {
             pull_out: cells.count(KINDS.pull_out),
         };
         let kind = observed.kind();
+        // Consecutive holds are on alternate sides: one reversal between two.
         let reversals = holds.len().saturating_sub(1);
         let excitation = Excitation::of(inner, &steady, reversals, cells.scale.speed_m_s);
         let why = why(kind, inner, &holds, &excitation, before);

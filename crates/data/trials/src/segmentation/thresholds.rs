@@ -1,23 +1,23 @@
-//! Constants that decide what is a stretch, with symbol, meaning, unit and source.
+//! Constants of the segmentation, with symbol, meaning, unit and source.
 //!
-//! `T = L/U` is the time in which a ship sails its own length. Where the source is the test table,
-//! `finder_tests.rs` holds that half and double find the same manoeuvres.
+//! `T = L/U` is the time in which a ship travels its own length. Where the source is the test
+//! table, `finder_tests.rs` checks that half and double the value find the same manoeuvres.
 
-/// How course keeping and movements of the controls are told apart.
+/// Thresholds between course keeping and movements of the controls.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StretchThresholds {
-    /// `Fn`: Froude number that tells a length from a speed where none is given, dimensionless.
-    /// Source: merchant ships in service have 0.15 to 0.25 (Molland, Turnock and Hudson, Ship
-    /// Resistance and Propulsion, 2011).
+    /// `Fn`: Froude number by which a length is estimated from a speed if none is given,
+    /// dimensionless. Source: merchant ships in service have 0.15 to 0.25 (Molland, Turnock and
+    /// Hudson, Ship Resistance and Propulsion, 2011).
     pub froude: f64,
     /// `t_c`: time over which rudder, revolutions and yaw are averaged, by `T`. Source: derived:
     /// longer than the period of waves met (6 to 12 s, where `T` is 15 to 40 s), shorter than a
     /// zigzag holds its rudder (2 to 4 `T`).
     pub cell: f64,
-    /// `t_w`: time over which the steady level and scatter are taken, by `T`. Source: the test
+    /// `t_w`: time over which the steady level and scatter are determined, by `T`. Source: the test
     /// table; at 10 knots and 150 m about two hours, in which weather and load hardly change.
     pub level: f64,
-    /// `q`: share of the deviations from the median that is taken for steady, dimensionless; their
+    /// `q`: fraction of the deviations from the median that counts as steady, dimensionless; their
     /// quantile `q` is divided by that of a standard normal distribution. Source: derived: a median
     /// absolute deviation (0.5) breaks down when half of the time is manoeuvring, this one when
     /// three quarters are.
@@ -29,45 +29,46 @@ pub(crate) struct StretchThresholds {
     /// variable is beyond six once in 5e8; a month has 1e5 to 1e6 intervals. The test table has
     /// half and double.
     pub controls: f64,
-    /// `delta_0`: least movement of the rudder, rad. Source: derived: half of the 5 deg of the
-    /// smallest zigzag that is sailed as a standard.
+    /// `delta_0`: smallest movement of the rudder, rad. Source: derived: half of the 5 deg of the
+    /// smallest standard zigzag.
     pub rudder_rad: f64,
-    /// `dn_0`: least change of revolutions, by their median. Source: derived: in a seaway they vary
-    /// by one or two hundredths; the test table.
+    /// `dn_0`: smallest change of revolutions, by their median. Source: derived: in a seaway they
+    /// vary by one or two hundredths; the test table.
     pub revolutions: f64,
-    /// `k_a`: scatters of yaw rate and speed beyond which the ship still answers, dimensionless.
-    /// Source: derived: exceeded by chance once in 370 intervals, so that ends are not put off.
+    /// `k_a`: scatters of yaw rate and speed beyond which the ship still responds, dimensionless.
+    /// Source: derived: exceeded by chance once in 370 intervals, so that ends are not delayed.
     pub answer: f64,
-    /// `r'_0`: least yaw rate that is an answer, by `U/L`. Source: derived: a tenth of what a
-    /// 10/10 zigzag reaches (0.2 to 0.3 by IMO MSC.137(76) and its ships).
+    /// `r'_0`: smallest yaw rate that is a response, by `U/L`. Source: derived: a tenth of that in
+    /// a 10/10 zigzag (0.2 to 0.3 by IMO MSC.137(76) and its ships).
     pub yaw: f64,
-    /// `du_0`: least change of speed within `T` that is an answer, by `U`. Source: the test table.
+    /// `du_0`: smallest change of speed within `T` that is a response, by `U`. Source: the test
+    /// table.
     pub speed: f64,
     /// `t_j`: movements closer than this are one manoeuvre, by `T`. Source: derived: a ship has
-    /// answered a rudder after 2 to 4 lengths (its time constant `T'` is 0.5 to 4).
+    /// responded to a rudder after 2 to 4 lengths (its time constant `T'` is 0.5 to 4).
     pub join: f64,
-    /// `t_a`: longest time that the ship is followed while it answers, by `T`. Source: stopping
+    /// `t_a`: longest time for which the response of the ship is followed, by `T`. Source: stopping
     /// from full speed takes 15 lengths of track at most (IMO MSC.137(76)), at half the speed on
     /// average 30 `T`.
     pub follow: f64,
-    /// `t_l`: steady approach before the first movement, by `T`. Source: derived: a start is taken
-    /// from it, and windows of a regression need a few samples.
+    /// `t_l`: steady approach before the first movement, by `T`. Source: derived: the initial state
+    /// is determined from it, and windows of a regression need a few samples.
     pub lead: f64,
-    /// `t_s`: time after the last answer, by `T`. Source: as `t_l`.
+    /// `t_s`: time after the last response, by `T`. Source: as `t_l`.
     pub settle: f64,
     /// `t_log`: records longer than this are logs, by `T`. Source: derived: three full circles and
-    /// a zigzag of five reversals are sailed within 100; a programme of a whole afternoon within
+    /// a zigzag of five reversals take less than 100; a programme of a whole afternoon less than
     /// 400.
     pub log: f64,
-    /// Share of a log that its stretches are at most, dimensionless. Source: derived from `q`:
-    /// beyond, what is steady is not known well.
+    /// Largest fraction of a log that its segments may be, dimensionless. Source: derived from `q`:
+    /// beyond, the steady level is not known well.
     pub most: f64,
     /// `t_d`: steady spans shorter than this are not listed, by `T`. Source: derived: a drift of
-    /// the model shows over many lengths sailed, and a list is to be read.
+    /// the model shows over many ship lengths, and a list should be readable.
     pub steady: f64,
 }
 
-/// The values.
+/// Values of the thresholds.
 pub(crate) const THRESHOLDS: StretchThresholds = StretchThresholds {
     froude: 0.2,
     cell: 0.5,
@@ -89,29 +90,30 @@ pub(crate) const THRESHOLDS: StretchThresholds = StretchThresholds {
     steady: 50.0,
 };
 
-/// How manoeuvres are named.
+/// Thresholds of the classification of manoeuvres.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct KindThresholds {
-    /// Part of the largest rudder angle that counts as holding it, dimensionless. Source: derived:
-    /// a helmsman who meets a turn uses less than he turned with, a zigzag the same angle.
+    /// Fraction of the largest rudder angle that counts as holding it, dimensionless. Source:
+    /// derived: a helmsman who meets a turn uses less than in the turn, a zigzag the same angle.
     pub hold: f64,
-    /// Holds of alternating sides that are a zigzag, a count. Source: ITTC 7.5-04-02-01: one
-    /// execute and two reversals give the first two overshoots.
+    /// Number of holds of alternating sides that form a zigzag, a count. Source: ITTC 7.5-04-02-01:
+    /// one execute and two reversals give the first two overshoots.
     pub zigzag: usize,
-    /// Change of heading from which a turn is one, rad. Source: ITTC 7.5-04-02-01: the tactical
-    /// diameter is taken at half a turn.
+    /// Change of heading from which a manoeuvre is a turn, rad. Source: ITTC 7.5-04-02-01: the
+    /// tactical diameter is measured at half a turn.
     pub turn_rad: f64,
-    /// Change of heading that is a course change, rad. Source: as `turn_rad`: figures of the
-    /// initial turn are taken from 10 deg; half of it.
+    /// Change of heading from which a manoeuvre is a course change, rad. Source: as `turn_rad`:
+    /// figures of the initial turn are measured from 10 deg; half of it.
     pub course_rad: f64,
-    /// Time that the rudder is amidships while the ship turns on, for a pull-out, by `T`. Source:
-    /// derived: longer than the rudder passes amidships when a turn is met.
+    /// Time for which the rudder is amidships while the ship continues to turn, for a pull-out, by
+    /// `T`. Source: derived: longer than the rudder passes amidships when a turn is met.
     pub pull_out: f64,
-    /// Speed left, by that before, below which a stop is one, dimensionless. Source: derived.
+    /// Remaining speed, divided by that before, below which a manoeuvre is a stop, dimensionless.
+    /// Source: derived.
     pub stopped: f64,
 }
 
-/// The values.
+/// Values of the thresholds of the classification.
 pub(crate) const KINDS: KindThresholds = KindThresholds {
     hold: 0.4,
     zigzag: 3,

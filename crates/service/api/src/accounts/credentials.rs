@@ -1,4 +1,4 @@
-//! What a process knows of credentials beside its store.
+//! Credentials that a process holds, apart from its store.
 
 use std::sync::Arc;
 
@@ -11,14 +11,14 @@ use sistership_web_support::known::Known;
 use sistership_web_support::problem::{Problem, Result};
 use tokio::sync::Semaphore;
 
-/// What a process knows of credentials beside its store.
+/// Credentials that a process holds, apart from its store.
 pub struct Credentials {
     key: Option<ApiKey>,
     people: bool,
     provider: Option<Provider>,
     pub(crate) known: Known,
     pub(crate) attempts: Attempts,
-    /// Passwords that are hashed at a time.
+    /// Permits for the passwords that are hashed at a time.
     seats: Arc<Semaphore>,
 }
 
@@ -30,8 +30,8 @@ pub struct Accounts<'a> {
 }
 
 impl Credentials {
-    /// Of a server with its one key or without, which lets `people` sign in or not; by a provider,
-    /// too, where there is one. Passwords are hashed on `seats`.
+    /// Returns the credentials of a server with its one key or without, which lets `people` sign in
+    /// or not, also at a provider if there is one. Passwords are hashed under permits of `seats`.
     pub fn new(
         key: Option<&str>,
         people: bool,
@@ -43,22 +43,22 @@ impl Credentials {
         Self { key, people, provider, known, attempts, seats }
     }
 
-    /// The accounts of a store.
+    /// Returns the accounts of a store.
     pub fn of<'a>(&'a self, store: &'a Store) -> Accounts<'a> {
         Accounts { credentials: self, store }
     }
 
-    /// The server's one key.
+    /// The server's one key, if it has one.
     pub fn key(&self) -> Option<&ApiKey> {
         self.key.as_ref()
     }
 
-    /// Whether people sign in.
+    /// Returns true if people sign in.
     pub fn has_people(&self) -> bool {
         self.people
     }
 
-    /// Whether nobody is asked who they are: without a key, on this machine's own interface.
+    /// Returns true if callers are not identified: without a key, on this machine's own interface.
     pub fn is_open(&self) -> bool {
         self.key.is_none() && !self.people
     }
@@ -68,11 +68,12 @@ impl Credentials {
         self.provider.as_ref()
     }
 
-    /// Hashes away from the threads that serve.
+    /// Computes a hash on a blocking thread.
     pub(crate) async fn compute<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
+        // A request that is dropped while it waits gives its place up.
         let seat = Arc::clone(&self.seats).acquire_owned().await.map_err(Problem::internal)?;
         let task = tokio::task::spawn_blocking(budget::carried(move || {
             let _seat = seat;
@@ -83,7 +84,7 @@ impl Credentials {
 }
 
 impl Accounts<'_> {
-    /// Forgets what was looked up: somebody's rights have changed.
+    /// Clears the cache of principals, as somebody's rights have changed.
     pub fn forget(&self) {
         self.credentials.known.forget();
     }

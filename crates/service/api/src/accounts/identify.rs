@@ -1,4 +1,5 @@
-//! Who asks: by a key, by the session of a browser, or by being on this machine.
+//! Identification of the caller: by a key, by the session of a browser, or by being on this
+//! machine.
 
 use std::sync::Arc;
 
@@ -14,18 +15,18 @@ use sistership_web_support::problem::{Problem, Result};
 use crate::accounts::credentials::Accounts;
 use crate::accounts::grants::rights;
 
-/// The cookie of a session.
+/// Name of the session cookie.
 pub const COOKIE: &str = "sistership_session";
 
-/// A key's use is noted no oftener than this, µs.
+/// Shortest interval at which the use of a key is recorded, µs.
 const NOTED_EVERY: i64 = 60_000_000;
 
-/// Why nobody is recognised.
+/// Reason for which a caller is not identified.
 #[derive(Debug)]
 pub enum Refusal {
-    /// Something else is wrong.
+    /// Another error.
     Problem(Problem),
-    /// A key was presented, and is no key.
+    /// A key was presented that is not valid.
     WrongKey(Problem),
 }
 
@@ -38,10 +39,13 @@ impl From<Problem> for Refusal {
 type Identified = std::result::Result<Arc<Principal>, Refusal>;
 
 impl Accounts<'_> {
-    /// Who asks.
+    /// Returns the caller of a request; `own` is true if a page of this server sends it.
+    ///
+    /// # Errors
+    /// Returns 401 without valid credentials, marked as a wrong key if one was presented.
     pub async fn identify(&self, method: &Method, headers: &HeaderMap, own: bool) -> Identified {
-        // Browsers send some things by themselves, also on behalf of other sites: good enough to
-        // look, not to change, unless the browser says that a page of this server asks.
+        // Browsers send some credentials by themselves, also on behalf of other sites: good enough
+        // to read, not to change, unless the browser says that a page of this server asks.
         let by_browser = method.is_safe() || own;
         if let Some(found) = self.presented(headers, by_browser).await? {
             return Ok(found);
@@ -55,8 +59,7 @@ impl Accounts<'_> {
         }
     }
 
-    /// Whoever the header `Authorization` shows; none where it is missing, or nobody is asked for
-    /// it.
+    /// Returns the caller by the header `Authorization`; `None` if it is missing, or not needed.
     async fn presented(
         &self,
         headers: &HeaderMap,
@@ -79,9 +82,10 @@ impl Accounts<'_> {
         }
     }
 
-    /// Whoever a service key stands for.
+    /// Returns the caller of a service key.
     async fn service(&self, text: &str) -> Result<Option<Arc<Principal>>> {
         let Some(prefix) = ServiceKey::prefix(text) else { return Ok(None) };
+        // The cache is cleared whenever rights change.
         if let Some(found) = self.credentials.known.get(text) {
             return Ok(Some(found));
         }
@@ -103,7 +107,7 @@ impl Accounts<'_> {
         Ok(Some(self.credentials.known.put(text, Principal { name, rights, kind: Kind::Key })))
     }
 
-    /// Notes beside the request, which does not wait for it, that a key is used.
+    /// Records that a key is used. The request does not wait for it.
     fn note_use(&self, row: &KeyRow) {
         if row.last_used_us.is_some_and(|last| self.store.now_us() - last < NOTED_EVERY) {
             return;
@@ -116,12 +120,13 @@ impl Accounts<'_> {
         });
     }
 
-    /// Whoever has signed in with this browser.
+    /// Returns the user who has signed in with this browser.
     pub(crate) async fn session(&self, headers: &HeaderMap) -> Result<Option<Arc<Principal>>> {
         let Some(secret) = cookie(headers, COOKIE) else { return Ok(None) };
         if let Some(found) = self.credentials.known.get(secret) {
             return Ok(Some(found));
         }
+        // The store has only the hash of the secret.
         let hash = hex(&sha256(secret));
         let Some(session) = self.store.sessions().find(&hash).await? else { return Ok(None) };
         let user = self.store.users().get(&session.user_name).await?;
@@ -143,7 +148,7 @@ fn needed() -> Problem {
     )
 }
 
-/// The key of a header, and whether a browser sends it by itself.
+/// Returns the key of a header, and whether a browser sends it by itself.
 fn key_of(value: &str) -> Option<(String, bool)> {
     let (scheme, rest) = value.split_once(' ')?;
     match scheme.to_ascii_lowercase().as_str() {
@@ -153,13 +158,13 @@ fn key_of(value: &str) -> Option<(String, bool)> {
     }
 }
 
-/// The password of `user:password` in Base64.
+/// Returns the password of `user:password` in Base64.
 fn password(encoded: &str) -> Option<String> {
     let text = String::from_utf8(BASE64_STANDARD.decode(encoded).ok()?).ok()?;
     text.split_once(':').map(|(_, password)| password.to_owned())
 }
 
-/// What a browser sends under a name.
+/// Returns the cookie of a name.
 pub fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     let lines = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
     let mut pairs = lines.flat_map(|line| line.split(';')).filter_map(|pair| pair.split_once('='));

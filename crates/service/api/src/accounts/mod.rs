@@ -1,5 +1,5 @@
-//! Who is known to a server: users, service keys and sessions, how somebody shows who they are, and
-//! who of those that an OpenID provider knows gets in. It knows no route.
+//! Accounts of a server: users, service keys and sessions, identification of callers, and admission
+//! of those whom an OpenID provider knows. This module knows no route.
 
 mod credentials;
 mod grants;

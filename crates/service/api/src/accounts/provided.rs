@@ -1,4 +1,4 @@
-//! Signing in at an OpenID provider: who of those that it knows is which user here.
+//! Sign-in at an OpenID provider: mapping of its identities to users.
 
 use http::{HeaderMap, StatusCode};
 use std::time::Instant;
@@ -12,26 +12,26 @@ use crate::accounts::credentials::Accounts;
 use crate::accounts::grants::{rights, rows};
 use crate::accounts::users::SESSION;
 
-/// Who acts where a provider's word gives accounts and roles, or nobody is let in.
+/// Author in the audit of accounts and roles that a provider gives, and of refused sign-ins.
 const PROVIDER: &str = "openid";
-/// A second, µs.
+/// One second, µs.
 const SECOND: i64 = 1_000_000;
 
-/// What came of a sign-in at a provider.
+/// Result of a sign-in at a provider.
 #[derive(Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// A session began: the secret of its cookie, and where to go.
+    /// A session began.
     SignedIn {
-        /// The secret of the session's cookie.
+        /// Secret of the session's cookie.
         secret: String,
-        /// Where to go.
+        /// Page to go to.
         next: String,
     },
-    /// The provider's word is now good for whoever is signed in.
+    /// The identity is now linked with the user who is signed in.
     Linked,
 }
 
-/// A user's name; or why whoever the provider knows is none.
+/// A user's name, or the reason for which the identity is not admitted.
 type Admitted = std::result::Result<String, String>;
 
 impl Accounts<'_> {
@@ -43,17 +43,19 @@ impl Accounts<'_> {
     /// Begins a sign-in at the provider.
     ///
     /// # Errors
-    /// There is none, or it cannot be reached.
+    /// Returns an error if there is no provider, or if it cannot be reached.
     pub async fn begin_at_provider(&self, purpose: Purpose, next: &str) -> Result<Begun> {
         let provider = self.provider()?;
         let begun = provider.begin(purpose, next, self.store.now_us() / SECOND).await;
         begun.map_err(|failure| told(provider, &failure, "nobody"))
     }
 
-    /// Ends a sign-in at the provider by what the browser that has the `ticket` was sent back with.
+    /// Completes a sign-in at the provider; `ticket` is the browser's cookie, `query` that of the
+    /// provider's redirect.
     ///
     /// # Errors
-    /// Nobody is there, or nobody who is let in; says why, for the person who tried.
+    /// Returns an error with the reason, for the person who tried, if the identity cannot be
+    /// verified or is not admitted.
     pub async fn finish_at_provider(
         &self,
         ticket: Option<&str>,
@@ -78,6 +80,8 @@ impl Accounts<'_> {
         headers: &HeaderMap,
         from: &str,
     ) -> Result<Outcome> {
+        // The browser that comes back must have the session of the same user: a link made by
+        // somebody else must not add an identity to the account.
         let session = self.session(headers).await?.filter(|principal| principal.name == user);
         if session.is_none() {
             let why = format!("sign in as {user} again, and link from the page of your account");
@@ -91,6 +95,8 @@ impl Accounts<'_> {
     async fn admit(&self, provider: &Provider, done: &Finished, from: &str) -> Result<Outcome> {
         let whom = format!("identity {} {}", done.identity.issuer, done.identity.subject);
         let attempts = &self.credentials.attempts;
+        // Refusals are counted for each identity, and only they: other outcomes take the attempt
+        // back.
         let attempt = Attempt { name: &whom, from: PROVIDER };
         attempts.begin(attempt, Instant::now()).map_err(|wait| {
             let why = format!("you were refused often; try again in {} s", wait.as_secs().max(1));
@@ -118,16 +124,19 @@ impl Accounts<'_> {
         }
     }
 
-    /// The user whom the provider knows so; created where that is set, with the roles that are set.
+    /// Returns the user of an identity; creates one, with the configured roles, if the settings
+    /// allow it.
     async fn user_of(&self, provider: &Provider, done: &Finished) -> Result<Admitted> {
         let (identity, admission) = (&done.identity, provider.settings().admission());
         let roles = admission.roles(&identity.claims);
         let found = self.store.identities().find(&identity.issuer, &identity.subject).await?;
+        // An unknown identity is created or refused, by the settings.
         let Some(found) = found else { return self.created(provider, done, &roles).await };
         let user = self.store.users().get(&found.user_name).await?;
         if !user.is_enabled() {
             return Ok(Err("your account here is disabled; ask an admin".to_owned()));
         }
+        // Roles that come from groups are set anew at each sign-in.
         if admission.by_groups() {
             let principal = User::principal(&user.name);
             if rights(self.store, &principal).await? != Rights::new(roles.clone()) {
@@ -182,14 +191,14 @@ fn without_group(provider: &Provider) -> String {
     )
 }
 
-/// A sign-in as the store knows it.
+/// A sign-in in the form of the store.
 fn sign_in(done: &Finished) -> SignIn<'_> {
     let expires_us = done.until_s.saturating_mul(SECOND);
     let (issuer, subject) = (done.identity.issuer.as_str(), done.identity.subject.as_str());
     SignIn { issuer, subject, sha256: &done.sha256, expires_us }
 }
 
-/// A failure as it is answered; the log has it, too, as it is no user's and so in no audit.
+/// Answer for a failure. It is logged as well, since it belongs to no user and so to no audit.
 fn told(provider: &Provider, failure: &Failure, from: &str) -> Problem {
     tracing::warn!(issuer = provider.settings().issuer(), from, %failure, "nobody signed in");
     let status = match failure {

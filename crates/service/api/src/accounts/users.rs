@@ -1,4 +1,4 @@
-//! Users, keys and sessions: what endpoints and pages do alike.
+//! Users, keys and sessions: the operations that endpoints and pages share.
 
 use std::time::{Duration, Instant};
 
@@ -14,9 +14,9 @@ use sistership_web_support::problem::{Problem, Result};
 use crate::accounts::credentials::Accounts;
 use crate::accounts::grants::rows;
 
-/// How long a browser stays signed in.
+/// Duration of a session in a browser.
 pub const SESSION: Duration = Duration::from_secs(12 * 3600);
-/// Memory that a hash of a password takes, bytes.
+/// Memory for hashing one password, bytes.
 const HASH_BYTES: u64 = 19 << 20;
 
 impl Accounts<'_> {
@@ -36,7 +36,7 @@ impl Accounts<'_> {
         Ok(self.store.users().create(name, title, hash.as_deref(), &rows(roles)).await?)
     }
 
-    /// Sets a password, which signs the user out everywhere.
+    /// Sets a password, which ends all sessions of the user.
     pub async fn set_password(&self, name: &str, password: &str) -> Result<User> {
         let hash = self.hashed(password).await?;
         let user = self.store.users().set_password(name, &hash).await?;
@@ -44,22 +44,23 @@ impl Accounts<'_> {
         Ok(user)
     }
 
-    /// Gives a user or a key these roles instead of all others.
+    /// Replaces all roles of a user or a key by these.
     pub async fn set_roles(&self, principal: &str, roles: &[Grant]) -> Result<()> {
         self.store.grants().replace(principal, &rows(roles)).await?;
         self.forget();
         Ok(())
     }
 
-    /// Takes every right from a user, or gives them back.
+    /// Disables a user, who then has no rights, or enables them again.
     pub async fn enable(&self, name: &str, on: bool) -> Result<User> {
         let users = self.store.users();
+        // The name stays taken, so that the audit stays unambiguous.
         let user = if on { users.enable(name).await? } else { users.disable(name).await? };
         self.forget();
         Ok(user)
     }
 
-    /// Makes a service key; its text is known to nobody else afterwards.
+    /// Creates a service key; its text is not kept and cannot be read later.
     pub async fn make_key(
         &self,
         title: &str,
@@ -74,7 +75,7 @@ impl Accounts<'_> {
         Ok((text, self.store.service_keys().create(&new, &rows(roles)).await?))
     }
 
-    /// Ends a key.
+    /// Revokes a key.
     pub async fn revoke(&self, prefix: &str) -> Result<KeyRow> {
         let key = self.store.service_keys().revoke(prefix).await?;
         self.forget();
@@ -83,12 +84,13 @@ impl Accounts<'_> {
 
     async fn hashed(&self, password: &str) -> Result<String> {
         check_password(password).map_err(|message| Problem::invalid("password", message))?;
+        // Argon2 takes a fixed amount of memory for each hash.
         budget::take(HASH_BYTES).await?;
         let password = password.to_owned();
         self.credentials.compute(move || hash_password(&password)).await?.map_err(Problem::internal)
     }
 
-    /// Begins a session of a user who knows the password; gives the secret of its cookie.
+    /// Begins a session of a user who knows the password; returns the secret of its cookie.
     pub async fn sign_in(&self, name: &str, password: &str, from: &str) -> Result<String> {
         self.verified(name, password, from).await?;
         let secret = secret().map_err(Problem::internal)?;
@@ -98,10 +100,11 @@ impl Accounts<'_> {
         Ok(secret)
     }
 
-    /// Whether this is the password of an enabled user.
+    /// Checks the password of an enabled user.
     ///
     /// # Errors
-    /// It is not, which is not told from there being no such user; or too many were wrong of late.
+    /// Returns 401 if it is wrong or there is no such user, which cannot be distinguished, and 429
+    /// after too many wrong ones.
     pub async fn verified(&self, name: &str, password: &str, from: &str) -> Result<()> {
         let (attempts, attempt) = (&self.credentials.attempts, Attempt { name, from });
         attempts.begin(attempt, Instant::now()).map_err(|wait| {
@@ -116,6 +119,7 @@ impl Accounts<'_> {
                 return Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"));
             }
             Err(problem) => {
+                // An error of the server is no failed attempt.
                 attempts.withdraw(attempt, Instant::now());
                 return Err(problem);
             }
@@ -128,6 +132,8 @@ impl Accounts<'_> {
         let hash = user.and_then(|user| user.password_hash);
         budget::take(HASH_BYTES).await?;
         let password = password.to_owned();
+        // A user that does not exist takes as long as a wrong password, so that names cannot be
+        // found out.
         let compare = move || match hash {
             Some(hash) => verify_password(&password, &hash),
             None => {

@@ -1,4 +1,4 @@
-//! The job that trains a learned branch: its recipe, and what derives from it.
+//! The job that trains a learned correction: its recipe, and the derivation from it.
 
 use std::sync::Arc;
 
@@ -17,22 +17,24 @@ use super::progress::{Progress, tell};
 use crate::app::App;
 use sistership_jobs::request::BranchJob;
 
-/// How much of a job the trying of all kinds is.
+/// Share of the job's progress that the trial of all kinds of learned correction takes.
 const TRIED: f64 = 0.6;
 
-/// Trains a branch, where one was named or one wins.
+/// Trains a learned correction, if a kind was named or one is selected.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
     let asked: BranchJob = serde_json::from_str(&job.request).map_err(failed)?;
     tell(&progress, 0.01, "reading the trials")?;
     let version = app.store().versions().get(&asked.ship, asked.number).await?;
     let trials = trials(app, &asked.trials).await?;
     let (mut settings, mut choice) = (asked.settings.clone(), None);
+    // Without a kind in the settings, every kind is evaluated on held-out trials first.
     if settings.is_open() {
         let tried = tried(app, &asked, &version, &trials, &progress).await?;
         let Some(kind) = tried.taken else { return untaken(app, job, &asked, &tried).await };
         (settings, choice) = (settings.of(kind), Some(tried));
     }
     let recipe = training_recipe(app.archive(), &version, trials, &settings).await?;
+    // The fit continues where the selection ended, so that the progress never goes back.
     let (step, begun) = (progress.clone(), if choice.is_some() { TRIED } else { 0.05 });
     let scaled = move |done: f64, what: &str| step.tell(begun + (0.9 - begun) * done, what);
     let recipe = Recipe::Training(recipe);
@@ -54,7 +56,7 @@ async fn tried(
     Ok(chosen(app.archive(), version, trials, settings, Arc::new(scaled)).await?)
 }
 
-/// Ends a job of which no version comes, since no branch wins.
+/// Completes a job that yields no version, as no learned correction is selected.
 async fn untaken(app: &App, job: &Job, asked: &BranchJob, tried: &BranchChoice) -> Result<()> {
     let foundation = format!("{}/{}", asked.ship, asked.number);
     let result = json!({ "foundation": foundation, "choice": tried, "branch": null });

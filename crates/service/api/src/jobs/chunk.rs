@@ -1,5 +1,5 @@
-//! A chunk of a bulk refinement: its ships are gathered, refined on all cores, and kept together
-//! with the end of the job.
+//! A chunk of a bulk refinement: the statistics of its ships are gathered, the ships are refined on
+//! all cores, and the versions are kept together with the end of the job.
 
 use rayon::prelude::*;
 use serde_json::json;
@@ -11,18 +11,21 @@ use super::outcome::{Result, failed};
 use super::progress::{Progress, tell};
 use crate::app::App;
 
-/// Does a chunk.
+/// Runs the job of one chunk.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
     let chunk: Chunk = serde_json::from_str(&job.request).map_err(failed)?;
     let bulk = app.store().bulks().get(&chunk.bulk).await?;
     let order: Order = serde_json::from_str(&bulk.request).map_err(failed)?;
     let loaded = std::sync::Arc::new(Loaded::of(&Inputs::new(app.archive()), order).await?);
+    // The comparison with the champion holds for the versions that were read: if others have come
+    // in between, all of it is repeated.
     for _ in 0..super::TRIES {
         let members = members(app, &loaded, &chunk, &progress).await?;
         tell(&progress, 0.5, "refining")?;
         let work = std::sync::Arc::clone(&loaded);
         let done = app
             .compute(move || {
+                // Ships are independent: one is refined on each core.
                 members.into_par_iter().map(|member| refine(&work, member)).collect::<Vec<_>>()
             })
             .await?;

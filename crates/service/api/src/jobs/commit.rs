@@ -22,25 +22,27 @@ use sistership_jobs::promotion::{Comparison, against_champion};
 use sistership_jobs::request::{BRANCH, BranchJob};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
-/// A version that is to be kept, with what its report is made of.
+/// A version that is about to be kept, with the inputs of its report.
 struct Made {
     version: NewVersion,
     refined: Arc<Refined>,
     similarity: Option<Arc<Similarity>>,
     ladder: Option<Arc<Ladder>>,
     comparison: Option<Comparison>,
-    /// The branch that was found to win beside it, with the ids of its trials.
+    /// The selected learned correction, with the ids of the trials to train it on.
     branch: Option<(BranchKind, Vec<String>)>,
     result: Value,
 }
 
-/// Keeps what was derived: champion where the ship has none, else candidate.
+/// Keeps the derived version: as champion if the ship has none, otherwise as candidate.
 pub(super) async fn commit(
     app: &App,
     job: &Job,
     derived: Derived,
     (prepared, trials): (Prepared, &[String]),
 ) -> Result<()> {
+    // The comparison with the champion is computed once, outside of the loop: it takes simulations
+    // and does not depend on the version's number.
     let hashes = derived.document.recipe.trials().iter().map(|t| t.sha256.clone()).collect();
     let made = Made::new(derived, prepared, trials)?;
     let refined = Arc::clone(&made.refined);
@@ -72,6 +74,7 @@ impl Made {
             document: document.canonical().map_err(failed)?,
             weights: None,
         };
+        // The ranking and the selection of the source model are part of the result.
         let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
         let from = refined.refinement.settings.origin(source.as_deref()).to_owned();
         let mut result = json!({ "source": source, "from": from, "held_out": refined.refinement.held_out,
@@ -95,6 +98,7 @@ impl Made {
         let label = VersionLabel { ship: self.version.model.clone(), number, sha256 };
         let (refined, similarity) = (Arc::clone(&self.refined), self.similarity.clone());
         let ladder = self.ladder.clone();
+        // The closure needs its own handles: rendering runs on a blocking thread.
         let how = move || render(&refined, (similarity.as_deref(), ladder.as_deref()), label);
         let rendered = app.compute(how).await??;
         let document = serde_json::to_string(&rendered.json).map_err(failed)?;
@@ -119,6 +123,9 @@ impl Made {
             self.result["from"].as_str().unwrap_or_default(),
             job.id
         );
+        // A version that is worse than the champion, in a comparison that does not favour the
+        // champion, does not become candidate. Only a ship without champion gets one without a
+        // person.
         let alias = match &self.comparison {
             _ if !standing.champion && !standing.second_person => Some((CHAMPION, Expect::Absent)),
             Some(comparison) if comparison.is_worse() => None,
@@ -134,7 +141,7 @@ impl Made {
         Ok(())
     }
 
-    /// The job that trains the branch beside the version of this number.
+    /// Returns the job that trains the learned correction on the version of this number.
     fn next(&self, number: i64) -> Result<Option<NewJob>> {
         let Some((kind, trials)) = self.branch.clone() else { return Ok(None) };
         let ship = self.version.model.clone();
@@ -159,8 +166,8 @@ impl Made {
     }
 }
 
-/// The kind of branch that the search took, and the ids of the trials that the refinement was
-/// fitted to.
+/// Returns the selected kind of learned correction, and the ids of the trials that the refinement
+/// was fitted to.
 fn branch(
     ladder: Option<&Ladder>,
     refined: &Refined,
@@ -168,6 +175,7 @@ fn branch(
 ) -> Option<(BranchKind, Vec<String>)> {
     let kind = ladder?.branch.as_ref()?.taken?;
     let held_out = &refined.refinement.settings.held_out;
+    // Recipe and request list the trials in the same order.
     let named = refined.ingredients.trials.iter().zip(trials);
     let fitted = named.filter(|(trial, _)| !held_out.contains(&trial.name));
     Some((kind, fitted.map(|(_, id)| id.clone()).collect()))

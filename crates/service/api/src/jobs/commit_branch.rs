@@ -16,10 +16,10 @@ use sistership_store::{
 use super::outcome::{JobError, Result, failed};
 use crate::app::App;
 
-/// The kind of the reports, and what the method of such a version begins with.
+/// Kind of the reports, and first word of the versions' method.
 const BRANCH: &str = "branch";
 
-/// A version that is to be kept.
+/// A version that is about to be kept.
 struct Made<'a> {
     version: NewVersion,
     weights: Bytes,
@@ -29,7 +29,7 @@ struct Made<'a> {
     result: Value,
 }
 
-/// Keeps a version with its weights: it becomes the candidate.
+/// Keeps a version with its weights, as candidate.
 pub(super) async fn commit(
     app: &App,
     job: &Job,
@@ -39,11 +39,12 @@ pub(super) async fn commit(
 ) -> Result<()> {
     let made = Made::new(derived, of, choice)?;
     for _ in 0..super::TRIES {
+        // In each attempt again: an object without a row may be collected as garbage.
         app.objects().put(made.weights.clone()).await?;
         let standing = Standing::of(app.store(), &of.model).await?;
         match made.keep(app, job, &standing).await {
-            // Another version has come in between, or the weights were old and nobody's, and were
-            // removed as garbage.
+            // Another version has come in between, or the weights had existed without a row and
+            // were removed as garbage.
             Err(JobError::Store(
                 StoreError::PreconditionFailed { .. } | StoreError::NotFound { kind: "object", .. },
             )) => {}
@@ -53,7 +54,7 @@ pub(super) async fn commit(
     Err(failed("other versions of the ship kept coming in between; retry the job"))
 }
 
-/// `branch-kernel-ridge-parallel`
+/// Name of the method, such as `branch-kernel-ridge-parallel`.
 fn method(branch: &Branch) -> String {
     format!("{BRANCH}-{}-{}", branch.recipe.learner.name().replace(' ', "-"), branch.mode.name())
 }

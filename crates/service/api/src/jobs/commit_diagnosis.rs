@@ -1,5 +1,5 @@
-//! The end of a diagnosis: its report, and the one transaction that keeps what was found, the
-//! version that comes of it, and the job. The champion never moves by itself.
+//! The end of a diagnosis: its report, and the one transaction that keeps the findings, the
+//! resulting version, and the job. The champion never moves by itself.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use sistership_jobs::fleet::Drift;
 use sistership_jobs::line::{CANDIDATE, Standing, step};
 use sistership_report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis};
 
-/// The kind of the reports, and the method of the versions.
+/// Kind of the reports, and method of the versions.
 const DIAGNOSIS: &str = "diagnosis";
 
 /// A diagnosis with the ids of its trials, in the order of the recipe.
@@ -34,7 +34,7 @@ impl TrialsDiagnosis {
     }
 }
 
-/// Diagnoses that are to be kept.
+/// Diagnoses that are about to be kept.
 struct Made<'a> {
     of: &'a VersionHead,
     all: TrialsDiagnosis,
@@ -43,8 +43,8 @@ struct Made<'a> {
     drift: Option<RecentDrift>,
 }
 
-/// Keeps a diagnosis, with that of what is new alone where it is of more; where it has found
-/// effects, the version with them becomes the candidate.
+/// Keeps a diagnosis, together with that of the new trials alone if it covers more; if it has found
+/// missing effects, the version with them becomes the candidate.
 pub(super) async fn commit(
     app: &App,
     job: &Job,
@@ -59,6 +59,7 @@ pub(super) async fn commit(
     let made = Made { of, all, of_new: part, version, drift: drift(app, of).await };
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &of.model).await?;
+        // The report names the number that the version is going to have.
         let report = made.report(app, standing.next).await?;
         match made.keep(app, job, &standing, report).await {
             // Another version has come in between; the report would name the wrong number.
@@ -77,11 +78,12 @@ fn version(diagnosed: &Diagnosed, of: &VersionHead) -> Result<Option<NewVersion>
         law: document.model.law.clone(),
         method: DIAGNOSIS.to_owned(),
         document: document.canonical().map_err(failed)?,
+        // Weights of a learned correction that the diagnosed model has stay part of the model.
         weights: document.model.branch.as_ref().map(|branch| branch.weights_sha256.clone()),
     }))
 }
 
-/// A diagnosis of which no version comes.
+/// Returns the diagnosis of the new trials alone, which yields no version.
 async fn of_part(app: &App, of: &VersionHead, part: &TrialsDiagnosis) -> Result<PartDiagnosis> {
     let report = report(app, of, &part.diagnosed, None).await?;
     Ok(PartDiagnosis { report, found: found(of, part, None)? })
@@ -95,6 +97,7 @@ async fn report(
 ) -> Result<NewReport> {
     let label =
         VersionLabel { ship: of.model.clone(), number: of.number, sha256: of.sha256.clone() };
+    // The closure needs its own handle: rendering runs on a blocking thread.
     let diagnosed = Arc::clone(diagnosed);
     let rendered = app.compute(move || render(&diagnosed, label, made)).await??;
     let document = serde_json::to_string(&rendered.json).map_err(failed)?;
@@ -125,7 +128,7 @@ fn effects(diagnosed: &Diagnosed) -> Vec<&str> {
     diagnosed.diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect()
 }
 
-/// The ids of the trials of which something is left.
+/// Ids of the trials with unexplained segments.
 fn unexplained(part: &TrialsDiagnosis) -> Vec<&String> {
     let left = &part.diagnosed.diagnosis.unexplained;
     let is_left = |trial: &Trial| left.iter().any(|stretch| stretch.trial == trial.name);
@@ -178,6 +181,8 @@ impl Made<'_> {
             "before": diagnosis.before, "after": diagnosis.after,
             "next_trial": diagnosis.next_trial,
         });
+        // With two diagnoses the result names the trials of the larger and the verdict of the
+        // smaller one.
         if let Some(of_new) = &self.of_new {
             result["trials"] = json!(self.all.trials);
             result["verdict_of_new"] = json!(of_new.found.verdict);
@@ -192,10 +197,11 @@ impl Made<'_> {
     }
 }
 
-/// How much more the champion leaves of new trials, where that is the version diagnosed; a
-/// diagnosis is kept also where that cannot be found out.
+/// Returns the drift of the champion on new trials, if the champion is the version diagnosed. A
+/// diagnosis is kept even if the drift cannot be computed.
 async fn drift(app: &App, of: &VersionHead) -> Option<RecentDrift> {
     match Drift::of(app.archive(), &of.model).await {
+        // The drift must be that of the version diagnosed: the champion may have moved meanwhile.
         Ok(drift) => drift.filter(|drift| drift.version == of.number)?.recent(),
         Err(error) => {
             tracing::warn!(ship = of.model, %error, "drift could not be measured");

@@ -14,11 +14,11 @@ use sistership_jobs::request::{
     BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob,
 };
 
-/// How often a job that waits for memory looks whether it shall stop.
+/// Interval at which a job that waits for memory checks whether it must stop.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// Takes what a job needs, as soon as others have given it back: it waits in its worker, and
-/// smaller jobs of other workers pass.
+/// Takes the memory of a job as soon as others have given it back: the job waits in its worker, and
+/// smaller jobs of other workers pass it.
 pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<Share> {
     let bytes = demand(app, job).await?;
     loop {
@@ -29,6 +29,7 @@ pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<S
                     "{never}: give it fewer or shorter trials, or let jobs have more memory"
                 )));
             }
+            // The report also returns false if the job has been cancelled meanwhile.
             Err(busy) if progress.tell(0.0, &format!("waiting: {busy}")) => {}
             Err(_) => return Err(JobError::Stopped),
         }
@@ -57,7 +58,7 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
             let asked = serde_json::from_str::<BranchJob>(&job.request).map_err(failed)?;
             (None, asked.trials)
         }
-        // These read one trial after the other.
+        // These kinds read one trial after the other.
         _ => (None, Vec::new()),
     };
     let mut samples = 0;

@@ -1,4 +1,4 @@
-//! The diagnosis job: its recipes, and what comes of them.
+//! The diagnosis job: its recipes, and their results.
 
 use std::sync::Arc;
 
@@ -20,13 +20,14 @@ use sistership_jobs::sorted::sorted;
 use sistership_jobs::start::library_of;
 use sistership_model::version::code_revision;
 
-/// Does a diagnosis, and where that is asked for another one of its trials with those before them.
+/// Runs a diagnosis of the new trials and, if the job asks for it, another of these together with
+/// earlier ones.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
     let asked: DiagnosisJob = serde_json::from_str(&job.request).map_err(failed)?;
     tell(&progress, 0.01, "reading the trials")?;
     let version = app.store().versions().get(&asked.ship, asked.number).await?;
     let whole = with_earlier(app, &asked, &version).await?;
-    // The work on each is in proportion to its trials.
+    // The progress of each part is in proportion to its number of trials.
     let share = whole
         .as_ref()
         .map_or(0.0, |whole| whole.len() as f64 / (whole.len() + asked.trials.len()) as f64);
@@ -44,7 +45,7 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     commit(app, job, &version.head, (all, of_new)).await
 }
 
-/// The diagnosis of some trials, whose progress goes from `begin` to `end`.
+/// Diagnoses some trials; the progress goes from `begin` to `end`.
 async fn part(
     app: &App,
     asked: &DiagnosisJob,
@@ -58,8 +59,8 @@ async fn part(
     Ok(TrialsDiagnosis::new(diagnosed, trials))
 }
 
-/// The trials of a job with those before them, where these are to be diagnosed, too, and there is
-/// memory for it.
+/// Returns the trials of a job together with earlier ones, if these are to be diagnosed as well and
+/// the memory allows it.
 pub(super) async fn with_earlier(
     app: &App,
     asked: &DiagnosisJob,

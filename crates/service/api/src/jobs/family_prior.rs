@@ -1,4 +1,4 @@
-//! The job that learns what a family teaches.
+//! The job that learns a prior from a family of ships.
 
 use serde_json::json;
 use sistership_store::Job;
@@ -8,7 +8,7 @@ use super::progress::Progress;
 use crate::app::App;
 use sistership_jobs::fleet::{LearnJob, learn};
 
-/// Learns, and keeps what was learned as the family's next prior.
+/// Learns a prior, and keeps it as the next revision of the family's prior.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
     let asked: LearnJob = serde_json::from_str(&job.request).map_err(failed)?;
     let told = move |fraction: f64, what: &str| progress.tell(fraction, what);

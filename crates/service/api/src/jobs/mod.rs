@@ -1,4 +1,4 @@
-//! Long work: what is asked for, and the workers that do it.
+//! Jobs, and the workers that run them.
 
 mod branch;
 mod chunk;
@@ -19,6 +19,7 @@ pub(crate) use sistership_jobs::request::{
 };
 pub(crate) use worker::Worker;
 
-/// How often another version of the same ship may come in between while one is kept. Each time
-/// another job has come to its end, so that only a fleet of workers on one ship gets anywhere near.
+/// Number of attempts to keep a version while other versions of the same ship come in between. Each
+/// failure means that another job has ended, so that only a fleet of workers on one ship gets near
+/// this limit.
 const TRIES: usize = 100;

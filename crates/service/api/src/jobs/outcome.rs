@@ -1,4 +1,4 @@
-//! How a job ends that does not succeed.
+//! Ends of a job that does not succeed.
 
 use sistership_identification::refine::RefineError;
 use sistership_store::StoreError;
@@ -6,18 +6,18 @@ use sistership_store::StoreError;
 use crate::problem::Problem;
 use sistership_jobs::derive::DeriveError;
 
-/// How a job ends that does not succeed.
+/// End of a job that does not succeed.
 #[derive(Debug)]
 pub(super) enum JobError {
-    /// It was asked to stop.
+    /// The job was asked to stop.
     Stopped,
-    /// It cannot be done; doing it again would give the same.
+    /// The job cannot be done; another attempt would fail likewise.
     Failed(String),
-    /// The database failed; it may be done later.
+    /// The database failed; a later attempt may succeed.
     Store(StoreError),
 }
 
-/// What a step of a job gives.
+/// Result of a step of a job.
 pub(super) type Result<T> = std::result::Result<T, JobError>;
 
 pub(super) fn failed(reason: impl std::fmt::Display) -> JobError {
@@ -27,6 +27,7 @@ pub(super) fn failed(reason: impl std::fmt::Display) -> JobError {
 impl From<StoreError> for JobError {
     fn from(error: StoreError) -> Self {
         match error {
+            // Lack of space is temporary, whatever kind of error carries it.
             full if full.is_out_of_space() => Self::Store(full),
             StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => {
                 failed(error)

@@ -1,4 +1,4 @@
-//! What a refinement is made of: its trials, its source, its recipe.
+//! Inputs of a refinement: its trials, its source model, its recipe.
 
 use std::sync::Arc;
 
@@ -13,15 +13,17 @@ use super::progress::{Progress, tell};
 use crate::app::App;
 use sistership_jobs::request::{RefinementJob, SourceChoice};
 
-/// How much of a job the search is: what it finds is fitted once more.
+/// Share of the job's progress that the model selection takes; the selected candidate is fitted
+/// once more.
 pub(super) const SEARCHED: f64 = 0.6;
 
-/// A recipe, and how its source was chosen.
+/// A recipe, and how its source model was selected.
 pub(super) struct Prepared {
     pub recipe: Recipe,
     pub start: Start,
 }
 
+/// Reads the trials, selects the source model, and writes the recipe of a refinement.
 pub(super) async fn prepare(
     app: &App,
     asked: &RefinementJob,
@@ -43,6 +45,8 @@ async fn start(
     progress: &Progress,
 ) -> Result<Start> {
     let (law, settings) = (asked.law.clone(), asked.settings.clone());
+    // A named version is the source model as it is; the zoo is read only for a prior from a
+    // population of ships.
     if let SourceChoice::Version { ship, number } = &asked.source {
         let version = app.store().versions().get(ship, *number).await?;
         let start = Start::at(version, law, settings);

@@ -1,4 +1,4 @@
-//! What a worker's supervisor and the work it supervises tell each other.
+//! Progress and stop signal between a worker and the work that it supervises.
 
 use std::sync::{Arc, OnceLock};
 
@@ -6,18 +6,18 @@ use tokio::sync::watch;
 
 use super::outcome::{JobError, Result};
 
-/// Why work is stopped before its end.
+/// Reason to stop work before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stop {
-    /// Somebody cancelled the job.
+    /// The job was cancelled.
     Cancelled,
-    /// The server is told to stop.
+    /// The server is stopping.
     Leaving,
     /// Another worker has the job now.
     Lost,
 }
 
-/// How far work is, and whether it shall go on. A clone is another handle on the same.
+/// Progress of work, and the signal to stop it. A clone is another handle on the same.
 #[derive(Debug, Clone)]
 pub(super) struct Progress {
     stop: Arc<OnceLock<Stop>>,
@@ -30,8 +30,9 @@ impl Progress {
         (Self { stop: Arc::default(), told: Arc::new(told) }, seen)
     }
 
-    /// Tells how far it is; false when it shall stop. It never runs backwards: work that begins
-    /// anew, as others came in between, is as far as it was.
+    /// Reports progress, a fraction of 1; returns false if the work must stop. The progress never
+    /// goes back: work that begins anew, as others came in between, keeps the greatest value so
+    /// far.
     pub(super) fn tell(&self, fraction: f64, what: &str) -> bool {
         self.told.send_modify(|(so_far, doing)| {
             *so_far = so_far.max(fraction);
@@ -50,7 +51,10 @@ impl Progress {
     }
 }
 
-/// Says how far a job is, or that it shall stop.
+/// Reports the progress of a job.
+///
+/// # Errors
+/// Returns an error if the job must stop.
 pub(super) fn tell(progress: &Progress, fraction: f64, what: &str) -> Result<()> {
     if progress.tell(fraction, what) { Ok(()) } else { Err(JobError::Stopped) }
 }

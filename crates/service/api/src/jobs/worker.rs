@@ -1,5 +1,4 @@
-//! A worker: claims jobs under a lease, tells how far they are, and ends them in one way or
-//! another.
+//! A worker: claims jobs under a lease, reports their progress, and records their end.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,11 +16,11 @@ use sistership_jobs::fleet::{BULK, LEARN};
 use sistership_jobs::request::{BRANCH, DIAGNOSIS, REFINEMENT};
 use sistership_listener::Stopping;
 
-/// How often progress is written while it changes.
+/// Interval at which progress is written while it changes.
 const TELL: Duration = Duration::from_millis(250);
-/// A pause after the database has failed.
+/// Pause after a failure of the database.
 const BREATH: Duration = Duration::from_secs(1);
-/// A pause where there is no room to write: it takes somebody to make some.
+/// Pause while there is no space to write, which a person has to free.
 const NO_ROOM: Duration = Duration::from_secs(5);
 
 /// One of the workers of this process.
@@ -31,8 +30,7 @@ pub(crate) struct Worker {
     stopping: Stopping,
 }
 
-/// The right of a worker to its job: beside those of the other workers of the process, or instead
-/// of them.
+/// Permission of a worker to run a job: together with the other workers of the process, or alone.
 enum Turn<'a> {
     Shared { _held: RwLockReadGuard<'a, ()> },
     Alone { held: RwLockWriteGuard<'a, ()> },
@@ -47,7 +45,7 @@ impl Turn<'_> {
     }
 }
 
-/// The work as it runs, and what it tells.
+/// Running work with its progress.
 struct Watched {
     work: JoinHandle<Result<(), JobError>>,
     progress: Progress,
@@ -60,15 +58,18 @@ impl Worker {
         Self { stopping: app.stopping(), app, name }
     }
 
-    /// Works until the server is told to stop.
+    /// Claims and runs jobs until the server stops.
     pub(crate) async fn run(mut self) {
         let turns = Arc::clone(self.app.turns());
+        // Set once the queue has a job during whose earlier attempt a process ended: it is claimed
+        // under the exclusive turn, so that it can take no other job down with it.
         let mut alone = false;
         while !self.stopping.now() {
             let Some(turn) = self.turn(&turns, alone).await else { return };
             match self.app.store().jobs().claim(&self.name, self.app.leases().lease, alone).await {
                 Ok(Claimed::Job(job)) => {
-                    // Only a job during which a process has ended before keeps the others waiting.
+                    // Only a job during which a process has ended before keeps the other workers
+                    // waiting.
                     let turn = if job.lost_workers > 0 { turn } else { turn.shared() };
                     self.attend(&job).await;
                     drop(turn);
@@ -89,8 +90,8 @@ impl Worker {
         }
     }
 
-    /// Waits for the right to claim a job, while others work or alone; none when the server is told
-    /// to stop.
+    /// Waits for the permission to claim a job, shared or alone; returns `None` if the server
+    /// stops.
     async fn turn<'a>(&mut self, turns: &'a RwLock<()>, alone: bool) -> Option<Turn<'a>> {
         tokio::select! {
             () = self.stopping.wait() => None,
@@ -99,7 +100,7 @@ impl Worker {
         }
     }
 
-    /// Until there is a new job, some time has passed, or the server is told to stop.
+    /// Waits until there is a new job, the time has passed, or the server stops.
     async fn rest(&mut self, time: Duration) {
         tokio::select! {
             () = self.app.wake().notified() => {}
@@ -112,6 +113,7 @@ impl Worker {
     async fn attend(&mut self, job: &Job) {
         tracing::info!("begun");
         let (progress, seen) = Progress::new();
+        // The job acts in the name of the user who queued it; the audit names both.
         let author = job.author.clone().unwrap_or_else(|| Actor::current().name);
         let actor = Actor::new(author, format!("job {}", job.id));
         let work = work(self.app.clone(), job.clone(), progress.clone());
@@ -124,13 +126,14 @@ impl Worker {
         }
     }
 
-    /// Gives a job back whose end could not be written, as soon as the database can be written
-    /// again: this process has not ended, and must not be counted as lost.
+    /// Returns a job whose end could not be written to the queue as soon as the database can be
+    /// written again: this process has not ended and must not be counted as lost.
     async fn give_back(&mut self, job: &Job, mut error: StoreError) {
         while !self.stopping.now() {
             self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
             let jobs = self.app.store().jobs();
             let given = match jobs.release(&job.id, job.fence).await {
+                // The job was lost by a late heartbeat: report that this worker is alive.
                 Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
                     jobs.lives(&job.id, job.fence).await
                 }
@@ -143,15 +146,15 @@ impl Worker {
         }
     }
 
-    /// Keeps the lease while the work runs; gives its outcome, or none when it did not stop in
-    /// time.
+    /// Renews the lease while the work runs; returns the outcome, or `None` if the work did not
+    /// stop in time.
     async fn accompany(
         &mut self,
         job: &Job,
         watched: &mut Watched,
     ) -> Option<Result<(), JobError>> {
         let mut beat = Instant::now();
-        // When the job must be given back, once the server is told to stop.
+        // Time at which the job must be given back, once the server is stopping.
         let mut leave: Option<Instant> = None;
         loop {
             tokio::select! {
@@ -187,7 +190,7 @@ impl Worker {
         }
     }
 
-    /// Writes how a job has ended.
+    /// Records the end of a job.
     async fn end(
         &self,
         job: &Job,
@@ -196,6 +199,7 @@ impl Worker {
     ) -> Result<(), StoreError> {
         let jobs = self.app.store().jobs();
         match (ended, stopped) {
+            // A job that succeeded has committed its end together with its results.
             (Some(Ok(())), _) => tracing::info!("done"),
             (_, Some(Stop::Lost)) => {
                 tracing::warn!("another worker has the job now");
@@ -207,7 +211,7 @@ impl Worker {
                 tracing::warn!(%message, "failed");
                 jobs.fail(&job.id, job.fence, &message).await?;
             }
-            // The job is done again once the database is back.
+            // The job is run again once the database is back.
             (Some(Err(JobError::Store(error))), _) => return Err(error),
             (None, _) => tracing::warn!("the work did not stop in time"),
         }
@@ -215,7 +219,7 @@ impl Worker {
     }
 }
 
-/// Waits for a moment that is known.
+/// Waits until a given time; returns at once without one.
 async fn until(moment: Option<Instant>) {
     tokio::time::sleep_until(moment.unwrap_or_else(Instant::now).into()).await;
 }

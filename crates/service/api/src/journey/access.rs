@@ -1,4 +1,4 @@
-//! Who may do what: every route for every role, on both databases; and what is kept of it.
+//! Access: every route for every role, on both databases; and its record in the audit.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -18,7 +18,7 @@ const OWNER: &str = "sesame";
 const PASSWORD: &str = "a long sentence of its own";
 
 impl Harness {
-    /// A server that asks everybody who they are.
+    /// Starts a server that identifies every caller.
     async fn guarded(database: TestDatabase) -> Self {
         let mut config = config(&database);
         config.api_key = Some(OWNER.into());
@@ -29,7 +29,7 @@ impl Harness {
         Self { server, client, database }
     }
 
-    /// Asks with a key, or without one.
+    /// Sends a request with a key, or without one.
     async fn asks(&self, key: Option<&str>, method: Method, path: &str) -> (StatusCode, Value) {
         let request = self.client.request(method, self.url(path));
         let request = match key {
@@ -51,7 +51,7 @@ impl Harness {
         read(request.send().await.unwrap()).await
     }
 
-    /// A service key with these roles.
+    /// Creates a service key with these roles.
     async fn key(&self, about: &Value) -> String {
         let (status, made) = self.sends(OWNER, Method::POST, "/v1/keys", about).await;
         assert_eq!(status, StatusCode::CREATED, "{made}");
@@ -63,7 +63,7 @@ impl Harness {
     }
 }
 
-/// Every route that the server has: those of the document, and those of pages, by the source that
+/// Returns every route of the server: those of the document, and those of pages, by the source that
 /// registers them.
 fn routes() -> BTreeSet<(String, String)> {
     let document = crate::openapi();
@@ -135,7 +135,7 @@ fn the_table_is_written_down() {
     assert!(there == written(), "run this test with UPDATE_RIGHTS=1, and read the difference");
 }
 
-/// A path with names of things that are not there, so that nothing comes of what is allowed.
+/// Returns a path with names that do not exist, so that an allowed request changes nothing.
 fn filled(path: &str) -> String {
     let parts = path.split('/').map(|part| match part {
         "{number}" => "1",
@@ -148,7 +148,7 @@ fn filled(path: &str) -> String {
     parts.collect::<Vec<_>>().join("/")
 }
 
-/// Whether the answer is that of the guard to somebody whose roles do not reach.
+/// Returns true if the answer is the refusal of a caller whose roles do not suffice.
 fn is_refused(status: StatusCode, problem: &Value) -> bool {
     let detail = problem["detail"].as_str().unwrap_or_default();
     status == StatusCode::FORBIDDEN && detail.starts_with("this needs the role ")
@@ -197,7 +197,7 @@ async fn each_route_is_for_the_roles_of_the_table(database: TestDatabase) {
     harness.server.stop().await;
 }
 
-/// What a role for one ship or family opens, and what it does not.
+/// A role for one ship or family opens it, and nothing else.
 async fn a_role_for_a_ship_goes_no_further(database: TestDatabase) {
     let harness = Harness::guarded(database).await;
     let family = json!({ "name": "tankers", "foundation": "kvlcc2/1", "members": ["kvlcc2"] });
@@ -272,7 +272,8 @@ async fn foreign_trials(harness: &Harness, key: &str) {
     }
 }
 
-/// Who begins a job of a family can look at it and cancel it; who has no role for it cannot.
+/// The user who queued a job of a family can read and cancel it; a user without a role for it
+/// cannot.
 async fn family_jobs(harness: &Harness) {
     let roles = |family: &str| json!([{ "role": "engineer", "family": family }]);
     let own = harness.key(&json!({ "title": "own", "roles": roles("tankers") })).await;
@@ -324,7 +325,7 @@ async fn one_client_behind_a_proxy_does_not_shut_out_others() {
     harness.server.stop().await;
 }
 
-/// Who is told to be who, and what ends that.
+/// Keys and users identify callers until they are revoked or disabled.
 async fn keys_and_users_come_and_go(database: TestDatabase) {
     let harness = Harness::guarded(database).await;
     let user = json!({ "name": "ann", "password": PASSWORD, "roles": [{ "role": "engineer" }] });
@@ -370,7 +371,7 @@ async fn keys_and_users_come_and_go(database: TestDatabase) {
     harness.server.stop().await;
 }
 
-/// A version becomes champion by a second person only, where that is set.
+/// A version becomes champion by a second person only, if the setting requires one.
 async fn promotion_takes_a_second_person(database: TestDatabase) {
     let harness = Harness::guarded(database).await;
     let (ann, bob) = (harness.key_of("engineer").await, harness.key_of("approver").await);
@@ -404,7 +405,7 @@ async fn promotion_takes_a_second_person(database: TestDatabase) {
     harness.server.stop().await;
 }
 
-/// Every change is in the audit with who made it; a change of one row is found.
+/// Every change is in the audit with its author; a later change of one row is detected.
 async fn the_audit_names_who_did_what(database: TestDatabase) {
     let harness = Harness::guarded(database).await;
     let ann = harness.key_of("engineer").await;

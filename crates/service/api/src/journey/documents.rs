@@ -23,7 +23,7 @@ fn law(rest: &str, terms: &str) -> String {
     )
 }
 
-/// Route, body and what its refusal says.
+/// Route, body and text of its refusal.
 fn hostile() -> Vec<(&'static str, String, &'static str)> {
     let values = [
         around("(", 1_609, ")"),
@@ -74,7 +74,7 @@ async fn hostile_documents_are_refused_at_once() {
     harness.server.stop().await;
 }
 
-/// A law as deep as may be, through values, and with so many terms.
+/// Returns a law whose values nest as deeply as the limit allows, with this number of terms.
 fn deep(terms: usize) -> String {
     let values: String = (0..240).map(|n| format!(", a{}: a{n} + 0", n + 1)).collect();
     let symbols: Vec<String> = (0..56_u8)

@@ -1,4 +1,4 @@
-//! A server on a free port, and what tests say to it.
+//! A server on a free port, and requests of tests to it.
 
 use std::time::Duration;
 
@@ -64,7 +64,7 @@ impl Harness {
         read(post.header("idempotency-key", "ship").body(SHIP).send().await.unwrap()).await
     }
 
-    /// Trials that the 4-DOF SR108 has sailed, uploaded by manifest.
+    /// Uploads trials that were simulated with the 4-DOF SR108, by manifest.
     pub async fn upload_trials(&self) -> (StatusCode, Value) {
         let manoeuvres =
             [json!({ "turn_deg": 20 }), json!({ "turn_deg": -15 }), zigzag(10), zigzag(-20)];

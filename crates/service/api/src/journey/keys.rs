@@ -1,5 +1,5 @@
-//! Every route that takes an `Idempotency-Key`, when its process ends before and after what it does
-//! is kept.
+//! Every route that takes an `Idempotency-Key`, if its process ends before and after its changes
+//! are committed.
 
 use std::time::Duration;
 
@@ -28,7 +28,7 @@ fn keyed_routes() -> Vec<String> {
     found
 }
 
-/// A request to a route, with all that it needs in the archive.
+/// Returns a request to a route, with everything that it needs in the archive.
 async fn request(harness: &Harness, route: &str) -> RequestBuilder {
     let post = |path: &str| harness.client.post(harness.url(path));
     match route {
@@ -85,14 +85,14 @@ async fn ended_at(harness: &Harness, moment: Moment, request: RequestBuilder) {
         }
         tokio::time::sleep(Duration::from_millis(50)).await;
     }
-    // A little longer than what is written takes to be kept or taken back.
+    // A little longer than the writes take to be committed or rolled back.
     tokio::time::sleep(Duration::from_millis(300)).await;
     let early = sent.is_finished();
     sent.abort();
     assert!(store.has_ended() && !early, "the request did not come to {moment:?}");
 }
 
-/// As when a minute has gone by.
+/// As after a minute.
 async fn later(harness: &Harness) {
     let later = "UPDATE idempotency_keys SET created_us = created_us - 61000000, alive_us = NULL \
         WHERE status IS NULL";

@@ -58,7 +58,7 @@ async fn refine(harness: &Harness, source: &str) -> serde_json::Value {
     job
 }
 
-/// The alias moves by compare-and-swap, and the champion is what it says.
+/// The alias moves by compare-and-swap, and the champion is the version it refers to.
 async fn champion(harness: &Harness) {
     let url = harness.url("/v1/models/demo-ship/aliases/champion");
     let put = |tag: &'static str| {
@@ -88,7 +88,7 @@ async fn champion(harness: &Harness) {
 }
 
 async fn verified(harness: &Harness) {
-    // Changing the ship and deleting trials leaves what was made with them derivable.
+    // Changing the ship and deleting trials keeps versions derivable that were made with them.
     let renamed = super::harness::SHIP.replace("Demo ship", "Renamed");
     let put = harness.client.put(harness.url("/v1/ships/demo-ship")).header("if-match", "\"1\"");
     let (status, _) =

@@ -1,4 +1,4 @@
-//! Through the real server, on SQLite and on PostgreSQL where this machine has it.
+//! Tests through the real server, on SQLite, and on PostgreSQL if this machine has it.
 
 #![allow(clippy::unwrap_used)]
 

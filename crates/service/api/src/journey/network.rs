@@ -1,4 +1,4 @@
-//! What connections may do, byte by byte.
+//! Behaviour of connections, byte by byte.
 
 use std::time::{Duration, Instant};
 
@@ -29,13 +29,13 @@ impl Harness {
         stream
     }
 
-    /// The answer to what is sent, until the server closes.
+    /// Returns the answer to the bytes sent, until the server closes.
     async fn exchange(&self, send: &str) -> String {
         rest(self.connect(send).await).await
     }
 }
 
-/// What comes until the server closes, which it must within ten seconds.
+/// Reads until the server closes, which it must within ten seconds.
 async fn rest(mut stream: TcpStream) -> String {
     let mut all = Vec::new();
     let read = tokio::time::timeout(Duration::from_secs(10), stream.read_to_end(&mut all)).await;
@@ -102,7 +102,7 @@ async fn who_sends_too_much_is_told_so() {
 #[tokio::test]
 async fn answers_that_nobody_reads_do_not_pile_up_and_end_the_connection() {
     let harness = harness(|config| {
-        // What the system's buffers swallow earns no time to speak of.
+        // The bytes that the system's buffers take earn almost no time.
         (config.limits.answer_grace, config.limits.least_rate) = (Duration::from_secs(2), 1 << 30);
     })
     .await;

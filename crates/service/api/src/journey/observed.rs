@@ -1,4 +1,4 @@
-//! What a server tells of itself: whether it can work, and what it counts.
+//! Observability of a server: readiness and metrics.
 
 use reqwest::StatusCode;
 use serde_json::json;

@@ -1,4 +1,4 @@
-//! What is refused, and how.
+//! Refusals: every one is a problem that names its cause.
 
 use reqwest::multipart::{Form, Part};
 use reqwest::{Method, RequestBuilder, StatusCode};

@@ -1,4 +1,5 @@
-//! Many at once: versions of one model without gaps, and one winner for each state of an alias.
+//! Many requests at once: versions of one model without gaps, and one winner for each state of an
+//! alias.
 //!
 //! `SISTERSHIP_FULL=1` has 2000 of the first and 500 of the second.
 
@@ -9,7 +10,7 @@ use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, read};
 
-/// How many come at once.
+/// Number of requests at once.
 fn crowd(few: usize, full: usize) -> usize {
     if std::env::var("SISTERSHIP_FULL").is_ok_and(|value| value == "1") { full } else { few }
 }

@@ -20,7 +20,7 @@ fn values(listing: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// What a path lists once it has at least `count` items: what ships are found by follows them in
+/// Returns the items of a list once it has at least `count`: the search index follows changes in
 /// the background.
 async fn once_there_are(harness: &Harness, count: usize, path: &str) -> Value {
     let start = Instant::now();

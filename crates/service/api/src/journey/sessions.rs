@@ -1,4 +1,4 @@
-//! A person in a browser: signs in, looks, changes something, and signs out.
+//! A person in a browser: signs in, reads, changes something, and signs out.
 
 use reqwest::redirect::Policy;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
@@ -12,7 +12,7 @@ use crate::Server;
 const PASSWORD: &str = "a long sentence of its own";
 const NEW: &str = "another long sentence";
 
-/// A browser of somebody.
+/// Browser of a user.
 struct Browser<'a> {
     harness: &'a Harness,
     cookie: String,
@@ -47,7 +47,7 @@ impl Harness {
         Self { server, client, database }
     }
 
-    /// A form as a page of this server sends it.
+    /// Returns a form as a page of this server sends it.
     fn form(&self, path: &str, fields: &[(&str, &str)]) -> RequestBuilder {
         let url = reqwest::Url::parse(&self.url(path)).unwrap();
         let body = serde_urlencoded::to_string(fields).unwrap();
@@ -202,7 +202,7 @@ async fn admins_give_and_take_on_pages(database: TestDatabase) {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn who_tries_passwords_waits() {
     let harness = Harness::with_people(TestDatabase::sqlite()).await;
-    // All at once: mistakes are forgotten while a slow machine hashes one after the other.
+    // All at once: failed attempts expire while a slow machine hashes one after the other.
     let wrong = (0..12).map(|_| harness.signs_in("ann", "a wrong sentence"));
     for answer in futures::future::join_all(wrong).await {
         assert!(matches!(answer.status().as_u16(), 200 | 429), "{}", answer.status());

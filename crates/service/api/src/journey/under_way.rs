@@ -1,4 +1,4 @@
-//! Ships under way: by requests and over a WebSocket, each of whoever has opened it.
+//! Simulation sessions: by requests and over a WebSocket, each of the caller that opened it.
 
 use std::time::{Duration, Instant};
 
@@ -62,7 +62,7 @@ async fn a_ship_sails_on_by_requests_and_by_a_stream() {
             assert_eq!(row[column], sailed["trajectory"][column][step], "{column} of step {step}");
         }
     }
-    // The same ship by both ways, and a problem in between which ends nothing.
+    // The same ship in both ways, with a problem in between which ends nothing.
     say(&mut socket, &json!({ "orders": { "inputs": { "bow": 1.0 } }, "dt_s": 0.5 })).await;
     assert_eq!(next(&mut socket).await.unwrap()["errors"][0]["field"], "orders.inputs.bow");
     say(&mut socket, &json!({ "dt_s": -1.0 })).await;
@@ -80,7 +80,7 @@ async fn a_ship_sails_on_by_requests_and_by_a_stream() {
     assert!(next(&mut socket).await.is_none());
 }
 
-/// Prints what a step takes there and back.
+/// Prints the time of one step and its answer.
 async fn times(harness: &Harness, session: &str, socket: &mut Socket) {
     let (step, mut least) = (json!({ "dt_s": 0.1 }), [Duration::MAX; 2]);
     for _ in 0..200 {
@@ -138,7 +138,7 @@ async fn sessions_are_of_whoever_opened_them_and_bounded() {
 }
 
 impl Harness {
-    /// A key that may look at everything.
+    /// Creates a key that may read everything.
     async fn reader(&self) -> String {
         let asked = json!({ "title": "a reader", "roles": [{ "role": "reader" }] });
         let (status, made) =

@@ -6,7 +6,7 @@ use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, read};
 
-/// Two stretches of a log, a heading from a sensor's own file, knots, a yaw rate that is derived.
+/// Two segments of a log, a heading from a sensor's own file, knots, a derived yaw rate.
 const MANIFEST: &str = "
 kind: trials
 ship: mariner
@@ -43,7 +43,7 @@ async fn declarations_sensors_and_stretches_are_taken_and_kept() {
     let files = [("day.csv", log()), ("gyro.csv", gyro())];
     let checked = read(post("/v1/trials/check", form(MANIFEST, &files)).await.unwrap()).await;
     assert_eq!(checked.0, StatusCode::OK, "{}", checked.1);
-    // Without a heading nothing is derived of the second: all errors of both are told at once.
+    // Without a heading nothing is derived for the second: all errors of both are reported at once.
     let errors = checked.1["trials"][1]["errors"].to_string();
     assert!(errors.contains("`r`") || errors.contains("psi"), "{}", checked.1);
     let whole = MANIFEST.replace("derive: [r]\n", "");

@@ -1,4 +1,4 @@
-//! Webhooks: what happened reaches a receiver, signed, whatever fails on the way.
+//! Webhooks: an event reaches a receiver, signed, whatever fails on the way.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -14,10 +14,10 @@ use tokio::net::TcpListener;
 use super::harness::{Harness, config, read};
 use crate::Server;
 
-/// What a receiver has seen: event, delivery, signature, body.
+/// Deliveries that a receiver has got: event, delivery, signature, body.
 type Seen = Arc<Mutex<Vec<[String; 4]>>>;
 
-/// A receiver on this machine that refuses so many deliveries before it takes one.
+/// A receiver on this machine that refuses a number of deliveries before it accepts one.
 #[derive(Clone)]
 struct Receiver {
     seen: Seen,
@@ -53,7 +53,7 @@ async fn started(database: TestDatabase, private: bool) -> Harness {
     Harness { server, client: reqwest::Client::new(), database }
 }
 
-/// Moves the Mariner's champion, back to the version where it stands.
+/// Moves the Mariner's champion to the version where it already is.
 async fn move_champion(harness: &Harness, reason: &str) {
     let path = "/v1/models/mariner/aliases/champion";
     let stands = harness.get(path).await;
@@ -98,7 +98,7 @@ async fn told(database: TestDatabase) {
     let id = made["about"]["id"].as_str().unwrap().to_owned();
     assert!(harness.get(&format!("/v1/webhooks/{id}")).await.get("secret").is_none());
 
-    // Refused once, it stays due, and arrives when it is sent again.
+    // Refused once, the delivery stays due, and arrives when it is sent again.
     move_champion(&harness, "a test").await;
     until("the first attempt", || receiver.seen.lock().unwrap().len() == 1).await;
     let mut listed = deliveries(&harness, &id).await;
@@ -126,7 +126,7 @@ async fn told(database: TestDatabase) {
         );
     }
 
-    // What was acknowledged while nobody could be told is told by the next server.
+    // Events that were acknowledged while the receiver was down are sent by the next server.
     *receiver.refuses.lock().unwrap() = 1;
     move_champion(&harness, "another").await;
     until("the third attempt", || receiver.seen.lock().unwrap().len() == 3).await;
@@ -140,7 +140,7 @@ async fn told(database: TestDatabase) {
     until("the fourth attempt", || receiver.seen.lock().unwrap().len() == 4).await;
     assert_eq!(receiver.seen.lock().unwrap()[3][1], due["id"].as_str().unwrap());
 
-    // One that has ended is told nothing more.
+    // An ended webhook gets no further events.
     let ended = harness.client.delete(harness.url(&format!("/v1/webhooks/{id}"))).send().await;
     assert_eq!(ended.unwrap().status().as_u16(), 200);
     move_champion(&harness, "unheard").await;
@@ -170,7 +170,7 @@ async fn nobody_is_told_within_the_own_network_unless_that_is_allowed() {
         assert_eq!(status, 422, "{url}: {problem}");
         assert!(problem.to_string().contains("url"), "{problem}");
     }
-    // A name that leads to this machine is found out when it is spoken to.
+    // The address that a name leads to is checked when the connection is made.
     let asked =
         json!({ "title": "T", "url": "https://localhost:1/", "events": ["champion.moved"] });
     let (status, made) = harness.post("/v1/webhooks", &asked).await;

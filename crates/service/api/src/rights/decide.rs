@@ -1,4 +1,4 @@
-//! Whether somebody may do what a route does.
+//! Decision whether a caller may use a route.
 
 use axum::extract::RawPathParams;
 use axum::http::{Method, StatusCode, Uri};
@@ -11,11 +11,11 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use sistership_web_support::acting::{Acting, current};
 
-/// A request as far as rights depend on it.
+/// Parts of a request on which rights depend.
 pub(crate) struct Asked<'a> {
     pub method: &'a Method,
     pub uri: &'a Uri,
-    /// The route, with names in braces; none where there is none.
+    /// The route, with names in braces; `None` if there is none.
     pub route: Option<&'a str>,
     pub params: &'a RawPathParams,
 }
@@ -31,10 +31,10 @@ impl Asked<'_> {
     }
 }
 
-/// Whether whoever asks may have the route carried out.
+/// Checks that the caller may use the route.
 ///
 /// # Errors
-/// They may not; says which role it takes.
+/// Returns 403 with the role that is needed.
 pub(crate) async fn allowed(app: &App, acting: &Acting, asked: &Asked<'_>) -> Result<()> {
     // There is nothing to guard where there is no route.
     let Some(route) = asked.route else { return Ok(()) };
@@ -44,11 +44,14 @@ pub(crate) async fn allowed(app: &App, acting: &Acting, asked: &Asked<'_>) -> Re
     if rights.on_server(role) {
         return Ok(());
     }
+    // The scope may take a look-up in the store, so that callers without the role anywhere are
+    // refused first.
     let given = rights.anywhere(role) && by_scope(app, rights, role, of, asked).await?;
     if given { Ok(()) } else { Err(refused(acting, role, of)) }
 }
 
-/// Whether a role that is not given for the whole server is given for what is asked about.
+/// Returns true if a role that is not given for the whole server is given for the object of the
+/// request.
 async fn by_scope(
     app: &App,
     rights: &Rights,
@@ -60,7 +63,7 @@ async fn by_scope(
     let id = asked.param("id").unwrap_or_default();
     let ship = match of {
         Of::Server => None,
-        // What it is about is found in the body, by whoever reads it.
+        // The handler finds the ship in the body, and checks the role there.
         Of::Anything | Of::Body => return Ok(true),
         Of::Ship(name) => asked.param(name).map(str::to_owned),
         Of::ShipOfQuery => asked.query("ship"),
@@ -87,7 +90,7 @@ async fn by_scope(
     }
 }
 
-/// The family of a job that is of no ship.
+/// Returns the family of a job that belongs to no ship.
 async fn family_of_job(store: &Store, kind: &str, request: &str) -> Result<Option<String>> {
     Ok(match kind {
         LEARN => serde_json::from_str::<LearnJob>(request).ok().map(|job| job.family),
@@ -99,9 +102,10 @@ async fn family_of_job(store: &Store, kind: &str, request: &str) -> Result<Optio
     })
 }
 
-/// Whether a role is given for a ship, by its name or its families.
+/// Returns true if a role is given for a ship, by its name or its families.
 async fn has(store: &Store, rights: &Rights, role: Role, ship: &str) -> Result<bool> {
     let mut families = Vec::new();
+    // Families are read only if the caller has rights by family at all.
     if rights.by_family() {
         let found = store.families().of_ship(ship, &Page::first(MAX_LIMIT)).await?;
         families.extend(found.items.into_iter().map(|family| family.name));
@@ -109,11 +113,10 @@ async fn has(store: &Store, rights: &Rights, role: Role, ship: &str) -> Result<b
     Ok(rights.on_ship(role, ship, &families))
 }
 
-/// Whether whoever the present request is carried out for has a role for a ship that only its body
-/// names.
+/// Checks that the current caller has a role for a ship that only the body of the request names.
 ///
 /// # Errors
-/// They have not, or nobody asks.
+/// Returns 403 if the role is missing, and an internal error without a caller.
 pub(crate) async fn on_ship(store: &Store, role: Role, ship: &str) -> Result<()> {
     let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
     let rights = &acting.principal.rights;
@@ -123,10 +126,10 @@ pub(crate) async fn on_ship(store: &Store, role: Role, ship: &str) -> Result<()>
     }
 }
 
-/// Those of some things that are of ships for which whoever asks has a role.
+/// Returns those items that belong to ships for which the caller has a role.
 ///
 /// # Errors
-/// The store does not answer, or nobody asks.
+/// Returns an error if the store fails, and an internal error without a caller.
 pub(crate) async fn visible<T>(
     store: &Store,
     role: Role,
@@ -147,11 +150,11 @@ pub(crate) async fn visible<T>(
     Ok(kept)
 }
 
-/// A trial that a query or a body names, for whoever has a role for its ship. To others one of
-/// another ship is not there.
+/// Returns a trial that a query or a body names, if the caller has a role for its ship. For other
+/// callers the trial does not exist.
 ///
 /// # Errors
-/// The store does not answer.
+/// Returns an error if the store fails.
 pub(crate) async fn readable_trial(store: &Store, id: &str) -> Result<Option<Trial>> {
     let trial = match store.trials().get(id).await {
         Err(StoreError::NotFound { .. }) => return Ok(None),

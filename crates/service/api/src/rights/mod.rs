@@ -1,4 +1,4 @@
-//! Who asks, and whether they may: what `sistership_auth` decides, for the routes of this server.
+//! Caller and access: the decisions of `sistership_auth` for the routes of this server.
 
 mod decide;
 mod table;

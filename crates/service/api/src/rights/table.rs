@@ -1,36 +1,36 @@
-//! Which role each route needs, and for what: the only place that says so. A route that is missing
-//! here is for admins; a test holds that none is.
+//! The role that each route needs, and its scope: the only place that says so. A route that is
+//! missing here is for admins; a test checks that none is.
 
 use axum::http::Method;
 use sistership_auth::Role;
 
 use Role::{Admin, Approver, Engineer, Reader};
 
-/// What a route needs.
+/// Role that a route needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Need {
-    /// The least role; none where whoever has shown who they are will do.
+    /// The least role; `None` if any identified caller may use the route.
     pub role: Option<Role>,
-    /// For what it must be given, where it is not given for the server.
+    /// Object for which the role must be given, if it is not given for the server.
     pub of: Of,
 }
 
-/// What a role must be given for.
+/// Object for which a role must be given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Of {
     /// The whole server.
     Server,
-    /// Anything at all.
+    /// Any object.
     Anything,
-    /// The ship that this parameter of the path names.
+    /// The ship named by this parameter of the path.
     Ship(&'static str),
-    /// The ship of the query; the whole server where it names none.
+    /// The ship of the query; the whole server by default.
     ShipOfQuery,
     /// The family of the path.
     Family,
-    /// The family of the query; the whole server where it names none.
+    /// The family of the query; the whole server by default.
     FamilyOfQuery,
-    /// The ship of the job, or its family where it is of none.
+    /// The ship of the job, or its family if it has no ship.
     Job,
     /// The ship of the trial.
     Trial,
@@ -43,7 +43,7 @@ pub(crate) enum Of {
 }
 
 impl Of {
-    /// In words.
+    /// The object in words.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Server => "the server",
@@ -56,14 +56,14 @@ impl Of {
     }
 }
 
-/// Method, route, role, for what.
+/// Method, route, role and scope.
 pub(crate) type Row = (&'static str, &'static str, Role, Of);
 
-/// What tells nothing worth a key, to whatever name it is asked by.
+/// Routes that need no key, under any host name: their answers hold nothing worth protecting.
 pub(crate) const HEALTH: [(&str, &str); 3] =
     [("GET", "/healthz"), ("GET", "/readyz"), ("GET", "/openapi.json")];
 
-/// Where people show who they are.
+/// Routes of signing in.
 pub(crate) const OPEN: [(&str, &str); 4] = [
     ("GET", "/sign-in"),
     ("POST", "/sign-in"),
@@ -71,7 +71,7 @@ pub(crate) const OPEN: [(&str, &str); 4] = [
     ("GET", "/sign-in/oidc/callback"),
 ];
 
-/// Routes for which it is enough to have shown who one is.
+/// Routes for any identified caller.
 pub(crate) const ANYONE: [(&str, &str); 5] = [
     ("GET", "/v1/me"),
     ("GET", "/account"),
@@ -83,7 +83,7 @@ pub(crate) const ANYONE: [(&str, &str); 5] = [
 const SHIP: Of = Of::Ship("ship");
 const MODEL: Of = Of::Ship("model");
 
-/// All routes but [`ANYONE`], [`HEALTH`] and [`OPEN`].
+/// All routes but those of the three lists above.
 #[rustfmt::skip]
 pub(crate) const TABLE: &[Row] = &[
     ("GET", "/metrics", Reader, Of::Server),
@@ -134,7 +134,7 @@ pub(crate) const TABLE: &[Row] = &[
     ("PUT", "/v1/models/{model}/aliases/{alias}", Engineer, MODEL),
     ("GET", "/v1/models/{model}/aliases/{alias}/history", Reader, MODEL),
     ("POST", "/v1/predictions", Reader, Of::Body),
-    // Sessions are of whoever has opened them, and of nobody else.
+    // Sessions belong to the caller that opened them; others do not find them.
     ("GET", "/v1/sessions", Reader, Of::Anything),
     ("POST", "/v1/sessions", Reader, Of::Body),
     ("GET", "/v1/sessions/{id}", Reader, Of::Body),
@@ -147,8 +147,8 @@ pub(crate) const TABLE: &[Row] = &[
     ("GET", "/v1/laws/{law}", Reader, Of::Anything),
     ("GET", "/v1/effects", Reader, Of::Anything),
     ("GET", "/v1/effects/{sha256}", Reader, Of::Anything),
-    // Families. Who puts a ship into a family gives rights on it to those who have some on the
-    // family.
+    // Families. Adding a ship to a family gives those with a role for the family rights on the
+    // ship.
     ("GET", "/v1/families", Reader, Of::Server),
     ("POST", "/v1/families", Engineer, Of::Server),
     ("GET", "/v1/families/{family}", Reader, Of::Family),
@@ -230,10 +230,10 @@ pub(crate) const TABLE: &[Row] = &[
     ("GET", "/audit", Admin, Of::Server),
 ];
 
-/// The role that the word of a second person takes, where one is asked for.
+/// Role of the second person, if one is required.
 pub(crate) const SECOND_PERSON: Role = Approver;
 
-/// What a route needs.
+/// Returns the role that a route needs; `None` for routes without access control.
 pub(super) fn need(method: &Method, route: &str) -> Option<Need> {
     let method = if *method == Method::HEAD { "GET" } else { method.as_str() };
     if HEALTH.contains(&(method, route)) || OPEN.contains(&(method, route)) || is_unknown(method) {
@@ -242,12 +242,13 @@ pub(super) fn need(method: &Method, route: &str) -> Option<Need> {
     if ANYONE.contains(&(method, route)) {
         return Some(Need { role: None, of: Of::Anything });
     }
+    // A route that is missing in the table is for admins.
     let row = TABLE.iter().find(|(known, at, ..)| *known == method && *at == route);
     let (role, of) = row.map_or((Admin, Of::Server), |&(_, _, role, of)| (role, of));
     Some(Need { role: Some(role), of })
 }
 
-/// Whether no route has the method, so that the router answers 405.
+/// Returns true if no route has the method, so that the router answers 405.
 fn is_unknown(method: &str) -> bool {
     !["GET", "PUT", "POST", "DELETE"].contains(&method)
 }

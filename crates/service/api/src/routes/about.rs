@@ -1,4 +1,4 @@
-//! What the OpenAPI document says of the whole.
+//! General part of the OpenAPI document.
 
 use utoipa::OpenApi as _;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
@@ -38,7 +38,7 @@ use crate::problem::{Fault, Problem};
 )]
 struct About;
 
-/// What does not depend on the endpoints.
+/// Returns the part of the document that does not depend on the endpoints.
 pub(super) fn about() -> OpenApi {
     let mut about = About::openapi();
     about.info.version = env!("CARGO_PKG_VERSION").to_owned();

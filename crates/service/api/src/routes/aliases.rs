@@ -23,23 +23,23 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))
 }
 
-/// Where an alias stands.
+/// Position of an alias.
 #[derive(Debug, Serialize, ToSchema)]
 struct AliasView {
     model: String,
     alias: String,
-    /// The number of the version that it stands for.
+    /// Number of the version that it refers to.
     version: i64,
-    /// One more with each move; its ETag.
+    /// Increases by one with each move; its ETag.
     revision: i64,
 }
 
 /// One move of an alias.
 #[derive(Debug, Serialize, ToSchema)]
 struct AliasStep {
-    /// The version it stood for; null at first.
+    /// Version before the move; null for the first.
     from: Option<i64>,
-    /// The version it stands for since.
+    /// Version after the move.
     to: i64,
     revision: i64,
     reason: String,
@@ -47,14 +47,14 @@ struct AliasStep {
     moved_us: i64,
 }
 
-/// Where an alias shall stand.
+/// Requested position of an alias.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct AliasRequest {
-    /// The number of the version.
+    /// Number of the version.
     #[schema(inline)]
     version: VersionNumber,
-    /// Why; kept in the history.
+    /// Reason, kept in the history.
     #[schema(inline)]
     reason: Remark,
 }
@@ -95,7 +95,7 @@ async fn list(
     Ok(Json(Listing::of(aliases, AliasView::of)))
 }
 
-/// Where an alias stands; its ETag is what a move must present
+/// Get the position of an alias; a move must present its ETag
 #[utoipa::path(
     get, path = "/v1/models/{model}/aliases/{alias}", tag = "models",
     params(("model" = inline(Name), Path), ("alias" = inline(Name), Path)),
@@ -128,15 +128,20 @@ async fn put(
     payload: Payload,
 ) -> Result<Response> {
     let AliasRequest { version, reason } = payload.json()?;
+    // Reserved names are those that the server itself moves.
     check(&name)?;
     let current = alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
+    // The headers If-Match and If-None-Match are the only way to state the expected position.
     let expect = conditions.expect(&format!("alias `{model}/{name}`"), current)?;
     let moved = move_to(&app, &model, &name, version.get(), expect, &reason).await?;
     let status = if expect == Expect::Absent { StatusCode::CREATED } else { StatusCode::OK };
     Ok(AliasView::of(moved).answer(status))
 }
 
-/// Moves an alias that stands where it is expected.
+/// Moves an alias if its position is as expected.
+///
+/// # Errors
+/// Returns an error if it is not, or if the champion needs an approver.
 pub(super) async fn move_to(
     app: &App,
     model: &str,
@@ -148,12 +153,13 @@ pub(super) async fn move_to(
     if alias == CHAMPION {
         second_person(app.store(), model).await?;
     }
+    // The author is the caller, never a field of the request.
     let (alias, actor) = (alias.to_owned(), Actor::current().name);
     let change = AliasMove { alias, expect, reason: reason.to_owned(), actor };
     Ok(app.store().aliases().move_to(model, version, &change).await?)
 }
 
-/// Where a second person is asked for, the champion moves by the word of an approver.
+/// Checks the role of an approver, if moves of the champion need a second person.
 pub(super) async fn second_person(store: &Store, ship: &str) -> Result<()> {
     match store.settings().second_person().await? {
         true => on_ship(store, SECOND_PERSON, ship).await,
@@ -171,7 +177,7 @@ fn check(name: &str) -> Result<()> {
     }
 }
 
-/// How an alias has moved, the latest first
+/// List the moves of an alias, the latest first
 #[utoipa::path(
     get, path = "/v1/models/{model}/aliases/{alias}/history", tag = "models",
     params(("model" = inline(Name), Path), ("alias" = inline(Name), Path), Paged),

@@ -1,4 +1,4 @@
-//! What has been done by whom, and the settings that are recorded there.
+//! The audit log, and the settings whose changes it records.
 
 use axum::Json;
 use axum::extract::State;
@@ -27,32 +27,32 @@ struct EntryView {
     /// 1, 2, 3, ...
     number: i64,
     at_us: i64,
-    /// Who: a user, `key:PREFIX`, `server-key`, `local`, `command-line` or `sistership` itself.
+    /// Author: a user, `key:PREFIX`, `server-key`, `local`, `command-line` or `sistership` itself.
     actor: String,
-    /// From where: an address, a job, a process.
+    /// Origin: an address, a job, a process.
     origin: String,
-    /// What, such as `alias.move`.
+    /// Action, such as `alias.move`.
     action: String,
-    /// To what, such as `ship:kvlcc2`.
+    /// Subject, such as `ship:kvlcc2`.
     subject: String,
-    /// What was true of it before; null where it was not there.
+    /// State of the subject before; null if it did not exist.
     #[schema(value_type = Option<Object>)]
     before: Option<Value>,
-    /// What is true of it since; null where it is gone.
+    /// State of the subject after; null if it no longer exists.
     #[schema(value_type = Option<Object>)]
     after: Option<Value>,
-    /// The hash of the entry before; empty for the first.
+    /// Hash of the previous entry; empty for the first.
     previous_sha256: String,
-    /// The hash of the entry and of the one before it.
+    /// Hash of this entry and of the previous one.
     sha256: String,
 }
 
 /// The last entry of the audit.
 #[derive(Debug, Serialize, ToSchema)]
 struct HeadView {
-    /// Its number; 0 where there is none.
+    /// Its number; 0 if the audit is empty.
     number: i64,
-    /// Its hash: who keeps it elsewhere can tell later that nothing before it was written anew.
+    /// Its hash. A copy kept elsewhere proves later that no earlier entry was rewritten.
     sha256: String,
 }
 
@@ -60,10 +60,10 @@ struct HeadView {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// By this one only.
+    /// Only entries by this author.
     #[param(inline)]
     actor: Option<AuditName>,
-    /// About this only.
+    /// Only entries about this subject.
     #[param(inline)]
     subject: Option<AuditName>,
     /// The most items to return.
@@ -74,17 +74,18 @@ struct Query {
     after: Option<Cursor>,
 }
 
-/// Settings that hold for every process on the store.
+/// Settings that apply to every process on the store.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct Settings {
-    /// Whether a version becomes champion only by the word of an approver who has not made it.
+    /// True if a version becomes champion only by an approver who has not made it.
     second_person: bool,
 }
 
 impl EntryView {
     fn of(entry: AuditEntry) -> Self {
         let AuditEntry { number, at_us, actor, origin, action, subject, .. } = entry;
+        // States are stored as JSON; one that cannot be parsed is shown as null.
         let read = |text: Option<String>| text.and_then(|text| serde_json::from_str(&text).ok());
         let (before, after) = (read(entry.state_before), read(entry.state_after));
         let (previous_sha256, sha256) = (entry.previous_sha256, entry.sha256);
@@ -103,13 +104,14 @@ impl EntryView {
     }
 }
 
-/// What has been done by whom, the latest first
+/// List the entries of the audit, the latest first
 #[utoipa::path(get, path = "/v1/audit", tag = "access", params(Query),
     responses((status = 200, body = Listing<EntryView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Query>,
 ) -> Result<Json<Listing<EntryView>>> {
+    // The store filters by one of the two only.
     let filter = match (&query.actor, &query.subject) {
         (Some(_), Some(_)) => {
             let message = "give either an actor or a subject";
@@ -125,7 +127,7 @@ async fn list(
     Ok(Json(Listing::of(entries, EntryView::of)))
 }
 
-/// The number and the hash of the last entry of the audit
+/// Get the number and the hash of the last entry of the audit
 #[utoipa::path(get, path = "/v1/audit/head", tag = "access",
     responses((status = 200, body = HeadView)))]
 async fn head(State(app): State<App>) -> Result<Json<HeadView>> {
@@ -133,7 +135,7 @@ async fn head(State(app): State<App>) -> Result<Json<HeadView>> {
     Ok(Json(HeadView { number: head.number, sha256: head.sha256 }))
 }
 
-/// Settings that hold for every process on the store
+/// Get the settings that apply to every process on the store
 #[utoipa::path(get, path = "/v1/settings", tag = "access",
     responses((status = 200, body = Settings)))]
 async fn settings(State(app): State<App>) -> Result<Json<Settings>> {

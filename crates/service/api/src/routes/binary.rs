@@ -1,6 +1,6 @@
 //! Files in the OpenAPI document.
 
-/// A file as it is.
+/// A file, byte for byte.
 #[derive(utoipa::ToSchema)]
 #[schema(value_type = String, format = Binary)]
 #[allow(dead_code, reason = "it only describes a body")]

@@ -1,4 +1,4 @@
-//! Asking for a learned branch, and its weights.
+//! Training of learned corrections, and their weights.
 
 use axum::extract::State;
 use axum::http::header;
@@ -29,28 +29,28 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(train)).routes(routes!(weights))
 }
 
-/// A learned branch to be trained.
+/// A learned correction to be trained.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct BranchRequest {
-    /// The version that is its foundation: `ship` (its champion), `ship/number`, `ship/alias`.
+    /// The version to correct: `ship` (its champion), `ship/number`, `ship/alias`.
     #[schema(inline)]
     model: ModelName,
-    /// Ids of trials of the ship; all of them where absent.
+    /// Ids of trials of the ship; by default all of them.
     #[schema(inline, min_items = 1)]
     trials: Option<Vec<Id>>,
-    /// What learns, and how. Where no kind is named, every kind is tried, and one is taken only
-    /// where it wins on trials left out by more than its uncertainty.
+    /// Kind of learner and its settings. By default every kind is evaluated, and one is selected
+    /// only if it improves on held-out trials by more than its uncertainty.
     #[serde(default)]
     #[schema(schema_with = described::<BranchSettings>)]
     settings: BranchSettings,
 }
 
-/// Train a learned branch beside a version
+/// Train a learned correction of a version
 ///
-/// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
-/// ship's line, `candidate`, whose parent is the foundation; none where every kind was tried and no
-/// branch wins.
+/// The work is a job: follow the `Location`, or its `/events`. Its result is a version of the
+/// ship's line, `candidate`, whose parent is the version corrected; there is none if every kind was
+/// evaluated and none was selected.
 #[utoipa::path(
     post, path = "/v1/branches", tag = "branches",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
@@ -68,10 +68,11 @@ async fn queued(app: &App, request: BranchRequest) -> Result<Reply> {
     accepted(enqueue(app, BRANCH, &job.ship, &job).await?)
 }
 
-/// The request with everything looked up, so that a job that is wrong is refused at once.
+/// Looks up everything that the request names, so that a wrong request is refused at once.
 async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
     let BranchRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
+    // Reading the version takes a reader, training on it an engineer.
     on_ship(app.store(), Role::Engineer, &version.head.model).await?;
     let number = foundation(app, &version.head).await?;
     settings
@@ -88,8 +89,8 @@ async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
     Ok(BranchJob { ship, number, trials, settings })
 }
 
-/// The number of the version beside which a correction is trained: that without one of which a
-/// version came.
+/// Returns the number of the version to correct: of a version with a learned correction, the one
+/// without it that it came from.
 async fn foundation(app: &App, head: &sistership_store::VersionHead) -> Result<i64> {
     let number = foundation_of(app.archive(), &head.model, head.number).await?;
     let elsewhere = || {
@@ -102,9 +103,10 @@ async fn foundation(app: &App, head: &sistership_store::VersionHead) -> Result<i
     number.ok_or_else(elsewhere)
 }
 
-/// The weights of a version's learned branch
+/// Get the weights of a version's learned correction
 ///
-/// `sistership simulate --model m.yaml` takes them as `m.weights.json` beside the model.
+/// `sistership simulate --model m.yaml` reads them from `m.weights.json` in the folder of the
+/// model.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/weights", tag = "branches",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),

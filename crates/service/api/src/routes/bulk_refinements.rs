@@ -35,48 +35,47 @@ struct BulkView {
     id: String,
     family: String,
     created_us: i64,
-    /// What was asked, with everything looked up.
+    /// The request, with all defaults filled in.
     #[schema(value_type = Object)]
     request: Value,
     #[serde(flatten)]
     standing: Standing,
 }
 
-/// What has become of a ship.
+/// Outcome of a bulk refinement for one ship.
 #[derive(Debug, Serialize, ToSchema)]
 struct OutcomeView {
     ship: String,
     /// `champion`, `candidate`, `unchanged` or `refused`.
     outcome: String,
-    /// The version that came of it.
+    /// Number of the resulting version.
     version: Option<i64>,
-    /// By how much its worst axis is worse than before, as a share; below zero where all are
-    /// better.
+    /// Relative change of the error on the axis that is worst; negative if all axes are better.
     worst_change: Option<f64>,
-    /// Errors by axis and manoeuvres before and after, or the reason why not.
+    /// Errors by axis and manoeuvres before and after, or the reason for the outcome.
     #[schema(value_type = Object)]
     comparison: Value,
 }
 
-/// A person's word for candidates of this refinement.
+/// A person's decision to promote candidates of this refinement.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct Promotion {
-    /// Who says so.
+    /// Person who decides.
     #[schema(inline)]
     actor: Remark,
-    /// Why.
+    /// Reason.
     #[schema(inline)]
     reason: Remark,
-    /// The ships; every candidate where absent.
+    /// The ships; by default every candidate.
     #[schema(inline)]
     ships: Option<Vec<Name>>,
 }
 
-/// What a person's word has done.
+/// Result of a promotion.
 #[derive(Debug, Serialize, ToSchema)]
 struct Promoted {
-    /// How many candidates have become champions.
+    /// Number of candidates that have become champions.
     champions: usize,
 }
 
@@ -84,7 +83,7 @@ struct Promoted {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ListQuery {
-    /// Of this family only.
+    /// Only refinements of this family.
     #[param(inline)]
     family: Option<Word>,
     /// The most items to return.
@@ -99,7 +98,7 @@ struct ListQuery {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ShipQuery {
-    /// With this outcome only.
+    /// Only ships with this outcome.
     #[param(inline)]
     outcome: Option<Outcome>,
     /// The most items to return.
@@ -110,7 +109,7 @@ struct ShipQuery {
     after: Option<Cursor>,
 }
 
-/// What may have become of a ship.
+/// Outcome of a bulk refinement for one ship.
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 enum Outcome {
@@ -155,8 +154,8 @@ impl OutcomeView {
 
 /// Refine every member of a family from the statistics of its trials
 ///
-/// The ships are shared out among all workers in chunks, each a job. Nothing becomes champion but
-/// by the rule given here, or by a person's word afterwards.
+/// The ships are distributed in chunks, each a job, over all workers. A version becomes champion
+/// only by the rule given here, or by a person's decision afterwards.
 #[utoipa::path(
     post, path = "/v1/families/{family}/refinements", tag = "families",
     params(("family" = inline(Word), Path),
@@ -170,6 +169,8 @@ async fn refine(
     payload: Payload,
 ) -> Result<Response> {
     let asked: Asked = payload.json()?;
+    // Bulk refinement and jobs are queued in one transaction; the workers are woken after its
+    // commit.
     let work = |app: App| async move {
         let bulk = order_refinement(app.store(), &family, &asked).await?;
         let id = bulk.id.clone();
@@ -180,7 +181,7 @@ async fn refine(
     key.once(&app, payload.bytes(), work).await
 }
 
-/// List the refinements of families, the latest first
+/// List the bulk refinements, the latest first
 #[utoipa::path(
     get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery),
     responses((status = 200, body = Listing<BulkView>))
@@ -195,13 +196,14 @@ async fn list(
         .list(query.family.as_deref(), &page::page(query.limit, query.after.as_ref())?)
         .await?;
     let mut items = Vec::with_capacity(bulks.items.len());
+    // The status of each is counted from its chunks, hence look-ups for each item; a page has few.
     for bulk in bulks.items {
         items.push(BulkView::of(&app, bulk).await?);
     }
     Ok(Json(Listing { items, next: bulks.next }))
 }
 
-/// How far a refinement of a family is
+/// Get the state of a bulk refinement
 #[utoipa::path(
     get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
@@ -211,7 +213,7 @@ async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkVi
     Ok(Json(BulkView::of(&app, bulk).await?))
 }
 
-/// Cancel what is left of a refinement; ships that are done stay so
+/// Cancel the rest of a bulk refinement; ships that are done keep their outcome
 #[utoipa::path(
     delete, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
@@ -222,7 +224,7 @@ async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Bul
     Ok(Json(BulkView::of(&app, bulk).await?))
 }
 
-/// Go on with the chunks that failed or were cancelled
+/// Run the chunks again that failed or were cancelled
 #[utoipa::path(
     post, path = "/v1/bulk-refinements/{id}/retry", tag = "families",
     params(("id" = inline(Id), Path)),
@@ -231,11 +233,12 @@ async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Bul
 async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
     app.store().bulks().retry(&id).await?;
+    // Several chunks may be queued again: all workers are woken.
     app.wake().notify_waiters();
     Ok(Json(BulkView::of(&app, bulk).await?))
 }
 
-/// Every ship of a refinement, before and after
+/// List the ships of a bulk refinement with their errors before and after
 #[utoipa::path(
     get, path = "/v1/bulk-refinements/{id}/ships", tag = "families",
     params(("id" = inline(Id), Path), ShipQuery),
@@ -253,7 +256,7 @@ async fn ships(
     Ok(Json(Listing::of(outcomes, OutcomeView::of)))
 }
 
-/// Make candidates of a refinement champions, by a person's word
+/// Promote candidates of a bulk refinement to champions
 #[utoipa::path(
     post, path = "/v1/bulk-refinements/{id}/champions", tag = "families",
     params(("id" = inline(Id), Path)), request_body = Promotion,
@@ -269,6 +272,7 @@ async fn promote(
     let (reason, actor) = (word.reason.into_string(), word.actor.into_string());
     let change = AliasMove { alias: CHAMPION.to_owned(), expect: Expect::Any, reason, actor };
     let (mut champions, mut page) = (0, Page::first(MAX_LIMIT));
+    // Candidates are promoted one by one; an error leaves the earlier promotions in place.
     loop {
         let list = app.store().bulks().outcomes(&bulk.id, Some("candidate"), &page).await?;
         for outcome in &list.items {
@@ -277,6 +281,7 @@ async fn promote(
                 .as_ref()
                 .is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
             if let (true, Some(version)) = (meant, outcome.version) {
+                // The role of an approver may depend on the ship, so that it is checked for each.
                 second_person(app.store(), &outcome.ship).await?;
                 app.store().bulks().promote(&bulk.id, &outcome.ship, version, &change).await?;
                 champions += 1;

@@ -1,4 +1,4 @@
-//! The query the product exists for: the model of a ship.
+//! The model of a ship, which is the central query of the service.
 
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
@@ -33,7 +33,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Serialize, ToSchema)]
 struct Champion {
     ship: String,
-    /// The version that the alias `champion` stands for.
+    /// The version that the alias `champion` refers to.
     version: VersionHead,
     /// The model, as `models/schema/model.json` describes it.
     #[schema(value_type = Object)]
@@ -44,7 +44,7 @@ struct Champion {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// `json` or `yaml`, over what `Accept` says.
+    /// `json` or `yaml`; takes precedence over `Accept`.
     #[param(inline)]
     format: Option<Format>,
 }
@@ -56,9 +56,9 @@ enum Format {
     Yaml,
 }
 
-/// The model of a ship: its champion
+/// Get the model of a ship: its champion
 ///
-/// As YAML it is a file that `sistership simulate --model` takes.
+/// The YAML form is a file that `sistership simulate --model` reads.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/model", tag = "ships",
     params(("ship" = inline(Name), Path), Query,
@@ -77,11 +77,13 @@ async fn champion(
     conditions: Conditions,
     headers: HeaderMap,
 ) -> Result<Response> {
+    // A format in the query takes precedence over `Accept`.
     let media = match query.format {
         Some(Format::Json) => JSON,
         Some(Format::Yaml) => YAML,
         None => accept::choose(&headers, &[JSON, YAML])?,
     };
+    // A ship without champion gets advice; an unknown ship gets its own error.
     let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else {
         return Err(missing(&app, &ship).await);
     };
@@ -96,14 +98,17 @@ async fn champion(
     })
 }
 
-/// The answer, as it was given before where it was.
+/// Returns the answer, from the cache if the version was requested before.
 async fn answer(app: &App, current: CurrentVersion, media: &'static str) -> Result<Answer> {
+    // A version never changes, so that its answer stays valid; the report is part of the key, as it
+    // may be added later.
     let key = (current.id, current.report, media);
     if let Some(answer) = app.answers().get(&key) {
         return Ok(answer);
     }
     let version = app.store().versions().by_id(&key.0).await?;
     let (model, sha256) = (document(&version)?.model, &version.head.sha256);
+    // The two forms need different tags: caches must not confuse them.
     let (etag, body) = match media {
         YAML => (tag(format!("{sha256}.yaml")), yaml(&model)?),
         _ => (tag(sha256), json(version.head, key.1.clone(), &model)?),
@@ -116,7 +121,7 @@ async fn answer(app: &App, current: CurrentVersion, media: &'static str) -> Resu
     Ok(answer)
 }
 
-/// Why there is no champion.
+/// Returns the reason for which a ship has no champion.
 async fn missing(app: &App, ship: &str) -> Problem {
     if let Err(error) = app.store().ships().get(ship).await {
         return error.into();

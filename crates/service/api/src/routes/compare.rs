@@ -1,4 +1,4 @@
-//! Versions side by side.
+//! Comparison of versions.
 
 use axum::Json;
 use axum::extract::State;
@@ -31,7 +31,7 @@ struct Query {
     trial: Option<Vec<Id>>,
 }
 
-/// Two to five versions side by side
+/// Compare two to five versions
 ///
 /// Coefficients with their standard errors, errors on the same trials, each simulated once from its
 /// first sample, figures of the standard manoeuvres, and the IMO criteria.
@@ -54,13 +54,17 @@ async fn compare(
         let trial = readable_trial(app.store(), id).await?;
         asked.trials.push(trial.ok_or_else(missing)?);
     }
+    // Simulations of several versions take as much memory as a job.
     let _share = app.job_memory().take(demand(&asked), app.limits().memory_wait).await?;
     let samples = app.archive().trials(&asked.samples()).await?;
     let done = app.compute(move || compared(&asked, &samples)).await?;
     done.map(Json).map_err(|error| Problem::invalid("version", error.to_string()))
 }
 
-/// The values of a parameter.
+/// Returns the values of a repeated parameter.
+///
+/// # Errors
+/// Returns an error if a value is invalid, or if there are too few or too many.
 fn read<T: std::str::FromStr<Err = String>>(
     pairs: &[(String, String)],
     field: &str,

@@ -1,5 +1,5 @@
-//! Types of other crates in the OpenAPI document, by the JSON Schemas that they are described with
-//! everywhere.
+//! Types of other crates in the OpenAPI document, by the JSON Schemas that describe them elsewhere
+//! as well.
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value};
@@ -14,7 +14,7 @@ use utoipa::openapi::schema::Schema;
 
 use crate::web::field::any_object;
 
-/// A vessel as a body; [`add`] writes its schema.
+/// Body of a vessel; its schema is added to the document separately.
 pub(super) struct Vessel;
 
 impl utoipa::PartialSchema for Vessel {
@@ -29,7 +29,7 @@ impl utoipa::ToSchema for Vessel {
     }
 }
 
-/// The schemas of everything that a request takes from another crate, by name.
+/// Returns the schemas of all request types of other crates, by name.
 pub(super) fn schemas() -> Map<String, Value> {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
     let mut generator = settings
@@ -44,7 +44,7 @@ pub(super) fn schemas() -> Map<String, Value> {
     generator.take_definitions(true)
 }
 
-/// Adds them to the document.
+/// Adds the schemas of other crates to the document.
 pub(super) fn add(document: &mut Value) {
     if let Some(known) = document["components"]["schemas"].as_object_mut() {
         known.extend(schemas());

@@ -1,4 +1,4 @@
-//! Asking for a diagnosis.
+//! Requests of diagnoses.
 
 use axum::extract::State;
 use axum::response::Response;
@@ -30,15 +30,15 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(diagnose))
 }
 
-/// A diagnosis to be done.
+/// A diagnosis to be run.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct DiagnosisRequest {
     /// The version to diagnose: `ship` (its champion), `ship/number`, `ship/alias`.
     #[schema(inline)]
     model: ModelName,
-    /// Ids of trials of the ship; where absent, those that the version was not made of, or all
-    /// where none are left.
+    /// Ids of trials of the ship; by default those that the version was not fitted to, or all if
+    /// there are no others.
     #[schema(inline, min_items = 1)]
     trials: Option<Vec<Id>>,
     /// Settings of the diagnosis; each has a default, and all are kept with the report.
@@ -47,10 +47,10 @@ struct DiagnosisRequest {
     settings: Settings,
 }
 
-/// Find what a model lacks
+/// Diagnose what effects a model lacks
 ///
-/// The work is a job: follow the `Location`, or its `/events`. It ends in a report. Where effects
-/// are found missing, the model with them becomes a version of the ship's line, `candidate`, whose
+/// The work is a job: follow the `Location`, or its `/events`. It ends in a report. If missing
+/// effects are found, the model with them becomes a version of the ship's line, `candidate`, whose
 /// parent is the version diagnosed.
 #[utoipa::path(
     post, path = "/v1/diagnoses", tag = "diagnoses",
@@ -69,16 +69,18 @@ async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
 }
 
 async fn enqueued(app: &App, request: DiagnosisRequest) -> Result<Job> {
+    // The ship is named by the request, even if the name resolves to nothing: then the next call
+    // fails.
     let ship = request.model.split('/').next().unwrap_or_default().to_owned();
     enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await
 }
 
-/// Queues a diagnosis that a page asks for, by the document that the endpoint takes.
+/// Queues a diagnosis that a page requests, from the document that the endpoint takes.
 pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
     enqueued(app, from_slice(&serde_json::to_vec(asked).map_err(Problem::internal)?)?).await
 }
 
-/// The request with everything looked up, so that a job that is wrong is refused at once.
+/// Looks up everything that the request names, so that a wrong request is refused at once.
 async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
@@ -95,9 +97,11 @@ async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     Ok(DiagnosisJob { ship, number, trials, with_earlier, settings, key_sha256 })
 }
 
-/// The trials of the ship that a version was not made of; all of them where none are left.
+/// Returns the trials of the ship that a version was not fitted to; all of them if there are no
+/// others.
 async fn unseen(app: &App, version: &Version) -> Result<Vec<String>> {
     let all = all_of_ship(app, &version.head.model).await?;
+    // Trials are compared by the hash of their samples, by which recipes name them.
     let seen = fitted_samples(app.archive(), version).await?;
     let ids = |trials: &[&Trial]| trials.iter().map(|trial| trial.id.clone()).collect::<Vec<_>>();
     let new: Vec<&Trial> = all.iter().filter(|trial| !seen.contains(&trial.sha256)).collect();

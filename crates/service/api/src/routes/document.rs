@@ -8,17 +8,18 @@ use super::{described, endpoints};
 use crate::config::Limits;
 use sistership_web_support::{operations, tidy};
 
-/// The contract of the server, as `/openapi.json` serves it.
+/// Returns the contract of the server, as `/openapi.json` serves it.
 pub fn openapi() -> Value {
     let mut document = endpoints::api(&Limits::default()).into_openapi();
     operations::complete(&mut document);
+    // The remaining steps change the serialized form, which utoipa's types cannot express.
     let mut document = serde_json::to_value(&document).unwrap_or_default();
     described::add(&mut document);
     tidy::tidy(&mut document);
     document
 }
 
-/// The document as text, indented, with a line feed at its end.
+/// Returns the document as text, indented, with a line feed at its end.
 pub(super) fn text() -> String {
     serde_json::to_string_pretty(&openapi()).map(|text| text + "\n").unwrap_or_default()
 }

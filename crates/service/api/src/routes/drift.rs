@@ -1,4 +1,4 @@
-//! Ships whose model no longer holds.
+//! Ships whose model no longer agrees with new trials.
 
 use axum::Json;
 use axum::extract::State;
@@ -21,13 +21,13 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// How many members are looked at; those whose diagnosis says that their model does not hold
-    /// come first.
+    /// Number of members to examine; those whose diagnosis says that their model does not hold come
+    /// first.
     #[param(inline)]
     limit: Option<MemberLimit>,
 }
 
-/// What a ship's champion leaves of each of its trials, over time
+/// Get the unexplained force of a ship's champion in each of its trials, over time
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = Drift))
@@ -43,8 +43,8 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Jso
     })
 }
 
-/// Ships of a family whose model no longer holds, the worst first, with the effects that their
-/// diagnosis names
+/// List the ships of a family whose model no longer holds, the worst first, with the effects that
+/// their diagnosis names
 #[utoipa::path(
     get, path = "/v1/families/{family}/drift", tag = "families",
     params(("family" = inline(Word), Path), Query),

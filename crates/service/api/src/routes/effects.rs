@@ -1,4 +1,4 @@
-//! Libraries of effects, as recipes name them.
+//! Libraries of effects, to which recipes refer.
 
 use axum::Json;
 use axum::extract::State;
@@ -17,10 +17,10 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
 }
 
-/// A library of effects as lists show it.
+/// An entry in the list of effect libraries.
 #[derive(Debug, Serialize, ToSchema)]
 struct EffectLibraryHead {
-    /// The SHA-256 of its document, by which recipes name it.
+    /// SHA-256 of its document, by which recipes refer to it.
     sha256: String,
     created_us: i64,
 }
@@ -44,8 +44,8 @@ async fn list(
     Ok(Json(Listing::of(libraries, EffectLibraryHead::of)))
 }
 
-/// A library of effects: the YAML files of its effects one after another, byte for byte as they
-/// were hashed
+/// Get a library of effects: the YAML files of its effects in sequence, byte for byte as they were
+/// hashed
 #[utoipa::path(
     get, path = "/v1/effects/{sha256}", tag = "effects", params(("sha256" = String, Path)),
     responses((status = 200, content((String = "application/yaml"))))

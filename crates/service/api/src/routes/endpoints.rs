@@ -1,4 +1,4 @@
-//! Every endpoint that the OpenAPI document describes, with the limits that it is served by.
+//! All endpoints of the OpenAPI document, with the limits that apply to them.
 
 use axum::extract::DefaultBodyLimit;
 use axum::http::StatusCode;
@@ -14,12 +14,12 @@ use super::{
 use crate::app::App;
 use crate::config::Limits;
 
-/// The endpoints that the OpenAPI document describes.
+/// Returns the endpoints of the OpenAPI document.
 pub(super) fn api(limits: &Limits) -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(about::about()).merge(quick(limits)).merge(long(limits))
 }
 
-/// What is answered at once.
+/// Returns the endpoints that answer at once.
 fn quick(limits: &Limits) -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(health::routes())
@@ -60,7 +60,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.request_time))
 }
 
-/// What takes long: uploads, and deriving a version again.
+/// Returns the endpoints that take long: uploads, and the derivation of a version again.
 fn long(limits: &Limits) -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(uploads::routes())

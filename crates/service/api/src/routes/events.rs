@@ -1,4 +1,4 @@
-//! A job as it goes, as server-sent events.
+//! Progress of a job as server-sent events.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::app::App;
 use crate::problem::Result;
 use crate::web::{Id, Place};
 
-/// How often the job is looked at: another process may work on it.
+/// Interval at which the job is read: another process may work on it.
 const LOOK: Duration = Duration::from_millis(200);
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -24,8 +24,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 
 /// Follow a job until its end
 ///
-/// Each event is called `job` and holds the job as JSON; there is one at once and one with each
-/// change. The stream ends when the job is at its end, or when the server stops.
+/// Each event is called `job` and holds the job as JSON; one is sent at once and one with each
+/// change. The stream ends with the job, or when the server stops.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView, content_type = "text/event-stream"))
@@ -43,6 +43,7 @@ fn follow(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallible>>
     async_stream::stream! {
         let (mut stopping, mut seen, mut job) = (app.stopping(), None, first);
         loop {
+            // The first state is always sent, as nothing precedes it.
             if seen.replace(mark(&job)) != Some(mark(&job)) {
                 yield Ok(event(job.clone()));
             }
@@ -61,7 +62,7 @@ fn follow(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallible>>
     }
 }
 
-/// What a listener is told about when it changes.
+/// Returns the parts of a job whose change is sent to the listener.
 fn mark(job: &Job) -> (JobState, u64, String, bool, i64) {
     (job.state, job.progress.to_bits(), job.message.clone(), job.cancel_requested, job.attempt)
 }

@@ -1,4 +1,4 @@
-//! Versions written down for other tools.
+//! Export of versions for other tools.
 
 use axum::extract::State;
 use axum::http::header;
@@ -26,10 +26,10 @@ struct Query {
     format: Option<ExportFormat>,
 }
 
-/// A version as a file for another tool
+/// Export a version as a file for another tool
 ///
-/// It has the law with the model's effects, the steering gear, and a current as an input: what a
-/// prediction sails. What a model has learned beside its law is written with it.
+/// The file has the law with the model's effects, the steering gear, and a current as an input, as
+/// in a prediction. A learned correction is written with it.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/export", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),

@@ -35,13 +35,13 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct FamilyView {
     pub name: String,
-    /// What people call it.
+    /// Display name.
     pub title: String,
-    /// The version that the members' models are founded on, `ship/number`.
+    /// Version from which the members' models are refined, `ship/number`.
     pub foundation: String,
-    /// How many ships it has.
+    /// Number of its ships.
     pub members: i64,
-    /// How often it has taught something; null where it has not.
+    /// Latest revision of its prior; null if there is none.
     pub prior: Option<i64>,
     pub created_us: i64,
 }
@@ -51,38 +51,38 @@ pub(super) struct FamilyView {
 pub(super) struct MemberView {
     pub ship: String,
     pub added_us: i64,
-    /// The number of its champion, if it has one.
+    /// Number of its champion, if it has one.
     pub champion: Option<i64>,
-    /// How that was made.
+    /// Method by which the champion was made.
     pub method: Option<String>,
 }
 
-/// What a family has taught.
+/// Prior that was learned from the members of a family.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct PriorView {
     pub family: String,
     /// 1, 2, 3, ...
     pub revision: i64,
-    /// The hash of the document.
+    /// Hash of the document.
     pub sha256: String,
     pub created_us: i64,
-    /// Means, deviations and correlations of the coefficients by axis, and what they were learned
-    /// from.
+    /// Means, deviations and correlations of the coefficients by axis, and the data they were
+    /// learned from.
     #[schema(value_type = Object)]
     pub document: Value,
 }
 
-/// A family to be made.
+/// A family to be created.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewFamily {
-    /// Its name, which stands in URLs.
+    /// Its name, which appears in URLs.
     #[schema(inline)]
     name: Word,
-    /// What people call it; the name where absent.
+    /// Display name; by default the name.
     #[schema(inline)]
     title: Option<Remark>,
-    /// The version that the members' models are founded on: `ship` (its champion), `ship/number`,
+    /// Version from which the members' models are refined: `ship` (its champion), `ship/number`,
     /// `ship/alias`.
     #[schema(inline)]
     foundation: ModelName,
@@ -92,7 +92,7 @@ struct NewFamily {
     members: Vec<Name>,
 }
 
-/// Another foundation.
+/// A new foundation of a family.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewFoundation {
@@ -101,7 +101,7 @@ struct NewFoundation {
     foundation: ModelName,
 }
 
-/// Ships to add.
+/// Ships to be added.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewMembers {
@@ -114,7 +114,7 @@ struct NewMembers {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Revision {
-    /// Which time it was learned; the last one where absent.
+    /// Revision of the prior; by default the latest.
     #[param(inline)]
     revision: Option<Number>,
 }
@@ -123,6 +123,7 @@ impl FamilyView {
     async fn of(app: &App, family: Family) -> Result<Self> {
         let store = app.store();
         let foundation = store.versions().by_id(&family.foundation).await?.head;
+        // A family without a prior is not an error of the request.
         let prior = match store.families().prior(&family.name, None).await {
             Err(StoreError::NotFound { .. }) => None,
             other => Some(other?.revision),
@@ -156,7 +157,7 @@ async fn list(
     Ok(Json(Listing { items, next: families.next }))
 }
 
-/// Make a family on a foundation
+/// Create a family on a foundation
 #[utoipa::path(
     post, path = "/v1/families", tag = "families",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
@@ -166,6 +167,8 @@ async fn list(
 )]
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let new: NewFamily = payload.json()?;
+    // The work runs in one transaction with the key: family and members are kept together or not at
+    // all.
     let work = |app: App| async move {
         let members = bounded("members", new.members)?;
         let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
@@ -179,7 +182,7 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     key.once(&app, payload.bytes(), work).await
 }
 
-/// A family
+/// Get a family
 #[utoipa::path(
     get, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
     responses((status = 200, body = FamilyView))
@@ -189,7 +192,7 @@ async fn get(State(app): State<App>, Place(name): Place<Word>) -> Result<Json<Fa
     Ok(Json(FamilyView::of(&app, family).await?))
 }
 
-/// Put a family on another foundation; models are refined from it when the family is refined next
+/// Replace the foundation of a family; models are refined from it when the family is refined next
 #[utoipa::path(
     put, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
     request_body = NewFoundation, responses((status = 200, body = FamilyView))
@@ -221,7 +224,7 @@ async fn members(
     Ok(Json(Listing::of(members, MemberView::of)))
 }
 
-/// Add ships to a family, all or none; those that are members already stay so
+/// Add ships to a family, all or none; members stay members
 #[utoipa::path(
     post, path = "/v1/families/{family}/members", tag = "families",
     params(("family" = inline(Word), Path)),
@@ -235,10 +238,11 @@ async fn add(
     let new: NewMembers = payload.json()?;
     let ships = bounded("ships", new.ships)?;
     app.store().families().add(&name, &ships).await?;
+    // The answer is read after the change, so that it has the present number of members.
     get(State(app), Place(name)).await
 }
 
-/// Take a ship out of a family
+/// Remove a ship from a family
 #[utoipa::path(
     delete, path = "/v1/families/{family}/members/{ship}", tag = "families",
     params(("family" = inline(Word), Path), ("ship" = inline(Name), Path)),
@@ -248,13 +252,14 @@ async fn remove(
     State(app): State<App>,
     Place((name, ship)): Place<(Word, Name)>,
 ) -> Result<Json<FamilyView>> {
+    // A ship that is no member is an error, so that a misspelt name does not pass unnoticed.
     match app.store().families().remove(&name, &ship).await? {
         true => get(State(app), Place(name)).await,
         false => Err(StoreError::NotFound { kind: "member", id: format!("{name}/{ship}") }.into()),
     }
 }
 
-/// What a family has taught: how each coefficient varies over its members
+/// Get the prior of a family: the variation of each coefficient over its members
 #[utoipa::path(
     get, path = "/v1/families/{family}/prior", tag = "families",
     params(("family" = inline(Word), Path), Revision),
@@ -271,7 +276,7 @@ async fn prior(
     Ok(Json(PriorView { family, revision, sha256, created_us, document }))
 }
 
-/// Learn from the members' trials how their coefficients vary; the work is a job
+/// Learn the variation of the coefficients from the members' trials; the work is a job
 #[utoipa::path(
     post, path = "/v1/families/{family}/prior", tag = "families",
     params(("family" = inline(Word), Path)),
@@ -282,6 +287,7 @@ async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply
     let request =
         serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
     let job =
+        // The job belongs to no ship; access to it is decided by the family in its request.
         app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
     app.wake_all();
     accepted(job)

@@ -1,4 +1,4 @@
-//! Whether the server lives, and whether it can work.
+//! Liveness and readiness of the server.
 
 use std::sync::atomic::Ordering;
 
@@ -19,15 +19,15 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(healthz)).routes(routes!(readyz))
 }
 
-/// How the server is.
+/// State of the server.
 #[derive(Debug, Serialize, ToSchema)]
 struct Health {
-    /// Always `ok`: anything else is a problem.
+    /// Always `ok`: any other state is a problem.
     status: &'static str,
-    /// The program's revision.
+    /// Revision of the program.
     revision: &'static str,
-    /// `no space` where nothing can be kept at the moment: reading goes on, writes get 507. Only
-    /// `/readyz` says so.
+    /// `no space` if nothing can be stored at present: reading goes on, writes get 507. Only
+    /// `/readyz` reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     writes: Option<&'static str>,
 }
@@ -36,13 +36,13 @@ fn ok(writes: Option<&'static str>) -> Json<Health> {
     Json(Health { status: "ok", revision: code_revision(), writes })
 }
 
-/// Whether the server lives
+/// Check that the server is running
 #[utoipa::path(get, path = "/healthz", tag = "health", responses((status = 200, body = Health)))]
 async fn healthz() -> Json<Health> {
     ok(None)
 }
 
-/// Whether the server can work: its database and its object store answer, and it is not stopping
+/// Check that the server can work: its database and its object store answer, and it is not stopping
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, body = Health)))]
 async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
     if app.stopping().now() {

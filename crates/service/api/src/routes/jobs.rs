@@ -1,4 +1,4 @@
-//! Long work: where it stands.
+//! Jobs and their state.
 
 use axum::Json;
 use axum::extract::State;
@@ -22,28 +22,28 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct JobView {
     pub id: String,
-    /// `refinement` or `diagnosis`.
+    /// `refinement`, `diagnosis`, `branch`, `family-prior` or `bulk-refinement`.
     pub kind: String,
     pub ship: Option<String>,
     /// `queued`, `running`, `succeeded`, `failed` or `cancelled`.
     pub state: &'static str,
-    /// From 0 to 1.
+    /// Fraction done, 0 to 1.
     pub progress: f64,
-    /// What is being done.
+    /// Current step.
     pub message: String,
-    /// What was asked.
+    /// The request.
     #[schema(value_type = Object)]
     pub request: Value,
-    /// What came of it: `model`, `version`, `sha256`, `alias` (of a diagnosis only where it found
-    /// effects) and `report`; of a refinement `source`, `held_out`, `ranking`; of a diagnosis
-    /// `diagnosed`, `verdict`, `effects`, `before`, `after`, `next_trial`.
+    /// Result: `model`, `version`, `sha256`, `alias` (of a diagnosis only if it found effects) and
+    /// `report`; of a refinement `source`, `held_out`, `ranking`; of a diagnosis `diagnosed`,
+    /// `verdict`, `effects`, `before`, `after`, `next_trial`.
     #[schema(value_type = Option<Object>)]
     pub result: Option<Value>,
-    /// Why it failed.
+    /// Reason of a failure.
     pub error: Option<String>,
-    /// How often it was begun.
+    /// Number of attempts.
     pub attempt: i64,
-    /// Whether it is asked to stop.
+    /// True if the job was asked to stop.
     pub cancel_requested: bool,
     pub created_us: i64,
     pub started_us: Option<i64>,
@@ -54,10 +54,10 @@ pub(super) struct JobView {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// Of this ship only.
+    /// Only jobs of this ship.
     #[param(inline)]
     ship: Option<Name>,
-    /// In this state only.
+    /// Only jobs in this state.
     #[param(inline)]
     state: Option<JobStateName>,
     /// The most items to return.
@@ -68,7 +68,7 @@ struct Query {
     after: Option<Cursor>,
 }
 
-/// Where a job may stand.
+/// State of a job.
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 enum JobStateName {
@@ -94,6 +94,7 @@ impl From<JobStateName> for JobState {
 impl JobView {
     pub(super) fn of(job: Job) -> Self {
         let mut request: Value = serde_json::from_str(&job.request).unwrap_or_default();
+        // The hash of the idempotency key is internal.
         if let Some(fields) = request.as_object_mut() {
             fields.remove("key_sha256");
         }
@@ -148,27 +149,28 @@ async fn list(
     Ok(Json(Listing::of(jobs, JobView::of)))
 }
 
-/// A job
+/// Get a job
 #[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView)))]
 async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     Ok(Json(JobView::of(app.store().jobs().get(&id).await?)))
 }
 
-/// Cancel a job; one that runs stops at its next step
+/// Cancel a job; a running one stops at its next step
 #[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView)))]
 async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     Ok(Json(JobView::of(app.store().jobs().request_cancel(&id).await?)))
 }
 
-/// Do a job again that failed or was cancelled
+/// Run a job again that failed or was cancelled
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView))
 )]
 async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     let job = app.store().jobs().retry(&id).await?;
+    // One job needs one worker.
     app.wake().notify_one();
     Ok(Json(JobView::of(job)))
 }

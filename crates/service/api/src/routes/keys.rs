@@ -1,4 +1,4 @@
-//! Service keys: what programs present.
+//! Service keys, by which programs are identified.
 
 use axum::Json;
 use axum::extract::State;
@@ -25,45 +25,45 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(set_roles))
 }
 
-/// A service key, but for its secret part.
+/// A service key without its secret part.
 #[derive(Debug, Serialize, ToSchema)]
 struct KeyView {
-    /// What it begins with, after `sis_`.
+    /// First characters of the key, after `sis_`.
     prefix: String,
     title: String,
-    /// The user in whose name it acts.
+    /// User in whose name it acts.
     user: Option<String>,
     roles: Vec<RoleView>,
     created_us: i64,
     expires_us: Option<i64>,
     revoked_us: Option<i64>,
-    /// When it was last used, to a minute.
+    /// Time of the last use, to a minute.
     last_used_us: Option<i64>,
 }
 
 /// A service key as it is shown once.
 #[derive(Debug, Serialize, ToSchema)]
 struct NewKeyView {
-    /// The whole of it: it is not kept, and not shown again.
+    /// The whole key: it is not stored, and not shown again.
     key: String,
-    /// The rest, as it is shown later too.
+    /// The rest, as later requests show it.
     about: KeyView,
 }
 
-/// A service key to be.
+/// A service key to be created.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct KeyRequest {
-    /// What it is for.
+    /// Purpose.
     #[schema(inline)]
     title: Remark,
-    /// The user in whose name it acts, as the audit then says; it has its own roles.
+    /// User in whose name it acts in the audit; it has its own roles.
     #[schema(inline)]
     user: Option<UserName>,
-    /// What it may do.
+    /// Roles of the key.
     #[serde(default)]
     roles: Vec<RoleRequest>,
-    /// When it ends by itself, microseconds since 1970.
+    /// Time at which it expires, microseconds since 1970.
     #[schema(inline)]
     expires_us: Option<MomentUs>,
 }
@@ -86,7 +86,7 @@ impl KeyView {
     }
 }
 
-/// List the service keys by prefix, those that have ended too
+/// List the service keys by prefix, including ended ones
 #[utoipa::path(get, path = "/v1/keys", tag = "access", params(Paged),
     responses((status = 200, body = Listing<KeyView>)))]
 async fn list(
@@ -102,26 +102,28 @@ async fn list(
     Ok(Json(Listing { items, next }))
 }
 
-/// Make a service key
+/// Create a service key
 ///
-/// The answer has the whole of it, once. So the request takes no `Idempotency-Key`: what is kept
-/// for a replay would be the key.
+/// The answer has the whole key, once. The request therefore takes no `Idempotency-Key`: the answer
+/// that a replay needs would have to store the key.
 #[utoipa::path(
     post, path = "/v1/keys", tag = "access", request_body = KeyRequest,
     responses((status = 201, body = NewKeyView, headers(("Location" = String))))
 )]
 async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
     let KeyRequest { title, user, roles, expires_us } = payload.json()?;
+    // Dates in the past are accepted: such a key is never valid.
     let (user, ends) = (user.map(UserName::into_string), expires_us.map(MomentUs::get));
     let (text, row) = app.accounts().make_key(&title, user, ends, &grants(roles)?).await?;
     let location = path(&["v1", "keys", &row.prefix]);
     let about = KeyView::of(&app, row).await?;
     let view = NewKeyView { key: text.as_str().to_owned(), about };
+    // Neither the browser nor a proxy may store the key.
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
     Ok((StatusCode::CREATED, head, Json(view)).into_response())
 }
 
-/// A service key
+/// Get a service key
 #[utoipa::path(get, path = "/v1/keys/{prefix}", tag = "access",
     params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
 async fn get(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
@@ -129,7 +131,7 @@ async fn get(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<
     Ok(Json(KeyView::of(&app, key).await?))
 }
 
-/// Revoke a service key, for ever
+/// Revoke a service key permanently
 #[utoipa::path(delete, path = "/v1/keys/{prefix}", tag = "access",
     params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
 async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
@@ -137,7 +139,7 @@ async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Resu
     Ok(Json(KeyView::of(&app, key).await?))
 }
 
-/// Give a service key these roles instead of all others
+/// Replace all roles of a service key
 #[utoipa::path(
     put, path = "/v1/keys/{prefix}/roles", tag = "access",
     params(("prefix" = inline(KeyPrefix), Path)),

@@ -19,11 +19,11 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(get))
 }
 
-/// A law as lists show it.
+/// An entry in the list of laws.
 #[derive(Debug, Serialize, ToSchema)]
 struct LawHead {
     name: String,
-    /// The SHA-256 of its text.
+    /// SHA-256 of its text.
     sha256: String,
     created_us: i64,
 }
@@ -32,7 +32,7 @@ struct LawHead {
 #[derive(Debug, Serialize, ToSchema)]
 struct LawText {
     name: String,
-    /// The SHA-256 of its text.
+    /// SHA-256 of its text.
     sha256: String,
     created_us: i64,
     /// The YAML file, byte for byte.
@@ -58,7 +58,8 @@ async fn list(
 
 /// Add a law; it never changes afterwards
 ///
-/// The body is the law's YAML file. Its formulas, units and symmetry are checked before it is kept.
+/// The body is the law's YAML file. Its formulas, units and symmetry are checked before it is
+/// stored.
 #[utoipa::path(
     post, path = "/v1/laws", tag = "laws",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
@@ -69,6 +70,7 @@ async fn list(
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let text = payload.text()?.to_owned();
     let parse = text.clone();
+    // Parsing a large law takes time, hence not on the threads that serve.
     let name = app.compute(move || Law::parse("body", &parse)).await??.name;
     let work = |app: App| async move {
         let head = LawHead::of(app.store().laws().insert(&name, &text).await?);
@@ -77,7 +79,7 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     key.once(&app, payload.bytes(), work).await
 }
 
-/// A law, as JSON or as its YAML file
+/// Get a law, as JSON or as its YAML file
 #[utoipa::path(
     get, path = "/v1/laws/{law}", tag = "laws", params(("law" = inline(Name), Path)),
     responses((status = 200,

@@ -1,4 +1,4 @@
-//! What Prometheus scrapes.
+//! Metrics for Prometheus.
 
 use axum::extract::State;
 use axum::http::header;
@@ -14,8 +14,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(metrics))
 }
 
-/// Requests by route and status, their duration, jobs by kind and state, the queue's age, the
-/// object store's size
+/// Get requests by route and status, their duration, jobs by kind and state, the queue's age, and
+/// the object store's size
 #[utoipa::path(
     get, path = "/metrics", tag = "health",
     responses((status = 200, body = String, content_type = "application/openmetrics-text"))

@@ -1,4 +1,4 @@
-//! The endpoints, one file a group, and the document that describes them.
+//! The endpoints, one file for each group, and the document that describes them.
 
 mod about;
 mod aliases;
@@ -58,14 +58,17 @@ use crate::app::App;
 use crate::web::query::{self, KnownQuery};
 use crate::web::{envelope, guard};
 
-/// Everything that is served.
+/// Returns the router of all endpoints and pages.
 pub(crate) fn router(app: App) -> Router {
     let (api, described) = endpoints::api(app.limits()).split_for_parts();
+    // Unknown query parameters are refused by comparison with the document.
     let known = Arc::new(KnownQuery::of(&described));
     let api = api.route_layer(from_fn_with_state(known, query::refuse_unknown));
     let text = document::text();
     api.route("/openapi.json", get(move || async move { document::served(text) }))
         .merge(pages::routes(app.limits()))
+        // Layers run from the last to the first: the envelope is outermost, then panics are caught,
+        // then access is decided.
         .fallback(envelope::nowhere)
         .layer(from_fn_with_state(app.clone(), guard::guard))
         .layer(CatchPanicLayer::custom(envelope::panicked))

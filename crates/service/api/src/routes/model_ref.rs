@@ -1,4 +1,4 @@
-//! Versions by the names that people give them: `ship`, `ship/number`, `ship/alias`.
+//! Resolution of version names: `ship`, `ship/number`, `ship/alias`.
 
 use sistership_store::{Store, StoreError, Version};
 
@@ -7,7 +7,7 @@ use crate::rights::on_ship;
 use sistership_auth::Role;
 use sistership_jobs::line::{CHAMPION, alias};
 
-/// The version that a name in a request stands for; `field` is where it stands.
+/// Returns the version that a name in a request refers to; `field` is named in errors.
 pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Version> {
     let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
     on_ship(store, Role::Reader, ship).await?;

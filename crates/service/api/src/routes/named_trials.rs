@@ -1,4 +1,4 @@
-//! Trials that a request names, each of which must be one of the ship's.
+//! Trials that a request names, each of which must belong to the ship.
 
 use axum::http::StatusCode;
 
@@ -8,7 +8,10 @@ use crate::problem::{Fault, Problem, Result};
 use crate::rights::readable_trial;
 use crate::web::Id;
 
-/// The trials of these ids, checked.
+/// Checks the ids of trials; `left_out` says what applies if the field is omitted.
+///
+/// # Errors
+/// Returns an error that names the first id that is repeated, unknown, or of another ship.
 pub(super) async fn named(
     app: &App,
     ship: &str,
@@ -39,7 +42,7 @@ pub(super) async fn named(
     Ok(ids.into_iter().map(Id::into_string).collect())
 }
 
-/// Why a trial cannot be one of the ship's.
+/// Returns the reason for which a trial cannot be one of the ship's.
 async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
     Ok(match readable_trial(app.store(), id).await? {
         Some(trial) if trial.ship == ship => None,
@@ -48,7 +51,7 @@ async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
     })
 }
 
-/// The refusal of work on a ship that has none.
+/// Refusal of work on a ship without trials.
 pub(super) fn no_trials(ship: &str) -> Problem {
     Problem::invalid(
         "trials",

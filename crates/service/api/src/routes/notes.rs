@@ -22,24 +22,24 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 /// A note about a ship.
 #[derive(Debug, Serialize, ToSchema)]
 struct NoteView {
-    /// The number of its entry in the audit.
+    /// Number of its entry in the audit.
     number: i64,
     at_us: i64,
-    /// Who made it: a user, `key:PREFIX`, `server-key`, `local`, `command-line`.
+    /// Author: a user, `key:PREFIX`, `server-key`, `local`, `command-line`.
     actor: String,
     text: String,
 }
 
-/// What is to be noted.
+/// A note to be added.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewNote {
-    /// It may have several lines.
+    /// Text, of one or several lines.
     #[schema(inline)]
     text: Remark,
 }
 
-/// What has been noted.
+/// The note that was added.
 #[derive(Debug, Serialize, ToSchema)]
 struct Noted<'a> {
     ship: &'a str,
@@ -53,7 +53,7 @@ impl NoteView {
     }
 }
 
-/// Notes about a ship, the latest first
+/// List the notes about a ship, the latest first
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/notes", tag = "ships",
     params(("ship" = inline(Name), Path), Paged),
@@ -69,7 +69,7 @@ async fn list(
     Ok(Json(Listing::of(notes, NoteView::of)))
 }
 
-/// Note something about a ship; notes are part of the audit, and stay
+/// Add a note about a ship; notes are part of the audit and cannot be removed
 #[utoipa::path(
     post, path = "/v1/ships/{ship}/notes", tag = "ships",
     params(

@@ -18,7 +18,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(create))
 }
 
-/// Simulate a manoeuvre, recorded inputs, or orders to come, with a version of a model
+/// Simulate a manoeuvre, recorded inputs, or future orders, with a version of a model
 #[utoipa::path(
     post, path = "/v1/predictions", tag = "predictions", request_body = PredictionRequest,
     responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; \

@@ -1,4 +1,4 @@
-//! What the endpoints that queue jobs have in common.
+//! Functions shared by the endpoints that queue jobs.
 
 use axum::http::StatusCode;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::Reply;
 
-/// Puts a job in the queue.
+/// Adds a job to the queue.
 pub(super) async fn enqueue(
     app: &App,
     kind: &str,
@@ -21,7 +21,7 @@ pub(super) async fn enqueue(
     Ok(app.store().jobs().enqueue(&new).await?)
 }
 
-/// The answer to a request whose work goes on.
+/// Answer to a request whose work is a job.
 pub(super) fn accepted(job: Job) -> Result<Reply> {
     let id = job.id.clone();
     Ok(Reply::new(StatusCode::ACCEPTED, &JobView::of(job))?.at(&["v1", "jobs", &id]).with_jobs())

@@ -1,4 +1,4 @@
-//! Asking for a refinement.
+//! Requests of refinements.
 
 use axum::extract::State;
 use axum::response::Response;
@@ -29,24 +29,25 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(refine))
 }
 
-/// A refinement to be done.
+/// A refinement to be run.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct RefinementRequest {
     /// The ship to refine a model for.
     #[schema(inline)]
     ship: Name,
-    /// `auto`, which it is where absent, or a version to start from: `ship` (its champion),
-    /// `ship/number`, `ship/alias`. Where neither a source nor a law nor `settings.method` is
-    /// named, all three are searched: the best model that the trials allow, by its error on
-    /// manoeuvres left out. With a law or method, `auto` is the most similar eligible ship.
+    /// Source model: `auto` (default), or a version to start from: `ship` (its champion),
+    /// `ship/number`, `ship/alias`. If neither a source nor a law nor `settings.method` is given,
+    /// all three are selected: the best model that the trials allow, by its error on held-out
+    /// manoeuvres. With a law or method, `auto` is the most similar eligible ship.
     #[schema(inline)]
     source: Option<ModelName>,
-    /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law
-    /// says over the states of the trials and of its standard manoeuvres becomes the prior.
+    /// Law to fit, such as `low-speed`; by default that of the source. For a source with another
+    /// law, its forces over the states of the trials and of its standard manoeuvres become the
+    /// prior.
     #[schema(inline)]
     law: Option<Name>,
-    /// Ids of the trials; all of the ship's where absent.
+    /// Ids of the trials; by default all of the ship's.
     #[schema(inline, min_items = 1)]
     trials: Option<Vec<Id>>,
     /// Settings of the estimator; each has a default, and all are kept with the version.
@@ -55,14 +56,15 @@ struct RefinementRequest {
     settings: Settings,
 }
 
-/// The source that is found.
+/// Name of the source that is selected automatically.
 const AUTO: &str = "auto";
 
 /// Refine a model against trials
 ///
-/// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
-/// ship's line, champion where it has none and else `candidate`, with a report. Where nothing was
-/// named and a learned branch wins on trials left out, `branch_job` of the result trains it.
+/// The work is a job: follow the `Location`, or its `/events`. Its result is a version of the
+/// ship's line, champion if it has none and otherwise `candidate`, with a report. If all is left to
+/// the model selection and a learned correction improves on held-out trials, `branch_job` of the
+/// result trains it.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
@@ -72,12 +74,14 @@ const AUTO: &str = "auto";
 )]
 async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let request: RefinementRequest = payload.json()?;
+    // The search is decided from the raw body: once parsed, a default method looks like a chosen
+    // one.
     let search = names_no_method(payload.bytes()) && request.is_open();
     key.once(&app, payload.bytes(), move |app| async move { queued(&app, request, search).await })
         .await
 }
 
-/// Queues a refinement that a page asks for, by the document that the endpoint takes.
+/// Queues a refinement that a page requests, from the document that the endpoint takes.
 pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
     let body = serde_json::to_vec(asked).map_err(Problem::internal)?;
     let request: RefinementRequest = from_slice(&body)?;
@@ -86,16 +90,20 @@ pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
 }
 
 impl RefinementRequest {
-    /// Whether neither source nor law is named, nor another prior, nor what only some methods keep.
+    /// Returns true if neither source nor law is named, nor another prior, nor settings that only
+    /// some methods use.
     fn is_open(&self) -> bool {
         let source = self.source.as_deref().is_none_or(|source| source == AUTO);
+        // Constraints and other priors are settings of some methods only, which the model selection
+        // would drop.
         let settings = &self.settings;
         let is_source = settings.prior == Prior::Source;
         source && self.law.is_none() && settings.constraints.is_empty() && is_source
     }
 }
 
-/// Whether the settings leave the method open; a default says nothing of that.
+/// Returns true if the body leaves the method open; the parsed settings have a default and cannot
+/// tell.
 fn names_no_method(body: &[u8]) -> bool {
     let asked: Value = serde_json::from_slice(body).unwrap_or_default();
     asked.pointer("/settings/method").is_none()
@@ -107,11 +115,13 @@ async fn queued(app: &App, request: RefinementRequest, search: bool) -> Result<R
 
 async fn enqueued(app: &App, request: RefinementRequest, search: bool) -> Result<Job> {
     let ship = request.ship.to_string();
+    // The job stores the resolved request, so that later changes of aliases or trials do not affect
+    // it.
     let job = RefinementJob { search, ..settled(app, request).await? };
     enqueue(app, REFINEMENT, &ship, &job).await
 }
 
-/// The request with everything looked up, so that a job that is wrong is refused at once.
+/// Looks up everything that the request names, so that a wrong request is refused at once.
 async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
     let RefinementRequest { ship, source, law, trials, settings } = request;
     on_ship(app.store(), Role::Engineer, &ship).await?;
@@ -124,6 +134,7 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
         }
         other => drop(other?),
     }
+    // All settings are checked at once, so that one answer names every fault.
     settings.check().map_err(refused)?;
     repeatable(&settings)?;
     known(app, law.as_deref()).await?;
@@ -140,13 +151,14 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
     })
 }
 
-/// Every setting that cannot be used.
+/// Refusal that names every setting that cannot be used.
 fn refused(faults: Vec<SettingFault>) -> Problem {
     let fault = |SettingFault { field, message }| (format!("settings.{field}"), message);
     Problem::all_invalid(faults.into_iter().map(fault))
 }
 
-/// A version must follow from its recipe again, which it does not where a clock ended the search.
+/// Checks that the version can be derived again from its recipe, which is not so if a clock ends
+/// the search.
 fn repeatable(settings: &Settings) -> Result<()> {
     let timed = settings
         .cma_es
@@ -157,7 +169,7 @@ fn repeatable(settings: &Settings) -> Result<()> {
     if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
 }
 
-/// Whether there is such a law.
+/// Checks that a law exists.
 async fn known(app: &App, law: Option<&str>) -> Result<()> {
     let Some(law) = law else { return Ok(()) };
     match app.store().laws().get(law).await {

@@ -1,4 +1,4 @@
-//! Versions that were made elsewhere.
+//! Registration of versions that were made elsewhere.
 
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -34,18 +34,18 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 struct RegisterRequest {
     /// The model, as `models/schema/model.json` describes it and `GET /v1/ships/{ship}/model`
-    /// answers.
+    /// returns it.
     #[schema(schema_with = described::<Model>)]
     model: Value,
-    /// Who made it, with what; kept in its recipe.
+    /// Author and tool; kept in its recipe.
     #[schema(inline)]
     origin: Remark,
-    /// The number of the version that it was made from.
+    /// Number of the version that it was made from.
     #[schema(inline)]
     parent: Option<VersionNumber>,
 }
 
-/// Keep a model that was made elsewhere as the next version
+/// Register a model that was made elsewhere as the next version
 ///
 /// It is checked against its law. It becomes champion only when that alias is moved to it.
 #[utoipa::path(
@@ -94,8 +94,8 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
         model: ship,
         weights,
     };
-    // Nothing of the document depends on the number, so that it does not matter who else makes
-    // versions.
+    // The document does not depend on the number, so that versions made at the same time do no
+    // harm.
     let follow = step(LATEST, Expect::Any, METHOD);
     let versions = app.store().versions();
     let version = versions.create_with_weights(app.objects(), &new, &[follow]).await?;
@@ -119,7 +119,8 @@ async fn checked(app: &App, model: &Model) -> Result<String> {
     Ok(law.sha256)
 }
 
-/// The object with the weights of a model's learned branch, which must be here and suit it.
+/// Returns the object with the weights of a model's learned correction, which must exist and suit
+/// the model.
 async fn weights(app: &App, model: &Model) -> Result<Option<String>> {
     let Some(branch) = &model.branch else { return Ok(None) };
     let refuse = |error: DeriveError| match error {
@@ -130,6 +131,7 @@ async fn weights(app: &App, model: &Model) -> Result<Option<String>> {
         DeriveError::Join(error) => Problem::invalid("model.branch", error.to_string()),
         other => other.into(),
     };
+    // On a copy: the document keeps the hash of the weights, not the weights.
     app.archive().attach(&mut model.clone()).await.map_err(refuse)?;
     Ok(Some(branch.weights_sha256.clone()))
 }

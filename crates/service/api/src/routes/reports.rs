@@ -12,7 +12,7 @@ use crate::app::App;
 use crate::problem::Result;
 use crate::web::{Id, Params, Place, accept};
 
-/// What a report may load: nothing but its own styles and pictures.
+/// Content Security Policy of a report: only its own styles and images.
 pub(super) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; \
     form-action 'none'; frame-ancestors 'none'";
 
@@ -27,7 +27,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// `json` or `html`, over what `Accept` says.
+    /// `json` or `html`; takes precedence over `Accept`.
     #[param(inline)]
     format: Option<Format>,
 }
@@ -39,7 +39,7 @@ enum Format {
     Html,
 }
 
-/// A report, as JSON or as a page that stands alone
+/// Get a report, as JSON or as a self-contained page
 #[utoipa::path(
     get, path = "/v1/reports/{id}", tag = "reports", params(("id" = inline(Id), Path), Query),
     responses((status = 200, content((Object = "application/json"), (String = "text/html"))))

@@ -1,4 +1,4 @@
-//! The samples of a trial, in canonical units and signs.
+//! Samples of a trial, in canonical units and signs.
 
 use std::fs::File;
 
@@ -25,15 +25,15 @@ use sistership_jobs::budget::{self, Share};
 
 const CSV: &str = "text/csv";
 const PARQUET: &str = "application/vnd.apache.parquet";
-/// What a CSV file holds of its samples while it is sent, bytes: a page of each column, as it is
-/// stored and as it is in memory.
+/// Memory for the samples of a CSV file while it is sent, bytes: a page of each column, encoded and
+/// decoded.
 const DECODING: u64 = 4 << 20;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(samples))
 }
 
-/// The samples of a trial, as CSV or as Parquet, under canonical names
+/// Get the samples of a trial, as CSV or as Parquet, under canonical names
 #[utoipa::path(
     get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200,
@@ -55,13 +55,15 @@ async fn samples(
     Ok((types, [(header::CONTENT_LENGTH, size)], body).into_response())
 }
 
-/// The bytes as they come; where their hash is another than it was, the answer breaks off before
+/// Passes the bytes on as they come; if their hash differs from `key`, the answer breaks off before
 /// its end.
 fn verified(
     key: String,
     mut bytes: Bytestream,
 ) -> impl Stream<Item = std::result::Result<Bytes, BoxError>> + Send {
     async_stream::try_stream! {
+        // The last piece is held back until the hash is known, so that a damaged object never looks
+        // complete.
         let (mut hash, mut held) = (Sha256::new(), Bytes::new());
         while let Some(next) = bytes.next().await {
             let next = next?;
@@ -86,14 +88,15 @@ fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
     }
 }
 
-/// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a
-/// caller who does not read.
+/// Returns the samples as CSV, decoded some rows at a time from disk: nothing waits in memory for a
+/// client that does not read.
 async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
     let share = budget::share(DECODING).await?;
     let spooled = spool(app.spool(), bytes).await?;
     damaged(key, &spooled.sha256).map_err(Problem::internal)?;
     let open = move || CsvPieces::open(File::open(&spooled.path)?).map_err(BoxError::from);
     let pieces = app.compute(open).await?.map_err(Problem::internal)?;
+    // The share of memory travels with the reader and is given back when either ends.
     let next = |(mut pieces, share): (CsvPieces, Option<Share>)| async move {
         let decode = move || {
             pieces

@@ -1,4 +1,4 @@
-//! A ship under way over a WebSocket: each message asks for steps, each step is a message.
+//! Simulation sessions over a WebSocket: each message requests steps, each step is a message.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,23 +24,23 @@ use crate::rights::{Acting, current};
 use crate::web::payload::from_slice;
 use crate::web::{Id, Place};
 
-/// The longest message, bytes.
+/// Longest message, bytes.
 const MESSAGE: usize = 64 << 10;
-/// Steps that are sailed before the first of them is sent.
+/// Number of steps that are simulated before the first of them is sent.
 const TOGETHER: usize = 64;
-/// A stream goes on with the roles that opened it had: no longer than this.
+/// Longest duration of a stream, which keeps the roles of its opening.
 const LONGEST: Duration = Duration::from_secs(3600);
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(stream))
 }
 
-/// Sail on over a WebSocket
+/// Advance a session over a WebSocket
 ///
-/// Each text message is the body of `POST /v1/sessions/{id}/steps`; each step is answered by a
-/// message as `GET /v1/sessions/{id}` shows it, and what cannot be by one with the problem. Where
-/// the motion has left the physical range, one message with `stopped` ends the steps. The stream
-/// ends with the session, and after an hour.
+/// Each text message is a body of `POST /v1/sessions/{id}/steps`; each step is answered by a
+/// message as `GET /v1/sessions/{id}` shows it, and an invalid request by a message with the
+/// problem. If the motion has left the physical range, one message with `stopped` ends the steps.
+/// The stream ends with the session, and after an hour.
 #[utoipa::path(
     get, path = "/v1/sessions/{id}/stream", tag = "predictions", params(("id" = inline(Id), Path)),
     responses((status = 101, description = "The protocol is a WebSocket's now"))
@@ -66,7 +66,8 @@ async fn stream(
     }))
 }
 
-/// A browser tells the site that opens a WebSocket, and asks nobody whether it may.
+/// Refuses WebSockets that pages of other sites open: browsers send the site as `Origin`, and do
+/// not ask the server for permission first.
 fn of_no_other_site(headers: &HeaderMap) -> Result<()> {
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     let host: Option<Authority> = host.and_then(|host| host.parse().ok());
@@ -77,7 +78,7 @@ fn of_no_other_site(headers: &HeaderMap) -> Result<()> {
     Ok(())
 }
 
-/// Whom a stream serves.
+/// Session and caller of a stream.
 struct Served {
     app: App,
     id: String,
@@ -105,17 +106,21 @@ impl Served {
             }
             peer.iter().for_each(Peer::waits);
         }
-        // Who does not listen any longer need not be told.
+        // The other side may be gone already, so that an error is ignored.
         drop(socket.send(Message::Close(None)).await);
     }
 
-    /// Sails what a message asks for; an error is that the socket is gone.
+    /// Simulates the steps that a message requests.
+    ///
+    /// # Errors
+    /// Returns an error if the socket is closed.
     async fn steps(&self, text: &[u8], socket: &mut WebSocket) -> Result<(), axum::Error> {
         let request = match from_slice::<StepsRequest>(text) {
             Ok(request) => Arc::new(request),
             Err(problem) => return send(socket, &problem).await,
         };
         let mut sailed = 0;
+        // Few steps at a time: the first arrive early, and other sessions get their turn.
         loop {
             let (rows, ended) = match self.rows(&request, sailed).await {
                 Ok(some) => some,
@@ -131,8 +136,9 @@ impl Served {
         }
     }
 
-    /// The next steps of those asked for, and whether they are the last.
+    /// Returns the next of the requested steps, and whether they are the last.
     async fn rows(&self, request: &Arc<StepsRequest>, sailed: usize) -> Result<(Vec<Value>, bool)> {
+        // The caller's role for the ship is checked again in each batch.
         let (handle, request) = (found(&self.app, &self.id).await?, Arc::clone(request));
         let most = self.app.limits().prediction_samples;
         let sail = move || handle.with(|session| session.rows(&request, sailed, TOGETHER, most));

@@ -1,4 +1,4 @@
-//! Ships under way: a version sails on as orders come.
+//! Simulation sessions: a version is simulated step by step as orders come.
 
 use axum::Json;
 use axum::extract::State;
@@ -24,13 +24,13 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(steps))
 }
 
-/// Whose the sessions are that a request sees: of whoever asks.
+/// Returns the owner of the sessions that a request may see: the caller.
 pub(super) fn owner() -> Result<String> {
     let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
     Ok(acting.principal.name.clone())
 }
 
-/// A session of whoever asks, who may still look at its ship.
+/// Returns a session of the caller, who must still have a role for its ship.
 pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
     let handle = app.sessions().find(id, &owner()?)?;
     let ship = handle.about["model"].as_str().unwrap_or_default();
@@ -38,11 +38,11 @@ pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
     Ok(handle)
 }
 
-/// Put a ship under way
+/// Open a simulation session
 ///
-/// A version of a model sails on as orders come, `/steps` by `/steps` or over `/stream`, beside
-/// draws of its posterior where these are asked for. Sessions are in the memory of the process that
-/// has taken them, of whoever has opened them; they end when nobody asks for ten minutes.
+/// A version of a model is simulated as orders come, by `/steps` or over `/stream`, together with
+/// draws of its posterior if these are requested. Sessions are in the memory of the process that
+/// has opened them and belong to their caller; they end after ten minutes without a request.
 #[utoipa::path(
     post, path = "/v1/sessions", tag = "predictions", request_body = SessionRequest,
     responses((status = 201, body = Object, headers(("Location" = String)),
@@ -51,6 +51,7 @@ pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
 async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
     let request: SessionRequest = payload.json()?;
     let owner = owner()?;
+    // Before the model is read, as a refusal must be cheap.
     app.sessions().room(&owner)?;
     let version = resolve(app.store(), "model", &request.model).await?;
     let model: Model = app.archive().model(&version).await?;
@@ -65,7 +66,7 @@ async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
     Ok(Reply::new(StatusCode::CREATED, &answer)?.at(&["v1", "sessions", &id]))
 }
 
-/// The sessions of whoever asks
+/// List the caller's sessions
 #[utoipa::path(
     get, path = "/v1/sessions", tag = "predictions",
     responses((status = 200, body = Object,
@@ -77,7 +78,7 @@ async fn list(State(app): State<App>) -> Result<Json<Value>> {
     Ok(Json(json!({ "items": items })))
 }
 
-/// Where a ship under way is
+/// Get the present state of a session
 #[utoipa::path(
     get, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
     responses((status = 200, body = Object,
@@ -93,10 +94,10 @@ async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value
     Ok(Json(view(&id, &about, now)))
 }
 
-/// Sail on
+/// Advance a session by steps
 ///
-/// Orders go through the steering gear: the rudder follows within its limit, at its rate. What is
-/// not given stays as it was ordered before.
+/// Orders go through the steering gear: the rudder follows within its limit, at its rate. Orders
+/// that are not given stay as before.
 #[utoipa::path(
     post, path = "/v1/sessions/{id}/steps", tag = "predictions", params(("id" = inline(Id), Path)),
     request_body = StepsRequest,

@@ -1,4 +1,4 @@
-//! Ships, to change.
+//! Changes of ships.
 
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -25,7 +25,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(undelete))
 }
 
-/// Reads and checks a vessel as JSON or YAML.
+/// Parses and checks a vessel as JSON or YAML.
 async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
     if payload.is_json() {
         return Ok(Vessel::from_file("body", payload.json::<VesselFile>()?)?);
@@ -54,9 +54,10 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
 }
 
-/// Keeps a new ship and the models that it publishes.
+/// Stores a new ship and the models that it publishes.
 pub(super) async fn kept(app: &App, vessel: &Vessel) -> Result<Ship> {
     let zoo = app.laws().await?;
+    // Models that the zoo's laws refuse must not become versions.
     zoo.check_models(vessel)?;
     let new = new_ship(vessel).map_err(Problem::internal)?;
     let ship = app.store().ships().create(&new).await?;
@@ -70,7 +71,7 @@ async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
     Ok(reply.at(&["v1", "ships", &ship.name]).tagged(ship.etag()))
 }
 
-/// Replace a ship's document, as you last read it
+/// Replace a ship's document, if it is as you last read it
 #[utoipa::path(
     put, path = "/v1/ships/{ship}", tag = "ships",
     params(("ship" = inline(Name), Path),
@@ -84,6 +85,7 @@ async fn replace(
     conditions: Conditions,
     payload: Payload,
 ) -> Result<Response> {
+    // The revision is compared before the body is parsed, and by the store again when it writes.
     let current = app.store().ships().get(&name).await?;
     let revision = conditions.revision(&format!("ship `{name}`"), current.revision)?;
     let vessel = vessel(&app, &payload).await?;
@@ -94,6 +96,7 @@ async fn replace(
         ));
     }
     let zoo = app.laws().await?;
+    // The same check as for a new ship, before anything is written.
     zoo.check_models(&vessel)?;
     let new = new_ship(&vessel).map_err(Problem::internal)?;
     let ship: Ship = app.store().ships().update(&new, revision).await?;
@@ -101,7 +104,7 @@ async fn replace(
     Ok(ShipDetail::of(&app, ship).await?.answer())
 }
 
-/// Delete a ship; its versions stay, and `undelete` brings it back
+/// Delete a ship; its versions stay, and `undelete` restores it
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}", tag = "ships",
     params(("ship" = inline(Name), Path),
@@ -119,7 +122,7 @@ async fn delete(
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
-/// Bring a deleted ship back
+/// Restore a deleted ship
 #[utoipa::path(
     post, path = "/v1/ships/{ship}/undelete", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))

@@ -1,4 +1,4 @@
-//! Ships, to look at.
+//! Queries of ships.
 
 use axum::Json;
 use axum::extract::State;
@@ -25,20 +25,20 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
 }
 
-/// A ship as lists show it.
+/// A ship in a list.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ShipHead {
     pub name: String,
-    /// What people call it.
+    /// Display name.
     pub title: String,
     /// Ships are compared within a category.
     pub category: String,
-    /// One more with each change; its ETag.
+    /// Increases by one with each change; its ETag.
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
-    /// The correlation with `similar_to`, else the value of the first particular or metric that was
-    /// asked for.
+    /// The correlation with `similar_to`, otherwise the value of the first particular or metric of
+    /// the query.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
 }
@@ -47,15 +47,15 @@ pub(super) struct ShipHead {
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ShipDetail {
     pub name: String,
-    /// What people call it.
+    /// Display name.
     pub title: String,
     /// Ships are compared within a category.
     pub category: String,
-    /// One more with each change.
+    /// Increases by one with each change.
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
-    /// Whether its champion still holds.
+    /// Health of its champion.
     pub condition: Condition,
     /// The vessel as `models/schema/vessel.json` describes it.
     #[schema(value_type = Object)]
@@ -71,14 +71,15 @@ impl ShipHead {
 
 impl ShipDetail {
     pub(super) async fn of(app: &App, ship: Ship) -> Result<Self> {
+        // The condition is derived from diagnoses and drift, and may change without the ship.
         let condition = Condition::of(app.store(), &ship.name).await?;
         let document = serde_json::from_str(&ship.document).map_err(Problem::internal)?;
         let Ship { name, title, category, revision, created_us, updated_us, .. } = ship;
         Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })
     }
 
-    /// Its revision, and what its condition comes from: either changes what is shown, the first
-    /// alone what may be changed.
+    /// Returns the tag of the revision and of the data that the condition is derived from: either
+    /// changes the answer, but only the revision guards changes.
     pub(super) fn etag(&self) -> String {
         tag(format!("{}{}", self.revision, self.condition.tag()))
     }
@@ -90,8 +91,9 @@ impl ShipDetail {
 
 /// Find ships: by category, tag, particulars, metrics of the champion, and similarity
 ///
-/// By name; with ranges by the first of them, rising; with `similar_to` the most similar first.
-/// Particulars and metrics follow a change of ship or champion within a second or so.
+/// In order of name; with ranges in increasing order of the first of them; with `similar_to` the
+/// most similar first. Particulars and metrics follow a change of ship or champion within about a
+/// second.
 #[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query),
     responses((status = 200, body = Listing<ShipHead>)))]
 async fn list(
@@ -109,7 +111,7 @@ async fn list(
     Ok(Json(Listing::of(ships, ShipHead::of)))
 }
 
-/// A ship; its ETag is what a change must present
+/// Get a ship; a change must present its ETag
 #[utoipa::path(
     get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
         ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
@@ -124,6 +126,7 @@ async fn get(
 ) -> Result<Response> {
     let ship = ShipDetail::of(&app, app.store().ships().get(&name).await?).await?;
     let etag = ship.etag();
+    // A client that has this revision already gets no body.
     match conditions.has(&etag) {
         true => Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, etag)]).into_response()),
         false => Ok(ship.answer()),

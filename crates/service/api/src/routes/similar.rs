@@ -1,4 +1,4 @@
-//! Which ships are most like a ship.
+//! Ranking of similar ships.
 
 use axum::Json;
 use axum::extract::State;
@@ -30,11 +30,11 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else
-    /// Kanazawa's.
+    /// `mei-2019` or `kanazawa-2023`; by default Mei's if the ship has every component of it,
+    /// otherwise Kanazawa's.
     #[param(schema_with = vectors)]
     vector: Option<Definition>,
-    /// Whether eligible ships are measured on the ship's trials, where it has any.
+    /// True if eligible ships are evaluated on the trials of the ship, if it has any.
     #[serde(default = "yes")]
     trials: bool,
 }
@@ -43,10 +43,11 @@ fn yes() -> bool {
     true
 }
 
-/// Rank the zoo for a ship, and say which ships may be its source
+/// Rank the zoo by similarity to a ship, with the eligible source models
 ///
-/// Ships are those for which you have a role. Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
-/// ranked; `GET /v1/ships?similar_to=` has all of them.
+/// The ships are those for which you have a role. Of a zoo of more than 250 ships only the 250 of
+/// its category that are most similar to it are ranked; `GET /v1/ships?similar_to=` has all of
+/// them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships",
     params(("ship" = inline(Name), Path), Query),
@@ -70,6 +71,7 @@ async fn similar(
     let ranked =
         move || models.rank(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
     let mut ranked = app.compute(ranked).await?;
+    // Filtered after the ranking, so that the correlations do not depend on the caller.
     ranked.ranking =
         visible(app.store(), Role::Reader, ranked.ranking, |ranked| &ranked.ship).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))

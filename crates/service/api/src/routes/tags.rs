@@ -14,7 +14,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(put, remove))
 }
 
-/// The tags of a ship, in alphabetical order, at most 100
+/// List the tags of a ship, in alphabetical order, at most 100
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/tags", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = Vec<String>))
@@ -24,7 +24,7 @@ async fn list(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<V
     Ok(Json(app.store().ships().tags(&ship).await?))
 }
 
-/// Put a tag on a ship, by which it is found
+/// Add a tag to a ship, by which it can be found
 #[utoipa::path(
     put, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships",
     params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
@@ -38,7 +38,7 @@ async fn put(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Take a tag off a ship
+/// Remove a tag from a ship
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships",
     params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),

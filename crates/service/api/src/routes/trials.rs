@@ -1,4 +1,4 @@
-//! Trials, to look at and to delete.
+//! Queries and deletion of trials.
 
 use axum::Json;
 use axum::extract::State;
@@ -28,19 +28,19 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 pub(super) struct TrialView {
     pub id: String,
     pub ship: String,
-    /// The file's name.
+    /// Name of the file.
     pub name: String,
-    /// The SHA-256 of its samples as they are kept.
+    /// SHA-256 of its samples as they are stored.
     pub sha256: String,
     /// Number of samples.
     pub rows: i64,
     pub duration_s: f64,
-    /// What was sailed, where it is known.
+    /// Manoeuvre, if it is known.
     pub manoeuvre: Option<String>,
-    /// What the checks remarked: `row`, `column`, `message`.
+    /// Warnings of the checks: `row`, `column`, `message`.
     #[schema(value_type = Vec<Object>)]
     pub warnings: Value,
-    /// The manifest's entry of the file: columns, conventions, depth.
+    /// Entry of the file in the manifest: columns, conventions, depth.
     #[schema(value_type = Object)]
     pub manifest: Value,
     pub created_us: i64,
@@ -96,7 +96,7 @@ async fn list(
     Ok(Json(Listing::of(trials, TrialView::of)))
 }
 
-/// A trial
+/// Get a trial
 #[utoipa::path(
     get, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, body = TrialView))
@@ -105,7 +105,7 @@ async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialV
     Ok(Json(TrialView::of(app.store().trials().get(&id).await?)))
 }
 
-/// Delete a trial; versions that were made with it stay, and `undelete` brings it back
+/// Delete a trial; versions that were made with it stay, and `undelete` restores it
 #[utoipa::path(
     delete, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 204, description = "Deleted"))
@@ -115,7 +115,7 @@ async fn delete(State(app): State<App>, Place(id): Place<Id>) -> Result<Response
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
-/// Bring a deleted trial back
+/// Restore a deleted trial
 #[utoipa::path(
     post, path = "/v1/trials/{id}/undelete", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, body = TrialView))
@@ -124,19 +124,23 @@ async fn undelete(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<T
     Ok(Json(TrialView::of(app.store().trials().undelete(&id).await?)))
 }
 
-/// Every trial of a ship, as long as there are not too many for one piece of work.
+/// Returns all trials of a ship.
+///
+/// # Errors
+/// Returns an error if there are too many for one job.
 pub(super) async fn all_of_ship(app: &App, ship: &str) -> Result<Vec<Trial>> {
     let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
     loop {
         let list = app.store().trials().list(ship, &page).await?;
         all.extend(list.items);
+        // After each page, so that a ship with very many trials is not read to the end.
         bounded(app, all.len())?;
         let Some(next) = list.next else { return Ok(all) };
         page = Page::after(next, MAX_LIMIT);
     }
 }
 
-/// Refuses more trials than one piece of work takes.
+/// Checks the number of trials of one job.
 pub(super) fn bounded(app: &App, count: usize) -> Result<()> {
     let most = app.limits().refinement_trials;
     match count <= most {

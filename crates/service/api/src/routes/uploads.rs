@@ -1,4 +1,4 @@
-//! Trials, to upload and to check.
+//! Upload and check of trials.
 
 use axum::Json;
 use axum::extract::State;
@@ -22,24 +22,24 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(upload)).routes(routes!(check))
 }
 
-/// What an upload has brought.
+/// Result of an upload.
 #[derive(Debug, Serialize, ToSchema)]
 struct Uploaded {
     ship: String,
-    /// The trials, in the manifest's order; samples that were there already give the trial that is
-    /// there.
+    /// The trials, in the order of the manifest; samples that were stored before give the existing
+    /// trial.
     trials: Vec<TrialView>,
-    /// How many of them are new.
+    /// Number of new trials.
     new: usize,
-    /// The job that diagnoses the ship's champion on the new ones; none where it has no champion.
+    /// The job that diagnoses the ship's champion on the new trials; null if it has no champion.
     diagnosis: Option<String>,
 }
 
-/// The parts of a form.
+/// Parts of the form.
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "it only describes the form")]
 struct Form {
-    /// The trial manifest, YAML (`models/schema/trials.json`).
+    /// Trial manifest, YAML (`models/schema/trials.json`).
     manifest: Option<String>,
     /// The ship, instead of a manifest, for files with canonical columns.
     ship: Option<String>,
@@ -51,9 +51,8 @@ struct Form {
 /// Upload trials, all together or none
 ///
 /// A form with a manifest and its files, or one CSV or Parquet file with canonical columns. Units
-/// and signs are converted once, here; what the checks refuse is told with file, row and column.
-/// Where the ship has a champion, a job follows that diagnoses it on the new trials, unless
-/// `diagnose=false`.
+/// and signs are converted once, here; refusals name file, row and column. If the ship has a
+/// champion, a job follows that diagnoses it on the new trials, unless `diagnose=false`.
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
     params(RawQuery,
@@ -63,6 +62,7 @@ struct Form {
     responses((status = 201, body = Uploaded, headers(("Location" = String))))
 )]
 async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
+    // The fingerprint stands for the files when the request is compared with an earlier one.
     let fingerprint = upload.fingerprint()?;
     key.once(&app, fingerprint.as_bytes(), |app| async move { kept(&app, upload).await }).await
 }
@@ -70,6 +70,7 @@ async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Resp
 async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     let ship = upload.ship().to_owned();
     let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
+    // With a single trial the answer refers to it, otherwise to the list of the ship.
     let only = match kept.as_slice() {
         [only] => Some(only.row.id.clone()),
         _ => None,
@@ -84,7 +85,7 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     })
 }
 
-/// Check trials without keeping them
+/// Check trials without storing them
 ///
 /// The same body as for an upload; the ship need not exist. The answer is that of `sistership check
 /// --json`.

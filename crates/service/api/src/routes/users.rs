@@ -1,4 +1,4 @@
-//! Users, and whoever asks.
+//! Users, and the caller.
 
 use axum::Json;
 use axum::extract::State;
@@ -28,11 +28,11 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(set_identities))
 }
 
-/// Whoever asks.
+/// The caller.
 #[derive(Debug, Serialize, ToSchema)]
 struct Me {
-    /// As the audit names them: a user, `key:PREFIX`, `server-key`, or `local` on a server that
-    /// asks nobody who they are.
+    /// Name in the audit: a user, `key:PREFIX`, `server-key`, or `local` on a server that does not
+    /// identify its callers.
     name: String,
     /// `user`, `key`, `server-key` or `local`.
     kind: &'static str,
@@ -45,56 +45,56 @@ struct UserView {
     name: String,
     title: String,
     roles: Vec<RoleView>,
-    /// Whether they may do anything.
+    /// False if the user is disabled.
     enabled: bool,
-    /// Whether they can sign in by a password.
+    /// True if the user can sign in by a password.
     has_password: bool,
-    /// As whom OpenID providers know them.
+    /// Identities of the user at OpenID providers.
     identities: Vec<IdentityView>,
     created_us: i64,
 }
 
-/// Whom an OpenID provider knows.
+/// An identity at an OpenID provider.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct IdentityRequest {
-    /// The provider.
+    /// URL of the provider.
     #[schema(inline)]
     issuer: Line,
-    /// What it calls them: its claim `sub`.
+    /// Name of the user at the provider: its claim `sub`.
     #[schema(inline)]
     subject: Line,
 }
 
-/// Whom an OpenID provider knows.
+/// An identity at an OpenID provider.
 #[derive(Debug, Serialize, ToSchema)]
 struct IdentityView {
     issuer: String,
     subject: String,
 }
 
-/// Identities instead of all others.
+/// Identities that replace all others.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct IdentitiesRequest {
-    /// The identities; none, and no provider knows the user.
+    /// The identities; without any, no provider knows the user.
     identities: Vec<IdentityRequest>,
 }
 
-/// A user to be.
+/// A user to be created.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct UserRequest {
     /// User name; it cannot be changed later.
     #[schema(inline)]
     name: UserName,
-    /// What people call them; the name where absent.
+    /// Display name; by default the name.
     #[schema(inline)]
     title: Option<Remark>,
-    /// The first password; without one they cannot sign in yet.
+    /// First password; without one the user cannot sign in yet.
     #[schema(inline)]
     password: Option<Password>,
-    /// What they may do.
+    /// Roles of the user.
     #[serde(default)]
     roles: Vec<RoleRequest>,
 }
@@ -108,17 +108,18 @@ struct PasswordRequest {
     password: Password,
 }
 
-/// Roles instead of all others.
+/// Roles that replace all others.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RolesRequest {
-    /// The roles; none takes every right.
+    /// The roles; an empty list removes every right.
     pub roles: Vec<RoleRequest>,
 }
 
 impl UserView {
     async fn of(app: &App, user: User) -> Result<Self> {
         let roles = app.store().grants().of(&User::principal(&user.name)).await?;
+        // The answer says whether there is a password; its hash stays internal.
         let (enabled, has_password) = (user.is_enabled(), user.password_hash.is_some());
         let identities = app.store().identities().of(&user.name).await?;
         let identity = |Identity { issuer, subject, .. }| IdentityView { issuer, subject };
@@ -129,7 +130,7 @@ impl UserView {
     }
 }
 
-/// Whoever asks, and what they may do
+/// Get the caller and its roles
 #[utoipa::path(get, path = "/v1/me", tag = "access", responses((status = 200, body = Me)))]
 async fn me() -> Result<Json<Me>> {
     let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
@@ -175,6 +176,7 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 async fn created(app: &App, request: UserRequest) -> Result<Reply> {
     let UserRequest { name, title, password, roles } = request;
     let title = title.map_or_else(|| name.to_string(), Remark::into_string);
+    // Roles are checked before the password is hashed, which takes memory and time.
     let roles = grants(roles)?;
     let user = app.accounts().create_user(&name, &title, password.as_deref(), &roles).await?;
     let name = user.name.clone();
@@ -182,7 +184,7 @@ async fn created(app: &App, request: UserRequest) -> Result<Reply> {
     Ok(reply.at(&["v1", "users", &name]))
 }
 
-/// A user
+/// Get a user
 #[utoipa::path(get, path = "/v1/users/{user}", tag = "access",
     params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn get(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
@@ -190,15 +192,16 @@ async fn get(State(app): State<App>, Place(name): Place<UserName>) -> Result<Jso
     Ok(Json(UserView::of(&app, user).await?))
 }
 
-/// Disable a user: signed out everywhere, with no rights; the name stays taken
+/// Disable a user: all sessions end and all rights are suspended; the name stays taken
 #[utoipa::path(delete, path = "/v1/users/{user}", tag = "access",
     params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn disable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
+    // The user is disabled, not deleted: the audit refers to the name.
     let user = app.accounts().enable(&name, false).await?;
     Ok(Json(UserView::of(&app, user).await?))
 }
 
-/// Give a disabled user the rights again that they had
+/// Enable a disabled user, with the same rights as before
 #[utoipa::path(post, path = "/v1/users/{user}/enable", tag = "access",
     params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
@@ -206,7 +209,7 @@ async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<
     Ok(Json(UserView::of(&app, user).await?))
 }
 
-/// Set the password of a user, who is signed out everywhere
+/// Set the password of a user, which ends all sessions
 #[utoipa::path(
     put, path = "/v1/users/{user}/password", tag = "access",
     params(("user" = inline(UserName), Path)),
@@ -222,7 +225,7 @@ async fn set_password(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Give a user these roles instead of all others
+/// Replace all roles of a user
 #[utoipa::path(
     put, path = "/v1/users/{user}/roles", tag = "access", params(("user" = inline(UserName), Path)),
     request_body = RolesRequest, responses((status = 200, body = UserView))
@@ -238,7 +241,7 @@ async fn set_roles(
     Ok(Json(UserView::of(&app, user).await?))
 }
 
-/// Let OpenID providers know a user as these instead of all others
+/// Replace all identities of a user at OpenID providers
 #[utoipa::path(
     put, path = "/v1/users/{user}/identities", tag = "access",
     params(("user" = inline(UserName), Path)),
@@ -253,6 +256,7 @@ async fn set_identities(
     let pair = |one: IdentityRequest| (one.issuer.into_string(), one.subject.into_string());
     let those: Vec<(String, String)> = identities.into_iter().map(pair).collect();
     app.store().identities().replace(&name, &those).await?;
+    // A principal in the cache might act under an identity that is gone.
     app.accounts().forget();
     let user = app.store().users().get(&name).await?;
     Ok(Json(UserView::of(&app, user).await?))

@@ -1,4 +1,4 @@
-//! Versions held against what their ships have sailed.
+//! Validation of versions against the trials of their ships.
 
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
@@ -26,7 +26,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// `json` or `html`, over what `Accept` says.
+    /// `json` or `html`; takes precedence over `Accept`.
     #[param(inline)]
     format: Option<ValidationFormat>,
 }
@@ -38,10 +38,10 @@ enum ValidationFormat {
     Html,
 }
 
-/// A version validated after ITTC 7.5-02-06-03
+/// Validate a version after ITTC 7.5-02-06-03
 ///
 /// Comparison error and validation uncertainty of every quantity of the ship's published trials,
-/// and of its turning circles and zigzags that neither the version nor one before it was fitted on.
+/// and of its turning circles and zigzags that neither the version nor one before it was fitted to.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/validation", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),
@@ -60,6 +60,7 @@ async fn validation(
     };
     let version = app.store().versions().get(&model, number.get()).await?;
     let asked = ToValidate::gather(app.archive(), &version).await?;
+    // Validation simulates and propagates uncertainty, with the memory of a job.
     let _share = app.job_memory().take(asked.demand(), app.limits().memory_wait).await?;
     let samples = app.archive().trials(&asked.samples()).await?;
     let done = app.compute(move || asked.validation(&samples)).await?;

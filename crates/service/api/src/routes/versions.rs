@@ -21,31 +21,31 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get)).routes(routes!(bytes))
 }
 
-/// What takes as long as a refinement.
+/// Returns the endpoint that takes as long as a refinement.
 pub(super) fn verification() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(verify_again))
 }
 
-/// A version, but for its document.
+/// A version without its document.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct VersionHead {
     pub id: String,
     /// The line of versions, which is the ship's name.
     pub model: String,
     pub number: i64,
-    /// The id of the version it was made from.
+    /// Id of the version it was made from.
     pub parent: Option<String>,
     pub law: String,
-    /// `published-source`, the method of the refinement, `diagnosis`, `branch-KIND-MODE`,
-    /// or `registered`.
+    /// `published-source`, the method of the refinement, `diagnosis`, `branch-KIND-MODE`, or
+    /// `registered`.
     pub method: String,
-    /// The SHA-256 of its document.
+    /// SHA-256 of its document.
     pub sha256: String,
-    /// The id of the report on it; only where one version is asked for.
+    /// Id of its report; only in the answer for a single version.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub report: Option<String>,
     pub created_us: i64,
-    /// Who asked for it, as the audit names them; null where that was not kept yet.
+    /// Author in the audit; null for versions older than this record.
     pub author: Option<String>,
 }
 
@@ -101,15 +101,16 @@ async fn list(
     Ok(Json(Listing::of(versions, VersionHead::of)))
 }
 
-/// A model is there once it has a version; before that its ship may be.
+/// Checks that a model exists. Before its first version, that of its ship is enough.
 pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
     match app.store().versions().latest(model).await {
+        // A ship without versions has an empty list, but an unknown name is an error.
         Err(StoreError::NotFound { .. }) => Ok(app.store().ships().get(model).await.map(drop)?),
         other => Ok(other.map(drop)?),
     }
 }
 
-/// A version with its document
+/// Get a version with its document
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
@@ -127,7 +128,7 @@ async fn get(
     }))
 }
 
-/// The document of a version, byte for byte as it was hashed
+/// Get the document of a version, byte for byte as it was hashed
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/document", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path),
@@ -142,6 +143,7 @@ async fn bytes(
     conditions: Conditions,
 ) -> Result<Response> {
     let version = app.store().versions().get(&model, number.get()).await?;
+    // The document never changes, so that its hash is its ETag.
     let etag = format!("\"{}\"", version.head.sha256);
     let head =
         [(header::ETAG, etag.clone()), (header::CONTENT_TYPE, "application/json".to_owned())];
@@ -163,7 +165,7 @@ async fn verify_again(
     Place((model, number)): Place<(Name, Number)>,
 ) -> Result<Json<Verification>> {
     let number = number.get();
-    // It is the work of a job, in a request.
+    // The request does the work of a job, within the memory of the jobs.
     let _share = app
         .job_memory()
         .take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait)

@@ -1,4 +1,4 @@
-//! Webhooks: who is told of what happens.
+//! Webhooks: notification of other servers.
 
 use axum::Json;
 use axum::extract::State;
@@ -28,18 +28,18 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(again))
 }
 
-/// A webhook, but for its secret.
+/// A webhook without its secret.
 #[derive(Debug, Serialize, ToSchema)]
 struct WebhookView {
     id: String,
     title: String,
     url: String,
-    /// The ship of which it is told; null for all.
+    /// Ship whose events are sent; null for all.
     ship: Option<String>,
-    /// What it is told.
+    /// Events that are sent.
     events: Vec<String>,
-    /// How many times as much a champion leaves of new trials as of those that it was fitted on
-    /// before it is told of drift.
+    /// Ratio of a champion's unexplained force in new trials to that in the trials it was fitted
+    /// to, above which drift is reported.
     drift_above: f64,
     created_us: i64,
     ended_us: Option<i64>,
@@ -48,44 +48,44 @@ struct WebhookView {
 /// A webhook as it is shown once.
 #[derive(Debug, Serialize, ToSchema)]
 struct NewWebhookView {
-    /// What deliveries are signed with: it is not shown again.
+    /// Secret that signs the deliveries; it is not shown again.
     secret: String,
-    /// The rest, as it is shown later too.
+    /// The rest, as later requests show it.
     about: WebhookView,
 }
 
-/// A webhook to be.
+/// A webhook to be created.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct WebhookRequest {
-    /// What it is for.
+    /// Purpose.
     #[schema(inline)]
     title: Remark,
-    /// Where it is: https, at a public address.
+    /// URL: https, at a public address.
     #[schema(inline)]
     url: WebAddress,
-    /// The ship of which it is told; all where absent.
+    /// Ship whose events are sent; by default all.
     #[schema(inline)]
     ship: Option<Name>,
-    /// What it is told, each once.
+    /// Events to send, each once.
     #[schema(min_items = 1, max_items = 3)]
     events: Vec<WebhookEvent>,
-    /// How many times as much a champion leaves of new trials as of those that it was fitted on
-    /// before it is told of drift; 2 where absent.
+    /// Ratio of a champion's unexplained force in new trials to that in the trials it was fitted
+    /// to, above which drift is reported; by default 2.
     #[schema(inline)]
     drift_above: Option<Positive>,
 }
 
-/// What a webhook may be told.
+/// Event of which webhooks are notified.
 #[derive(Debug, Clone, Copy, Deserialize, Serialize, ToSchema)]
 enum WebhookEvent {
     /// The champion of a ship has moved.
     #[serde(rename = "champion.moved")]
     ChampionMoved,
-    /// A diagnosis found that a version lacks something.
+    /// A diagnosis found that a version lacks an effect.
     #[serde(rename = "diagnosis.failed")]
     DiagnosisFailed,
-    /// A champion leaves much more of new trials than of those that it was fitted on.
+    /// A champion leaves much more force unexplained in new trials than in those it was fitted to.
     #[serde(rename = "drift")]
     Drift,
 }
@@ -100,22 +100,22 @@ impl WebhookEvent {
     }
 }
 
-/// What a webhook is told.
+/// A delivery to a webhook.
 #[derive(Debug, Serialize, ToSchema)]
 struct DeliveryView {
     id: String,
     event: String,
-    /// What is sent.
+    /// Body of the delivery.
     #[schema(value_type = Object)]
     body: Value,
     created_us: i64,
-    /// How often it was sent.
+    /// Number of attempts.
     attempts: i64,
-    /// When it is sent next; null once it has arrived or was given up.
+    /// Time of the next attempt; null once it has arrived or was given up.
     due_us: Option<i64>,
-    /// When it arrived; null where it has not.
+    /// Time of arrival; null if it has not arrived.
     delivered_us: Option<i64>,
-    /// What came of the last attempt.
+    /// Result of the last attempt.
     answer: Option<String>,
 }
 
@@ -123,6 +123,7 @@ impl WebhookView {
     async fn of(app: &App, row: Webhook) -> Result<Self> {
         let events = app.store().webhooks().events(&row.id).await?;
         let Webhook { id, title, url, ship, drift_above, created_us, ended_us, .. } = row;
+        // The remaining columns hold the secret and stay internal.
         Ok(Self { id, title, url, ship, events, drift_above, created_us, ended_us })
     }
 }
@@ -132,12 +133,13 @@ impl DeliveryView {
         let Delivery {
             id, event, body, created_us, attempts, due_us, delivered_us, answer, ..
         } = row;
+        // A body that cannot be parsed is shown as null rather than refused.
         let body = serde_json::from_str(&body).unwrap_or_default();
         Self { id, event, body, created_us, attempts, due_us, delivered_us, answer }
     }
 }
 
-/// List the webhooks by id, those that have ended too
+/// List the webhooks by id, including ended ones
 #[utoipa::path(get, path = "/v1/webhooks", tag = "webhooks", params(Paged),
     responses((status = 200, body = Listing<WebhookView>)))]
 async fn list(
@@ -153,18 +155,19 @@ async fn list(
     Ok(Json(Listing { items, next }))
 }
 
-/// Tell a place on the web of what happens
+/// Create a webhook, which notifies a URL of events
 ///
 /// Each delivery is a `POST` of JSON with `Sistership-Event`, `Sistership-Delivery` (the same for
-/// every attempt) and `Sistership-Signature`: `t=SECONDS,v1=HEX`, the HMAC-SHA256 of
-/// `SECONDS.BODY` under the secret. It is sent until a status of 200 to 299 comes back, at least
-/// once. The answer has the secret, once; so the request takes no `Idempotency-Key`.
+/// every attempt) and `Sistership-Signature`: `t=SECONDS,v1=HEX`, the HMAC-SHA256 of `SECONDS.BODY`
+/// under the secret. It is sent until a status of 200 to 299 comes back, at least once. The answer
+/// has the secret, once; the request therefore takes no `Idempotency-Key`.
 #[utoipa::path(
     post, path = "/v1/webhooks", tag = "webhooks", request_body = WebhookRequest,
     responses((status = 201, body = NewWebhookView, headers(("Location" = String))))
 )]
 async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
     let WebhookRequest { title, url, ship, events, drift_above } = payload.json()?;
+    // The address is checked again at each delivery, as a name may lead elsewhere later.
     check_url(&url, app.limits().webhooks_private)
         .map_err(|message| Problem::invalid("url", message))?;
     let new = NewWebhook {
@@ -179,11 +182,12 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
     let location = path(&["v1", "webhooks", &row.id]);
     let about = WebhookView::of(&app, row).await?;
     let view = NewWebhookView { secret: new.secret, about };
+    // Neither the browser nor a proxy may store the secret.
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
     Ok((StatusCode::CREATED, head, Json(view)).into_response())
 }
 
-/// A webhook
+/// Get a webhook
 #[utoipa::path(get, path = "/v1/webhooks/{id}", tag = "webhooks",
     params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
 async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<WebhookView>> {
@@ -199,7 +203,7 @@ async fn end(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Webhoo
     Ok(Json(WebhookView::of(&app, webhook).await?))
 }
 
-/// What a webhook was told and is to be told, the latest first
+/// List the deliveries of a webhook, the latest first
 #[utoipa::path(
     get, path = "/v1/webhooks/{id}/deliveries", tag = "webhooks",
     params(("id" = inline(Id), Path), Paged),
@@ -215,7 +219,7 @@ async fn deliveries(
     Ok(Json(Listing::of(deliveries, DeliveryView::of)))
 }
 
-/// Send a delivery that has not arrived once more
+/// Send a delivery again that has not arrived
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/deliveries/{delivery}/retry", tag = "webhooks",
     params(("id" = inline(Id), Path), ("delivery" = inline(Id), Path)),

@@ -1,4 +1,4 @@
-//! From files that have arrived to trials that are kept.
+//! From uploaded files to stored trials.
 
 use std::io::BufWriter;
 
@@ -22,22 +22,24 @@ use sistership_jobs::line::{CHAMPION, alias};
 use sistership_web_support::spool::{Spool, temporary};
 use sistership_web_support::upload::{Arrived, Upload};
 
-/// How often samples are put again that were removed before their rows were written.
+/// Number of attempts to store samples again that were removed before their rows were written.
 const TRIES: usize = 3;
 
-/// A trial that is kept now, and whether it was new.
+/// A stored trial, with the information whether it was new.
 pub(crate) type Kept = Inserted<Trial>;
 
 /// A trial that has passed every check.
 struct Accepted {
     new: NewTrial,
-    /// Its samples as they are to be kept: many trials of one upload do not lie in memory together.
+    /// Its samples as they will be stored, on disk, so that the trials of one upload are not in
+    /// memory together.
     samples: NamedTempFile,
 }
 
-/// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses
+/// Stores the trials of an upload: all of them, or none if one is refused. The job that diagnoses
 /// the ship's champion on the new ones is queued with them.
 pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
+    // The ship may be in the body, so that the router could not check the role.
     let (ship, diagnose) = (upload.ship().to_owned(), upload.diagnose);
     on_ship(app.store(), Role::Engineer, &ship).await?;
     match app.store().ships().get(&ship).await {
@@ -50,7 +52,8 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
     for _ in 0..TRIES {
         let rows = rows(&accepted, put_samples(app.objects(), &accepted).await?);
         match app.store().trials().insert_all_and_enqueue(&rows, app.objects(), job).await {
-            // They were old and nobody's, and were removed as garbage between the two.
+            // The objects had existed without a row and were removed as garbage between the two
+            // steps.
             Err(StoreError::NotFound { kind: "object", .. }) => {}
             other => return Ok(other?),
         }
@@ -58,12 +61,13 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
     Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
 }
 
-/// The number of the ship's champion.
+/// Returns the number of the ship's champion.
 async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
     Ok(alias(app.store(), ship, CHAMPION).await?.map(|champion| champion.version_number))
 }
 
-/// The diagnosis of a champion on what is new, and on that with what came before.
+/// Returns the job that diagnoses a champion on the new trials, and on these together with earlier
+/// ones.
 fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
     let trials: Vec<String> =
         kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
@@ -71,6 +75,7 @@ fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
     let (with_earlier, key_sha256) = (true, None);
     let asked =
         DiagnosisJob { ship: ship.clone(), number, trials, with_earlier, settings, key_sha256 };
+    // An upload without a new trial needs no diagnosis.
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
     Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
 }
@@ -82,10 +87,14 @@ fn no_ship(ship: &str) -> Problem {
     )
 }
 
-/// Reads every file, one after the other; the refusals of all of them are told together.
+/// Reads every file, one after the other.
+///
+/// # Errors
+/// Returns the refusals of all files together.
 async fn accept(upload: &Upload, app: &App) -> Result<Vec<Accepted>> {
     let (mut accepted, mut refused) = (Vec::new(), Vec::new());
     for mut trial in upload.trials() {
+        // The share of memory is held until the samples are on disk.
         let (share, inner) = (room(app, &mut trial).await?, app.clone());
         let read = move || {
             let _share = share;
@@ -99,7 +108,7 @@ async fn accept(upload: &Upload, app: &App) -> Result<Vec<Accepted>> {
     if refused.is_empty() { Ok(accepted) } else { Err(Vec::<Refusal>::into(refused)) }
 }
 
-/// Reads a trial, and writes its samples.
+/// Reads a trial, and writes its samples to a temporary file.
 fn read(arrived: &Arrived, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
     let source = arrived.open().map_err(|error| lost(&arrived.name, &error));
     match source.and_then(|source| read_trial(source, &arrived.mapping)) {
@@ -132,7 +141,7 @@ impl Accepted {
     }
 }
 
-/// Whether there was room is in what caused the error.
+/// Maps an error of writing samples: the lack of space is among its causes.
 fn unwritten(error: SamplesError) -> Problem {
     let first: &(dyn std::error::Error + 'static) = &error;
     let mut causes = std::iter::successors(Some(first), |cause| cause.source());
@@ -149,11 +158,12 @@ fn json(value: &impl serde::Serialize) -> Result<String> {
     serde_json::to_string(value).map_err(Problem::internal)
 }
 
-/// The samples first: a row that is there has its samples.
+/// Stores the samples; their rows are written afterwards, so that a row always has its samples.
 async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<String>> {
     let mut keys = Vec::with_capacity(accepted.len());
     for trial in accepted {
         let size = trial.samples.as_file().metadata().map_err(Problem::internal)?.len();
+        // The memory of one file at a time.
         let _share = budget::share(size).await?;
         let bytes = tokio::fs::read(trial.samples.path()).await.map_err(Problem::internal)?;
         keys.push(objects.put(Bytes::from(bytes)).await?);

@@ -1,4 +1,4 @@
-//! Uploads of trials that have arrived: read and checked, and kept all together or not at all.
+//! Uploads of trials: read and checked, and stored all together or not at all.
 
 mod keep;
 mod reading;

@@ -1,4 +1,4 @@
-//! Uploads read without keeping anything.
+//! Uploads read without storing anything.
 
 use sistership_model::trial::Trial;
 use sistership_trials::{CheckOutcome, Refusal, check, read_trial};
@@ -8,7 +8,7 @@ use super::room::room;
 use crate::app::App;
 use crate::problem::Result;
 
-/// Reads every file without keeping any, one after the other, and makes something of each.
+/// Reads every file without storing any, one after the other, and maps each result by `of`.
 pub(crate) async fn each<T: Send + 'static>(
     upload: &Upload,
     app: &App,
@@ -27,7 +27,7 @@ pub(crate) async fn each<T: Send + 'static>(
     Ok(made)
 }
 
-/// Checks every file without keeping any, one after the other.
+/// Checks every file without storing any, one after the other.
 pub(crate) async fn checked(upload: &Upload, app: &App) -> Result<Vec<CheckOutcome>> {
     let mut outcomes = Vec::with_capacity(upload.manifest.manifest.trials.len());
     for mut trial in upload.trials() {
@@ -49,7 +49,7 @@ fn unreadable(file: &str, error: &std::io::Error) -> CheckOutcome {
     CheckOutcome { file, rows: 0, duration_s: 0.0, errors: findings, warnings: Vec::new() }
 }
 
-/// What could not be read of it.
+/// Refusal of a file that cannot be read.
 pub(super) fn lost(file: &str, error: &std::io::Error) -> Refusal {
     let finding = sistership_model::trial::Finding {
         row: None,

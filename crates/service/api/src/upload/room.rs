@@ -7,13 +7,14 @@ use crate::problem::{Fault, Problem, Result};
 use sistership_jobs::budget::{self, Share, Shortage};
 use sistership_web_support::upload::Arrived;
 
-/// Takes what a file needs from its reading to its samples being kept; gives the mapping room for
-/// its rows.
+/// Takes the memory of a file from its reading to the storing of its samples, and sets the number
+/// of rows that the mapping reserves.
 ///
 /// # Errors
-/// There is not so much memory, or not soon; the file is named.
+/// Returns an error that names the file if the memory is too small, or not free in time.
 pub(super) async fn room(app: &App, trial: &mut Arrived) -> Result<Option<Share>> {
     let name = trial.name.clone();
+    // Measuring the file takes memory itself, which is estimated from its path alone.
     let paths = std::iter::once(&trial.path).chain(trial.sensors.iter().map(|(_, path)| path));
     let each: std::io::Result<Vec<u64>> = paths.map(|path| measuring(path)).collect();
     let measuring = each.map_err(Problem::internal)?.iter().sum();
@@ -22,8 +23,8 @@ pub(super) async fn room(app: &App, trial: &mut Arrived) -> Result<Option<Share>
         (trial.path.clone(), trial.mapping.clone(), trial.sensors.clone());
     let measure = move || demand_of_trial(&path, &mapping, &sensors);
     let measured = app.compute(measure).await?.map_err(Problem::internal)?;
-    // Given back before more is asked for: nobody holds some of the memory while waiting for the
-    // rest.
+    // Given back before more is requested: no task may hold some of the memory while it waits for
+    // the rest.
     drop(share);
     trial.mapping.room = measured.rows;
     budget::share(measured.bytes).await.map_err(|shortage| named(&name, Some(measured), shortage))

@@ -1,5 +1,5 @@
-//! What wraps every request: an id, a line in the log, and problem details for errors that no
-//! handler made.
+//! Outermost layer of every request: an id, a line in the log, and problem details for errors that
+//! no handler made.
 
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -16,8 +16,7 @@ use crate::problem::{MEDIA, Problem};
 use sistership_listener::Peer;
 use sistership_web_support::large::counted;
 
-/// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that
-/// id.
+/// Gives the request an id, logs and counts it, and turns every error into a problem with that id.
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = Uuid::now_v7();
     let (method, route) = (request.method().clone(), route(&request));
@@ -26,10 +25,13 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
+        // The memory that the request takes is released when this scope ends, whatever the handler
+        // does.
         let response = app.held().scope(async { counted(next.run(request).await).await }).await;
         let slow = peer.is_some_and(|peer| peer.is_too_slow());
         let response = finish(if slow { too_slow() } else { response }, id, for_people);
         let elapsed = start.elapsed();
+        // From then on the maintenance checks for space more often.
         if response.status() == StatusCode::INSUFFICIENT_STORAGE {
             app.no_room().store(true, Ordering::Relaxed);
         }
@@ -45,12 +47,12 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
     .await
 }
 
-/// The path as the router knows it, with names in the place of ids.
+/// The path as the router declares it, with names in place of ids.
 fn route(request: &Request) -> String {
     request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned()
 }
 
-/// Whether a browser wants to show the answer as a page.
+/// Returns true if a browser asks for the answer as a page.
 fn is_for_people(request: &Request) -> bool {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let page = accepted.is_some_and(|accepted| accepted.contains("text/html"));
@@ -68,14 +70,15 @@ fn finish(response: Response, id: Uuid, for_people: bool) -> Response {
     response
 }
 
-/// The answer to a request whose body did not come in time, whatever the handler has made of the
-/// half that did.
+/// Answer to a request whose body did not come in time, whatever the handler has made of the half
+/// that did.
 fn too_slow() -> Response {
     let why = "the body came too slowly, or not at all; send it at once, or over a faster link";
     Problem::new(StatusCode::REQUEST_TIMEOUT, why).into_response()
 }
 
-/// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).
+/// Returns the response with a problem as its body; its other headers stay (`Allow`,
+/// `WWW-Authenticate`).
 fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
     let (mut parts, _) = response.into_parts();
     let mut problem = parts
@@ -85,6 +88,7 @@ fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
     problem.instance = Some(format!("urn:uuid:{id}"));
     let page = for_people.then(|| problem.page()).flatten();
     let (fresh, body) = problem.into_response().into_parts();
+    // The length is that of the body that is replaced.
     parts.headers.remove(header::CONTENT_LENGTH);
     parts.headers.extend(fresh.headers);
     let Some(page) = page else {
@@ -102,7 +106,7 @@ fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
     HttpResponse::from_parts(parts, page.into())
 }
 
-/// What to do about an error that a layer made.
+/// Advice on an error that a layer made.
 fn reason(status: StatusCode) -> &'static str {
     match status {
         StatusCode::METHOD_NOT_ALLOWED => {
@@ -119,7 +123,7 @@ fn reason(status: StatusCode) -> &'static str {
     }
 }
 
-/// The answer where there is no route.
+/// Answer to a path without a route.
 pub(crate) async fn nowhere(request: Request) -> Problem {
     Problem::not_found(format!(
         "there is no {}; /openapi.json lists what there is",
@@ -127,7 +131,7 @@ pub(crate) async fn nowhere(request: Request) -> Problem {
     ))
 }
 
-/// The answer where a handler panicked.
+/// Answer if a handler panicked.
 pub(crate) fn panicked(reason: Box<dyn std::any::Any + Send>) -> Response {
     let text = reason
         .downcast_ref::<String>()

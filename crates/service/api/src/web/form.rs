@@ -1,4 +1,4 @@
-//! Forms of pages: what they send, and the token by which they show that this server wrote them.
+//! Forms of pages: their fields, and the token which proves that this server wrote them.
 
 use axum::Form;
 use axum::extract::{FromRequest, Request};
@@ -10,7 +10,7 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::rights::{Kind, current};
 
-/// What a page's form has sent, once its token has been found right.
+/// Fields of a page's form whose token is valid.
 pub(crate) struct PageForm(pub Fields);
 
 impl FromRequest<App> for PageForm {
@@ -25,7 +25,7 @@ impl FromRequest<App> for PageForm {
     }
 }
 
-/// What forms send: of a session its own token, else that of the server.
+/// Token of the current forms: that of the session, otherwise that of the server.
 fn token(app: &App) -> String {
     match current().map(|acting| acting.principal.kind.clone()) {
         Some(Kind::Session { form_token, .. }) => form_token,
@@ -33,9 +33,13 @@ fn token(app: &App) -> String {
     }
 }
 
-/// Whether the token is the one that pages of this server send.
+/// Checks that the token is the one that the pages of this server carry.
+///
+/// # Errors
+/// Returns 403 if it is another one or missing.
 pub(crate) fn checked(app: &App, presented: Option<&str>) -> Result<()> {
     let known = token(app);
+    // Compared in constant time, so that the token cannot be guessed byte by byte.
     match presented.is_some_and(|presented| same(presented.as_bytes(), known.as_bytes())) {
         true => Ok(()),
         false => Err(Problem::new(
@@ -46,7 +50,7 @@ pub(crate) fn checked(app: &App, presented: Option<&str>) -> Result<()> {
     }
 }
 
-/// What is around a page whose forms may be sent, and which shows who is signed in.
+/// Frame of a page whose forms may be sent, with the user who is signed in.
 pub(crate) fn shell(app: &App) -> Shell {
     let acting = current();
     let signed_in = acting.map(|acting| SignedIn {

@@ -1,5 +1,5 @@
-//! Who may ask for what: whoever asks shows who they are, or, on a machine's own interface without
-//! a key, is a program of that machine; then their roles decide.
+//! Access control: a caller identifies itself, or is, on a loopback interface without a key, a
+//! program of the same machine; then its roles decide.
 
 use std::net::IpAddr;
 
@@ -16,14 +16,15 @@ use crate::rights::{Acting, Asked, HEALTH, OPEN, allowed};
 use sistership_listener::Peer;
 use sistership_web_support::host;
 
-/// How long who finds no seat should wait, seconds.
+/// Time after which a refused client may try again, seconds.
 const RETRY: u64 = 2;
 
-/// Lets a request through, or says what it lacks.
+/// Lets a request through, or answers what it lacks.
 pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let peer = request.extensions().get::<Peer>().cloned();
     if let Some(peer) = &peer {
         let client = app.proxies().client(peer.address, request.headers());
+        // Before any refusal: throttling and the audit need the client's address.
         request.extensions_mut().insert(Client(client));
     }
     if peer.as_ref().is_some_and(|peer| peer.crowded) {
@@ -48,7 +49,7 @@ pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Ne
     }
 }
 
-/// A refusal; a browser that wants a page goes to sign in first.
+/// Answer of a refusal; a browser that asks for a page is sent to sign in first.
 fn refused(app: &App, request: &Request, problem: Problem) -> Response {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let page = request.method() == Method::GET
@@ -66,7 +67,7 @@ fn refused(app: &App, request: &Request, problem: Problem) -> Response {
     Redirect::to(&format!("/sign-in?{query}")).into_response()
 }
 
-/// A refusal that ends the connection and says when to come again.
+/// Refusal that closes the connection and says when to try again.
 fn later(problem: Problem, seconds: u64) -> Response {
     let mut response = problem.into_response();
     response.headers_mut().insert(header::RETRY_AFTER, seconds.into());
@@ -74,20 +75,22 @@ fn later(problem: Problem, seconds: u64) -> Response {
     response
 }
 
-/// Whoever is let through; nobody where nobody is asked for.
+/// Returns the caller of a request that is let through; `None` for routes without identification.
 async fn admitted(app: &App, request: &mut Request) -> Result<Option<Acting>, Refusal> {
     let host = host::addressed(request)?;
     let place = (as_get(request.method()), request.uri().path());
     if HEALTH.contains(&place) {
         return Ok(None);
     }
+    // Without a key the loopback interface is the only protection: a web page in a browser of this
+    // machine must not pass for a local program.
     if app.credentials().is_open() {
         host::from_this_machine(request.method(), request.headers(), host.as_ref())?;
     }
     if OPEN.contains(&place) {
         return Ok(None);
     }
-    // A form that a page of this server sends, which has a token besides.
+    // A request of a page of this server; its forms carry a token besides.
     let own = !request.uri().path().starts_with("/v1")
         && host::is_same_origin(request.headers(), host.as_ref())?;
     let principal = app.accounts().identify(request.method(), request.headers(), own).await?;
@@ -110,11 +113,12 @@ fn as_get(method: &Method) -> &str {
     if *method == Method::HEAD { "GET" } else { method.as_str() }
 }
 
-/// The address of whoever asks: of a connection's other end, or what a trusted proxy says.
+/// Address of the caller: the other end of the connection, or the address that a trusted proxy
+/// states.
 #[derive(Debug, Clone, Copy)]
 struct Client(IpAddr);
 
-/// From where a request comes, as the audit has it.
+/// Origin of a request, as the audit records it.
 pub(crate) fn origin_of(extensions: &Extensions) -> String {
     let client = extensions.get::<Client>();
     client.map_or_else(|| "unknown".to_owned(), |client| client.0.to_string())

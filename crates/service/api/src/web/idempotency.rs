@@ -1,5 +1,5 @@
-//! `Idempotency-Key`: a request that is repeated is carried out once, and answered as it was the
-//! first time.
+//! `Idempotency-Key`: a repeated request is carried out once, and answered as it was the first
+//! time.
 
 use std::future::Future;
 
@@ -19,10 +19,10 @@ use sistership_jobs::budget::{Held, carried_on};
 
 const HEADER: &str = "idempotency-key";
 
-/// What names a request: its key, if it has one, and what it is made of.
+/// Identity of a request: its key, if it has one, and the method, path and query it belongs to.
 #[derive(Debug)]
 pub(crate) struct Key {
-    /// The caller's key.
+    /// Key of the caller.
     pub value: Option<String>,
     scope: String,
 }
@@ -49,7 +49,7 @@ fn check(value: &HeaderValue) -> Result<String> {
 impl Key {
     /// Carries a request out, once for each key. The work gets a handle of the server whose store
     /// keeps all that is written together with the answer, or nothing of it. It runs to its end
-    /// even when the caller hangs up.
+    /// even if the caller hangs up.
     pub(crate) async fn once<W, F>(self, app: &App, body: &[u8], work: W) -> Result<Response>
     where
         W: FnOnce(App) -> F + Send + 'static,
@@ -71,10 +71,10 @@ impl Key {
     }
 }
 
-/// The scope of a key: whoever sends the same key in another name gets no answer that was not
-/// theirs.
+/// Scope of a key: the same key sent under another name gets no answer of somebody else.
 fn own(scope: String) -> String {
     match current().map(|acting| acting.principal) {
+        // Local programs and the server's key act for one owner, and share a scope.
         Some(who) if !matches!(who.kind, Kind::Local | Kind::ServerKey) => {
             format!("{scope} by {}", who.name)
         }
@@ -82,7 +82,8 @@ fn own(scope: String) -> String {
     }
 }
 
-/// Waits for work that goes on if nobody waits. It is boxed before anything moves it: it is large.
+/// Waits for work that goes on even if the caller does not wait. The future is boxed before it is
+/// moved, as it is large.
 fn finished<T: Send + 'static>(
     work: impl Future<Output = Result<T>> + Send + 'static,
 ) -> impl Future<Output = Result<T>> + Send {
@@ -90,8 +91,8 @@ fn finished<T: Send + 'static>(
     async move { tokio::spawn(work).await.map_err(Problem::internal)? }
 }
 
-/// Keeps the work with its answer; a request that came to nothing is forgotten, so that it can be
-/// tried again.
+/// Commits the work with its answer; a request that failed is forgotten, so that it can be tried
+/// again.
 async fn carried_out<W, F>(app: App, ticket: Option<Ticket>, work: W) -> Result<Reply>
 where
     W: FnOnce(App) -> F,
@@ -103,6 +104,7 @@ where
         Ok(reply) => keep(unit, ticket.as_ref(), reply).await,
         Err(problem) => {
             unit.undo().await;
+            // After the commit only: a worker that wakes earlier would not find the job.
             Err(problem)
         }
     };
@@ -114,13 +116,15 @@ where
     kept
 }
 
-/// The outcome of the work, with the ticket held as long as it takes.
+/// Returns the outcome of the work and keeps the ticket alive meanwhile.
 async fn held(
     store: &Store,
     ticket: Option<&Ticket>,
     work: impl Future<Output = Result<Reply>>,
 ) -> Result<Reply> {
     let Some(ticket) = ticket else { return work.await };
+    // The ticket expires unless it is renewed, so that a request whose process has ended can be
+    // repeated.
     let prolonging = async {
         loop {
             tokio::time::sleep(PROLONG_EVERY).await;
@@ -131,6 +135,7 @@ async fn held(
     };
     tokio::select! {
         done = work => done,
+        // The loop never ends by itself; the arm satisfies the types.
         () = prolonging => Err(Problem::internal("a loop without end has ended")),
     }
 }
@@ -141,7 +146,7 @@ async fn keep(unit: UnitOfWork, ticket: Option<&Ticket>, reply: Reply) -> Result
     Ok(reply)
 }
 
-/// What cannot be forgotten now is taken over later.
+/// Gives up a ticket. If that fails, a later request takes it over once it has expired.
 async fn abandon(store: &Store, ticket: &Ticket) {
     if let Err(error) = store.idempotency().abandon(ticket).await {
         tracing::warn!(%error, "a request that came to nothing could not be forgotten");

@@ -1,4 +1,5 @@
-//! What wraps every endpoint of this server; what each needs of HTTP stands in `sistership_web_support`.
+//! Layers around every endpoint of this server; the HTTP parts that endpoints share are in
+//! `sistership_web_support`.
 
 pub(crate) mod envelope;
 pub(crate) mod form;

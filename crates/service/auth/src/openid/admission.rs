@@ -1,4 +1,4 @@
-//! Who of those that a provider knows gets in, under which name and with which roles.
+//! Admission of persons with an account at a provider: their name here and their roles.
 
 use std::collections::BTreeMap;
 
@@ -7,34 +7,34 @@ use serde_json::{Map, Value};
 
 use crate::openid::failure::{Failure, Result};
 
-/// Who of those that a provider knows gets in.
+/// Rules of admission of persons with an account at a provider.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Admission {
-    /// Whether whoever has no account gets one.
+    /// True if a person without an account here gets one.
     pub auto_create: bool,
-    /// What everybody may do who gets in by the provider, where it is not by their groups alone.
+    /// Role of every person who signs in at the provider, in addition to those of their groups.
     pub default_role: Option<Grant>,
-    /// The claim that names the account; `preferred_username`, else a verified `email`, where none
-    /// is set.
+    /// Claim with the name of the account; default: `preferred_username`, else a verified `email`.
     pub name_claim: Option<String>,
-    /// The claim that lists the groups.
+    /// Claim with the list of groups.
     pub groups_claim: String,
-    /// What members of a group may do.
+    /// Roles by group.
     pub group_roles: Vec<(String, Grant)>,
 }
 
 impl Admission {
-    /// Whether the provider's groups say what people may do.
+    /// Returns true if the provider's groups determine the roles.
     pub fn by_groups(&self) -> bool {
         !self.group_roles.is_empty()
     }
 
-    /// What somebody may do by the groups that the claims name; for each ship, family or the server
-    /// the most that any of them gives.
+    /// Returns the roles of a person with these claims; for each scope the highest role of any
+    /// group.
     pub fn roles(&self, claims: &Map<String, Value>) -> Vec<Grant> {
         let groups = words(claims.get(&self.groups_claim));
         let given = self.group_roles.iter().filter(|(group, _)| groups.contains(&group.as_str()));
         let given = given.map(|(_, grant)| grant).chain(&self.default_role);
+        // Ordered by scope, so that the same groups give the same list.
         let mut most: BTreeMap<Scope, Role> = BTreeMap::new();
         for Grant { scope, role } in given {
             let known = most.entry(scope.clone()).or_insert(*role);
@@ -43,13 +43,14 @@ impl Admission {
         most.into_iter().map(|(scope, role)| Grant { scope, role }).collect()
     }
 
-    /// Whether the claims hold all that is asked for; the provider may have more elsewhere.
+    /// Returns true if the claims have the name and the groups that are needed; otherwise the
+    /// UserInfo endpoint may have them.
     pub fn is_answered_by(&self, claims: &Map<String, Value>) -> bool {
         let named = !self.auto_create || self.called(claims).is_some();
         named && (!self.by_groups() || claims.contains_key(&self.groups_claim))
     }
 
-    /// What the claims call somebody, whatever that is worth here.
+    /// Returns the name in the claims, not checked.
     fn called<'a>(&self, claims: &'a Map<String, Value>) -> Option<&'a str> {
         match &self.name_claim {
             Some(claim) => text(claims, claim),
@@ -57,10 +58,10 @@ impl Admission {
         }
     }
 
-    /// The name of an account to be.
+    /// Returns the name for a new account, in lower case.
     ///
     /// # Errors
-    /// The claims hold none, or one that no account may have.
+    /// Returns an error if the claims have no name, or one that is not valid here.
     pub fn name(&self, claims: &Map<String, Value>) -> Result<String> {
         let found = self.called(claims);
         let claim =
@@ -70,6 +71,7 @@ impl Admission {
                 "the provider does not say `{claim}`, by which you would have a name here"
             )));
         };
+        // Providers may keep upper case; names here have none.
         let name = found.to_lowercase();
         match check_name(&name) {
             Ok(()) => Ok(name),
@@ -81,7 +83,7 @@ impl Admission {
     }
 }
 
-/// A claim that is a text; an address only where the provider has verified it.
+/// Returns a claim of text; an email address only if the provider has verified it.
 fn text<'a>(claims: &'a Map<String, Value>, claim: &str) -> Option<&'a str> {
     if claim == "email" && claims.get("email_verified") != Some(&Value::Bool(true)) {
         return None;
@@ -89,7 +91,7 @@ fn text<'a>(claims: &'a Map<String, Value>, claim: &str) -> Option<&'a str> {
     claims.get(claim).and_then(Value::as_str).filter(|text| !text.is_empty())
 }
 
-/// The texts of a list; of a text, itself.
+/// Returns the texts of a list, or a single text as a list of one.
 fn words(value: Option<&Value>) -> Vec<&str> {
     match value {
         Some(Value::Array(items)) => items.iter().filter_map(Value::as_str).collect(),

@@ -1,4 +1,4 @@
-//! What flags, the environment and the configuration file may say of a provider.
+//! Settings of a provider from command-line flags, the environment and the configuration file.
 
 use std::path::{Path, PathBuf};
 
@@ -9,11 +9,11 @@ use serde::Deserialize;
 use crate::openid::admission::Admission;
 use crate::openid::settings::{Settings, SettingsError, is_safe, url};
 
-/// Holds the secret that the provider knows the server by.
+/// Environment variable of the client secret.
 const SECRET: &str = "SISTERSHIP_OIDC_CLIENT_SECRET";
 
-/// The settings of a provider, each with its flag; the same names stand in the file's section
-/// `oidc`.
+/// Settings of a provider, each with its flag; the section `oidc` of the configuration file has the
+/// same names.
 #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "Signing in at an OpenID provider")]
@@ -26,7 +26,7 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_ISSUER"
     )]
     pub issuer: Option<String>,
-    /// What the provider calls this server.
+    /// Client ID of this server at the provider.
     #[arg(
         id = "oidc_client_id",
         long = "oidc-client-id",
@@ -34,7 +34,7 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_CLIENT_ID"
     )]
     pub client_id: Option<String>,
-    /// File that holds the secret by which the provider knows this server; wins over
+    /// File with the client secret of this server; takes precedence over
     /// SISTERSHIP_OIDC_CLIENT_SECRET.
     #[arg(
         id = "oidc_client_secret_file",
@@ -43,8 +43,7 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_CLIENT_SECRET_FILE"
     )]
     pub client_secret_file: Option<PathBuf>,
-    /// Where browsers find this server; the provider sends them back to
-    /// BASE/sign-in/oidc/callback.
+    /// URL of this server for browsers; the provider redirects them to BASE/sign-in/oidc/callback.
     #[arg(
         id = "oidc_base_url",
         long = "oidc-base-url",
@@ -52,7 +51,7 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_BASE_URL"
     )]
     pub base_url: Option<String>,
-    /// What the button calls the provider [default: its host].
+    /// Name of the provider on the sign-in button [default: its host].
     #[arg(
         id = "oidc_title",
         long = "oidc-title",
@@ -60,7 +59,7 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_TITLE"
     )]
     pub title: Option<String>,
-    /// What the provider is asked to tell [default: openid profile email].
+    /// Scopes requested from the provider [default: openid profile email].
     #[arg(
         id = "oidc_scopes",
         long = "oidc-scopes",
@@ -76,11 +75,12 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_NAME_CLAIM"
     )]
     pub name_claim: Option<String>,
-    /// Give an account to whoever the provider lets through and has none; otherwise an account must
-    /// be there, and linked.
+    /// Create an account for every person that the provider lets through and who has none;
+    /// otherwise an account must exist and be linked.
     #[arg(id = "oidc_auto_create", long = "oidc-auto-create", env = "SISTERSHIP_OIDC_AUTO_CREATE")]
     pub auto_create: bool,
-    /// Role of a new account; with --oidc-group-role, of everybody beside those of their groups.
+    /// Role of a new account; with --oidc-group-role, of every person in addition to those of their
+    /// groups.
     #[arg(
         id = "oidc_default_role",
         long = "oidc-default-role",
@@ -96,8 +96,8 @@ pub struct OpenIdArguments {
         env = "SISTERSHIP_OIDC_GROUPS_CLAIM"
     )]
     pub groups_claim: Option<String>,
-    /// Role of a group's members; repeatable, in the environment with `;` between. Whoever signs in
-    /// at the provider then has the roles of their groups, and no others.
+    /// Role of a group's members; repeatable, separated by `;` in the environment. A person who
+    /// signs in at the provider then has the roles of their groups, and no others.
     #[arg(
         id = "oidc_group_roles",
         long = "oidc-group-role",
@@ -109,12 +109,13 @@ pub struct OpenIdArguments {
 }
 
 impl OpenIdArguments {
-    /// The provider that these name, where they name one; what is missing is taken from the
-    /// configuration file.
+    /// Returns the settings of the provider, if one is configured; missing values are taken from
+    /// the configuration file.
     ///
     /// # Errors
-    /// Names all settings that are at fault.
+    /// Returns an error that names all invalid settings.
     pub fn settings(&self, file: &Self) -> Result<Option<Settings>, SettingsError> {
+        // All faults are collected, so that one start of the server shows all of them.
         let mut faults = Vec::new();
         let secret = self.secret(file, &mut faults);
         let wanted = self.clone().or(file);
@@ -122,7 +123,7 @@ impl OpenIdArguments {
         if faults.is_empty() { Ok(settings) } else { Err(SettingsError(faults)) }
     }
 
-    /// What is not set here, as another says.
+    /// Fills values that are not set from another source.
     fn or(self, other: &Self) -> Self {
         let first = |a: Option<String>, b: &Option<String>| a.or_else(|| b.clone());
         Self {
@@ -146,7 +147,8 @@ impl OpenIdArguments {
         }
     }
 
-    /// The secret: the flag's file wins over the environment, that over the configuration's file.
+    /// Reads the client secret: the file of the flag takes precedence over the environment, and
+    /// that over the configuration file.
     fn secret(&self, file: &Self, faults: &mut Vec<String>) -> Option<String> {
         let read = |path: &Path| match std::fs::read_to_string(path) {
             Ok(text) if !text.trim().is_empty() => Ok(text.trim().to_owned()),
@@ -165,6 +167,7 @@ impl OpenIdArguments {
 
     fn checked(self, client_secret: Option<String>, faults: &mut Vec<String>) -> Option<Settings> {
         let Some(issuer) = self.issuer.clone() else {
+            // Any other setting shows that the issuer was forgotten.
             if self != Self::default() {
                 faults.push(
                     "oidc issuer: is missing, though other settings of oidc are there".into(),
@@ -180,6 +183,7 @@ impl OpenIdArguments {
         }
         let base_url = self.base_url(faults);
         let scopes = self.scopes.clone().unwrap_or_else(|| "openid profile email".to_owned());
+        // Without the scope `openid` the provider sends no ID token.
         if !scopes.split_whitespace().any(|scope| scope == "openid") {
             faults.push("oidc scopes: must have `openid` among them".into());
         }
@@ -197,6 +201,7 @@ impl OpenIdArguments {
             );
             return String::new();
         };
+        // The pages of the server are at the root of its address.
         if url(text).is_some_and(|url| url.path() != "/") {
             faults.push(
                 "oidc base_url: must end with the host and port: the pages stand at its root"
@@ -237,7 +242,7 @@ impl OpenIdArguments {
     }
 }
 
-/// `GROUP=ROLE`; a group's name may have `=`, a role has none.
+/// Parses `GROUP=ROLE`; the name of a group may contain `=`, a role does not.
 fn group_role(rule: &str) -> Result<(String, Grant), String> {
     let (group, role) =
         rule.rsplit_once('=').filter(|(group, _)| !group.is_empty()).ok_or("write GROUP=ROLE")?;
@@ -247,6 +252,7 @@ fn group_role(rule: &str) -> Result<(String, Grant), String> {
 fn checked_url(name: &str, text: &str, faults: &mut Vec<String>) {
     match url(text) {
         Some(url) if url.query().is_some() => faults.push(format!("oidc {name}: must have no `?`")),
+        // Plain http is allowed for addresses of this machine only.
         Some(url) if !is_safe(&url) => faults.push(format!(
             "oidc {name}: must begin with https://; http:// is for addresses of this machine"
         )),

@@ -1,4 +1,4 @@
-//! What an ID token says (OpenID Connect Core 1.0, 2).
+//! Claims of an ID token (OpenID Connect Core 1.0, 2).
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -11,12 +11,12 @@ pub(crate) struct Claims {
     pub aud: Audience,
     pub azp: Option<String>,
     pub nonce: Option<String>,
-    /// All others.
+    /// All other claims.
     #[serde(flatten)]
     pub others: Map<String, Value>,
 }
 
-/// For whom it is.
+/// Audience of a token.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Audience {
@@ -25,7 +25,7 @@ pub(crate) enum Audience {
 }
 
 impl Audience {
-    /// Those for whom it is.
+    /// Returns the clients for which the token is meant.
     pub fn all(&self) -> &[String] {
         match self {
             Self::One(one) => std::slice::from_ref(one),

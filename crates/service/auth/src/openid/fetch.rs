@@ -1,4 +1,4 @@
-//! Requests to a provider: bounded in time and size, and never followed elsewhere.
+//! Requests to a provider: bounded in time and size, without redirects.
 
 use std::time::Duration;
 
@@ -7,15 +7,16 @@ use serde::de::DeserializeOwned;
 
 use crate::openid::failure::{Failure, Result};
 
-/// How long a provider may take for one answer.
+/// Maximum time for one answer of a provider.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// The longest answer, bytes.
+/// Maximum size of an answer, bytes.
 const LONGEST: usize = 1 << 20;
 
-/// Whoever asks the provider. The process must have provided its cryptography before.
+/// Creates the client for requests to the provider. The process must have installed its
+/// cryptography before.
 ///
 /// # Errors
-/// The system has no certificates to trust.
+/// Returns an error if the system has no trusted certificates.
 pub(crate) fn client() -> Result<Client> {
     let client = Client::builder()
         .timeout(PATIENCE)
@@ -25,16 +26,17 @@ pub(crate) fn client() -> Result<Client> {
     client.build().map_err(|_| Failure::Unreachable("no trusted certificates".to_owned()))
 }
 
-/// Status and body of an answer.
+/// Returns status and body of an answer.
 ///
 /// # Errors
-/// None comes in time, or it is too long.
+/// Returns an error if there is no answer in time, if it is a server error, or if it is too long.
 pub(crate) async fn answer(request: RequestBuilder) -> Result<(StatusCode, Vec<u8>)> {
     let mut response = request.send().await.map_err(|error| words(&error))?;
     let status = response.status();
     if status.is_server_error() {
         return Err(Failure::Unreachable(format!("it answers {}", status.as_u16())));
     }
+    // Read in chunks, so that the bound applies before the whole answer is in memory.
     let mut body = Vec::new();
     while let Some(chunk) = response.chunk().await.map_err(|error| words(&error))? {
         if body.len() + chunk.len() > LONGEST {
@@ -45,10 +47,10 @@ pub(crate) async fn answer(request: RequestBuilder) -> Result<(StatusCode, Vec<u
     Ok((status, body))
 }
 
-/// A document that must be there.
+/// Returns the body of an answer with the status 200.
 ///
 /// # Errors
-/// It is not, or does not read.
+/// Returns an error for another status, or if there is no answer.
 pub(crate) async fn document(request: RequestBuilder, what: &str) -> Result<Vec<u8>> {
     match answer(request).await? {
         (StatusCode::OK, body) => Ok(body),
@@ -58,16 +60,16 @@ pub(crate) async fn document(request: RequestBuilder, what: &str) -> Result<Vec<
     }
 }
 
-/// A document of JSON.
+/// Parses a JSON document.
 ///
 /// # Errors
-/// It does not read.
+/// Returns an error if it does not have the expected form.
 pub(crate) fn read<T: DeserializeOwned>(body: &[u8], what: &str) -> Result<T> {
     serde_json::from_slice(body)
         .map_err(|_| Failure::Provider(format!("its {what} is not what the standard asks for")))
 }
 
-/// Why, without the address: it may hold a code.
+/// Returns the kind of a failed request without its URL, which may contain a code.
 fn words(error: &reqwest::Error) -> Failure {
     let kind = if error.is_timeout() {
         "no answer in time"

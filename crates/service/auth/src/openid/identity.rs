@@ -1,20 +1,20 @@
-//! Who the provider says is there.
+//! Identity of a person at a provider.
 
 use serde_json::{Map, Value};
 
-/// Somebody whom a provider knows.
+/// Identity of a person at a provider.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identity {
-    /// Whose word it is.
+    /// Issuer URL of the provider.
     pub issuer: String,
-    /// Who: never given to anybody else by that issuer (OpenID Connect Core 1.0, 2).
+    /// Subject, never reassigned by that issuer (OpenID Connect Core 1.0, 2).
     pub subject: String,
-    /// What else it says.
+    /// Other claims.
     pub claims: Map<String, Value>,
 }
 
 impl Identity {
-    /// What people call this one, where the provider says so.
+    /// Returns the display name of the person, if the provider sends a valid one.
     pub fn title(&self) -> Option<&str> {
         self.claims.get("name").and_then(Value::as_str).map(str::trim).filter(|name| {
             !name.is_empty() && name.len() <= 200 && !name.contains(char::is_control)

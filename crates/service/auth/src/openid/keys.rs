@@ -1,11 +1,11 @@
-//! The keys by which a provider signs (RFC 7517).
+//! Public keys of a provider (RFC 7517).
 
 use jsonwebtoken::jwk::{Jwk, PublicKeyUse};
 use jsonwebtoken::{Algorithm, AlgorithmFamily, DecodingKey, Header};
 use serde::Deserialize;
 use serde_json::Value;
 
-/// The keys that a provider has published.
+/// The published key set of a provider.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Keys(Vec<Jwk>);
 
@@ -15,24 +15,26 @@ struct Published {
 }
 
 impl Keys {
-    /// Reads a set; keys that are not understood are left out (RFC 7517, 5).
+    /// Parses a key set; unknown kinds of keys are skipped (RFC 7517, 5).
     pub fn read(bytes: &[u8]) -> Option<Self> {
         let Published { keys } = serde_json::from_slice(bytes).ok()?;
         let read = keys.into_iter().filter_map(|key| serde_json::from_value(key).ok());
         Some(Self(read.collect()))
     }
 
-    /// The key that a token names; where it names none, the only one that could have signed it.
+    /// Returns the key that a token names; if it names none, the only key that could have signed
+    /// it.
     pub fn of(&self, header: &Header) -> Option<DecodingKey> {
         let fitting = self.0.iter().filter_map(|key| Some((key, fitting(key, header.alg)?)));
         let mut fitting =
             fitting.filter(|(key, _)| header.kid.is_none() || key.common.key_id == header.kid);
         let (_, found) = fitting.next()?;
+        // Without a name the choice must be unambiguous.
         (header.kid.is_some() || fitting.next().is_none()).then_some(found)
     }
 }
 
-/// A key, if it is one for signatures by this algorithm.
+/// Returns a key if it is meant for signatures by this algorithm.
 fn fitting(key: &Jwk, algorithm: Algorithm) -> Option<DecodingKey> {
     let signs = key.common.public_key_use.as_ref();
     if signs.is_some_and(|purpose| *purpose != PublicKeyUse::Signature) {
@@ -43,6 +45,7 @@ fn fitting(key: &Jwk, algorithm: Algorithm) -> Option<DecodingKey> {
         return None;
     }
     let key = DecodingKey::from_jwk(key).ok()?;
+    // A shared secret in a published set is no proof of the signer.
     let public = key.family() == algorithm.family() && key.family() != AlgorithmFamily::Hmac;
     public.then_some(key)
 }

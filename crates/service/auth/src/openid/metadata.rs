@@ -1,11 +1,11 @@
-//! What a provider says of itself (OpenID Connect Discovery 1.0).
+//! Discovery document of a provider (OpenID Connect Discovery 1.0).
 
 use serde::Deserialize;
 
 use crate::openid::failure::{Failure, Result};
 use crate::openid::settings::{is_safe, url};
 
-/// What a provider says of itself.
+/// Discovery document of a provider.
 #[derive(Debug, Clone, Deserialize)]
 pub(crate) struct Metadata {
     issuer: String,
@@ -23,17 +23,19 @@ fn by_default() -> Vec<String> {
     vec!["client_secret_basic".to_owned()]
 }
 
-/// Where a provider says so.
+/// Returns the URL of the discovery document of an issuer.
 pub(crate) fn place(issuer: &str) -> String {
     format!("{}/.well-known/openid-configuration", issuer.trim_end_matches('/'))
 }
 
 impl Metadata {
-    /// Checks that it is that of this issuer, and that nothing leads over an open wire.
+    /// Checks that the document is that of this issuer, and that all endpoints use a safe
+    /// connection.
     ///
     /// # Errors
-    /// Says what is wrong.
+    /// Returns an error that describes the violation.
     pub fn checked(self, issuer: &str) -> Result<Self> {
+        // Compared as text, without normalisation (OpenID Connect Discovery 1.0).
         if self.issuer != issuer {
             let own: String = self.issuer.chars().take(200).collect();
             let why = format!("it calls itself `{own}`, and the setting is `{issuer}`");
@@ -54,15 +56,18 @@ impl Metadata {
         Ok(self)
     }
 
-    /// Whether the secret goes into the body, as the header is not taken.
+    /// Returns true if the client secret goes into the body, because the provider does not accept
+    /// it in the header.
     pub fn secret_in_body(&self) -> bool {
         let has = |method: &str| {
             self.token_endpoint_auth_methods_supported.iter().any(|known| known == method)
         };
+        // The header is preferred; it is the default of a document that names no method.
         has("client_secret_post") && !has("client_secret_basic")
     }
 
-    /// Whether an answer to the browser comes from this provider, as far as it says so (RFC 9207).
+    /// Returns true if an answer to the browser comes from this provider, as far as it names the
+    /// issuer (RFC 9207).
     pub fn is_from(&self, issuer: Option<&str>) -> bool {
         match issuer {
             Some(issuer) => issuer == self.issuer,

@@ -1,6 +1,6 @@
-//! Signing in at an OpenID provider (OpenID Connect Core 1.0): the authorization code flow with
-//! PKCE (RFC 7636), and the checks of what comes back. It knows no route and no table: it says
-//! where the browser goes, and afterwards who the provider says is there.
+//! Sign-in at an OpenID provider (OpenID Connect Core 1.0): the authorization code flow with PKCE
+//! (RFC 7636), and the checks of the answers. The module knows no route and no table: it returns
+//! the target of the browser, and afterwards the identity of the person.
 
 mod admission;
 mod arguments;

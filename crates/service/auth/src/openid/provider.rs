@@ -1,5 +1,5 @@
-//! The provider, as a server knows it: it is asked for what it says of itself when somebody wants
-//! to sign in, so that one that is down keeps nothing else from working.
+//! Client of an OpenID provider. Its discovery document is requested at the first sign-in, so that
+//! a provider that is down does not affect other functions of the server.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,18 +19,18 @@ use crate::openid::settings::Settings;
 use crate::openid::ticket::{Purpose, Ticket};
 use crate::openid::token::{self, Expected};
 
-/// How long what a provider says of itself, and its keys, are believed.
+/// Time for which the discovery document and the keys of a provider are reused.
 const FRESH: Duration = Duration::from_secs(3600);
 
-/// A provider, as a server knows it.
+/// Client of an OpenID provider.
 pub struct Provider {
     settings: Settings,
-    /// What the tickets of browsers are sealed with.
+    /// Key with which the tickets of browsers are sealed.
     seal: String,
     known: Mutex<Option<Arc<Known>>>,
 }
 
-/// What a provider has said.
+/// Discovery document and keys of a provider.
 #[derive(Debug)]
 struct Known {
     client: Client,
@@ -39,16 +39,16 @@ struct Known {
     at: Instant,
 }
 
-/// A sign-in that begins.
+/// A sign-in that has begun.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Begun {
-    /// Where the browser goes.
+    /// URL to which the browser goes.
     pub place: String,
-    /// What it keeps meanwhile.
+    /// Sealed ticket that the browser keeps meanwhile.
     pub ticket: String,
 }
 
-/// What the provider has sent the browser back with.
+/// Query with which the provider sends the browser back.
 #[derive(Clone, Default, Deserialize)]
 pub struct Answer {
     code: Option<String>,
@@ -57,23 +57,23 @@ pub struct Answer {
     iss: Option<String>,
 }
 
-/// A sign-in that has ended well.
+/// A completed sign-in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {
-    /// Who is there.
+    /// Identity of the person.
     pub identity: Identity,
-    /// What it was for.
+    /// Purpose of the sign-in.
     pub purpose: Purpose,
-    /// Where to go now.
+    /// Target of the browser after the sign-in.
     pub next: String,
-    /// By what it is known again, if somebody tries it twice.
+    /// Hash of the sign-in, by which a second use is recognised.
     pub sha256: String,
-    /// When it would have expired, seconds of the Unix epoch.
+    /// Expiry of the sign-in, seconds of the Unix epoch.
     pub until_s: i64,
 }
 
 impl Answer {
-    /// Reads the query that the browser came back with; one that says something twice says nothing.
+    /// Parses the query of the browser; one with a repeated parameter counts as empty.
     pub fn read(query: &str) -> Self {
         serde_urlencoded::from_str(query).unwrap_or_default()
     }
@@ -91,12 +91,13 @@ struct Refusal {
 }
 
 impl Provider {
-    /// A provider with these settings. Nothing is asked yet.
+    /// Creates the client of a provider. No request is made yet.
     ///
     /// # Errors
-    /// The system gives no random numbers.
+    /// Returns an error if the system gives no random numbers.
     pub fn new(settings: Settings) -> Result<Self> {
-        // The same for all servers that the provider knows by one secret.
+        // Derived from the client secret, so that several servers with this secret can read each
+        // other's tickets.
         let seal = match &settings.client_secret {
             Some(known) => crate::sign(known, b"sistership tickets"),
             None => secret().map_err(|_| Failure::Provider("no random numbers".to_owned()))?,
@@ -104,15 +105,14 @@ impl Provider {
         Ok(Self { settings, seal, known: Mutex::default() })
     }
 
-    /// Its settings.
+    /// Returns the settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Begins a sign-in at the time `now_s`, seconds of the Unix epoch, which then goes to `next`.
-    ///
+    /// Begins a sign-in at the time `now_s`, seconds of the Unix epoch, which continues at `next`.
     /// # Errors
-    /// The provider does not say where, or the system gives no random numbers.
+    /// Returns an error if the provider does not answer, or the system gives no random numbers.
     pub async fn begin(&self, purpose: Purpose, next: &str, now_s: i64) -> Result<Begun> {
         let known = self.known().await?;
         let broken = || Failure::Provider("a sign-in cannot be begun".to_owned());
@@ -124,6 +124,8 @@ impl Provider {
             .append_pair("client_id", &self.settings.client_id)
             .append_pair("redirect_uri", &self.settings.redirect_uri())
             .append_pair("scope", &self.settings.scopes)
+            // `state` binds the answer to this browser, `nonce` the ID token to this sign-in, and
+            // the challenge the code to the verifier (PKCE).
             .append_pair("state", &ticket.state())
             .append_pair("nonce", &ticket.nonce())
             .append_pair("code_challenge", &ticket.challenge())
@@ -132,10 +134,10 @@ impl Provider {
         Ok(Begun { place: place.into(), ticket })
     }
 
-    /// Ends a sign-in: asks the provider for the token that its answer stands for, and checks it.
+    /// Completes a sign-in: exchanges the code of the answer for tokens, and checks them.
     ///
     /// # Errors
-    /// Nobody is there, or it is not shown who.
+    /// Returns an error if the person was refused, or the identity is not proven.
     pub async fn finish(
         &self,
         ticket: Option<&str>,
@@ -163,7 +165,7 @@ impl Provider {
         Ok(Finished { identity, purpose: ticket.purpose, next: ticket.next, sha256, until_s })
     }
 
-    /// What the provider has said of itself within the last hour.
+    /// Returns the discovery document and the keys, at most an hour old.
     async fn known(&self) -> Result<Arc<Known>> {
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner).clone();
         match known.filter(|known| known.at.elapsed() < FRESH) {
@@ -188,7 +190,7 @@ impl Provider {
         known
     }
 
-    /// The tokens for a code (RFC 6749, 4.1.3).
+    /// Exchanges a code for tokens (RFC 6749, 4.1.3).
     async fn tokens(&self, known: &Known, code: &str, ticket: &Ticket) -> Result<Tokens> {
         let (redirect, verifier) = (self.settings.redirect_uri(), ticket.verifier());
         let id = &self.settings.client_id;
@@ -203,7 +205,7 @@ impl Provider {
             Some(secret) if known.metadata.secret_in_body() => {
                 form.extend([("client_id", id.as_str()), ("client_secret", secret)]);
             }
-            // Each written as in a form first (RFC 6749, 2.3.1).
+            // Both are form-encoded first (RFC 6749, 2.3.1).
             Some(secret) => request = request.basic_auth(as_in_form(id), Some(as_in_form(secret))),
             None => form.push(("client_id", id)),
         }
@@ -219,7 +221,7 @@ impl Provider {
         }
     }
 
-    /// Who the tokens say is there.
+    /// Returns the identity that the tokens prove.
     async fn identity(&self, known: &Known, tokens: Tokens, ticket: &Ticket) -> Result<Identity> {
         let Tokens { id_token, access_token } = tokens;
         let id_token =
@@ -230,12 +232,13 @@ impl Provider {
         let header = token::header(&id_token)?;
         let claims = match token::verified(&id_token, &header, &known.keys, expected)? {
             Some(claims) => claims,
-            // Signed by a key that was not there an hour ago: once for each sign-in, which costs
-            // the provider a request anyway.
+            // Signed by a key that was not known: the provider may have new keys. One request for
+            // each sign-in, which itself costs the provider a request.
             None => {
                 let keys = keys(&known.client, &known.metadata).await?;
                 let found = token::verified(&id_token, &header, &keys, expected)?;
                 let (client, metadata) = (known.client.clone(), known.metadata.clone());
+                // The age stays that of the discovery document, which was not read again.
                 self.remembered(Known { client, metadata, keys, at: known.at });
                 let unknown = "its token is signed by a key that it does not publish";
                 found.ok_or_else(|| Failure::Untrusted(unknown.to_owned()))?
@@ -249,7 +252,7 @@ impl Provider {
         Ok(identity)
     }
 
-    /// Adds what the provider tells of somebody beside the token (OpenID Connect Core 1.0, 5.3).
+    /// Adds claims from the UserInfo endpoint (OpenID Connect Core 1.0, 5.3).
     async fn ask_more(
         &self,
         known: &Known,
@@ -262,6 +265,7 @@ impl Provider {
         let request: RequestBuilder = known.client.get(place).bearer_auth(token);
         let body = fetch::document(request, "description of you").await?;
         let claims: Map<String, Value> = fetch::read(&body, "description of you")?;
+        // The subject must be that of the ID token, otherwise the claims describe another person.
         if claims.get("sub").and_then(Value::as_str) != Some(&identity.subject) {
             return Err(Failure::Untrusted("it describes somebody else".to_owned()));
         }
@@ -281,15 +285,15 @@ fn as_in_form(text: &str) -> String {
     serde_urlencoded::to_string([("", text)]).unwrap_or_default().trim_start_matches('=').to_owned()
 }
 
-/// A word of the standard, or none: whoever made the link wrote it.
+/// Returns an error code in the form of the standard, or a fixed text: the query is not
+/// trustworthy.
 fn word(text: &str) -> &str {
     let plain =
         text.len() <= 64 && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
     if plain { text } else { "for a reason that is no word of the standard" }
 }
 
-/// What an error of the authorization endpoint comes to (RFC 6749, 4.1.2.1; OpenID Connect,
-/// 3.1.2.6).
+/// Maps an error of the authorization endpoint (RFC 6749, 4.1.2.1; OpenID Connect, 3.1.2.6).
 fn refused(error: &str) -> Failure {
     match error {
         "access_denied"
@@ -302,7 +306,7 @@ fn refused(error: &str) -> Failure {
     }
 }
 
-/// What an error of the token endpoint comes to (RFC 6749, 5.2).
+/// Maps an error of the token endpoint (RFC 6749, 5.2).
 fn untaken(status: StatusCode, body: &[u8]) -> Failure {
     match fetch::read::<Refusal>(body, "refusal") {
         Ok(refusal) if refusal.error == "invalid_grant" => Failure::Expired,

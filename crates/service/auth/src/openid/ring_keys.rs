@@ -1,5 +1,5 @@
-//! Signatures of tokens by ring, which checks those of TLS too. Nothing is signed here, and secrets
-//! that both sides know are no keys: a provider signs with a key that only it has.
+//! Verification of token signatures by ring, which verifies those of TLS as well. Nothing is signed
+//! here, and shared secrets are not accepted as keys: a provider signs with a key that only it has.
 
 use jsonwebtoken::crypto::{CryptoProvider, JwtSigner, JwtVerifier, KeyUtils};
 use jsonwebtoken::errors::{ErrorKind, Result};
@@ -14,9 +14,9 @@ static PROVIDER: CryptoProvider = CryptoProvider {
     key_utils: KeyUtils::new_unimplemented(),
 };
 
-/// Makes ring check the signatures of tokens. A second call changes nothing.
+/// Makes ring the verifier of token signatures. A second call changes nothing.
 pub(crate) fn provide() {
-    // Fails where it was done before.
+    // An error means that it was installed before.
     let _ = PROVIDER.install_default();
 }
 
@@ -25,6 +25,7 @@ fn no_signer(_: &Algorithm, _: &EncodingKey) -> Result<Box<dyn JwtSigner>> {
 }
 
 fn verifier(algorithm: &Algorithm, key: &DecodingKey) -> Result<Box<dyn JwtVerifier>> {
+    // The algorithm that the token names must belong to the kind of key.
     if key.family() != algorithm.family() {
         return Err(ErrorKind::InvalidKeyFormat.into());
     }
@@ -56,12 +57,12 @@ impl Key {
     }
 }
 
-/// Some write a zero before what ring wants without.
+/// Removes leading zero bytes, which some providers write and ring does not accept.
 fn stripped(number: &[u8]) -> Vec<u8> {
     number.iter().copied().skip_while(|byte| *byte == 0).collect()
 }
 
-/// RSA of 2048 bits and more (NIST SP 800-131A, revision 2).
+/// Returns the parameters of RSA with 2048 bits and more (NIST SP 800-131A, revision 2).
 fn rsa(algorithm: Algorithm) -> Option<&'static RsaParameters> {
     match algorithm {
         Algorithm::RS256 => Some(&ring_signature::RSA_PKCS1_2048_8192_SHA256),
@@ -114,7 +115,8 @@ mod tests {
     use jsonwebtoken::jwk::Jwk;
     use serde_json::{Value, json};
 
-    /// Whether a signed text holds under a key, as it is and with its last letters changed.
+    /// Returns whether a signed text is accepted under a key, unchanged and with its last letters
+    /// changed.
     fn holds(key: Value, algorithm: Algorithm, signed: &str) -> (bool, bool) {
         provide();
         let key = serde_json::from_value::<Jwk>(key).unwrap();

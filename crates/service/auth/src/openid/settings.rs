@@ -1,4 +1,4 @@
-//! What a server is told of its provider.
+//! Settings of the OpenID provider of a server.
 
 use std::fmt;
 use std::net::IpAddr;
@@ -7,44 +7,45 @@ use reqwest::Url;
 
 use crate::openid::admission::Admission;
 
-/// Where the provider sends browsers back to, below the server's own address.
+/// Path to which the provider sends browsers back, below the server's own URL.
 const CALLBACK: &str = "/sign-in/oidc/callback";
 
-/// What a server is told of its provider; made by [`crate::openid::OpenIdArguments::settings`].
+/// Settings of the OpenID provider of a server; created by
+/// [`crate::openid::OpenIdArguments::settings`].
 #[derive(Clone, PartialEq, Eq)]
 pub struct Settings {
     pub(crate) issuer: String,
     pub(crate) client_id: String,
     pub(crate) client_secret: Option<String>,
-    /// Where browsers find the server, without a slash at the end.
+    /// URL of the server for browsers, without a slash at the end.
     pub(crate) base_url: String,
     pub(crate) title: String,
     pub(crate) scopes: String,
     pub(crate) admission: Admission,
 }
 
-/// All that is wrong with the settings, each with its name.
+/// All faults of the settings, each with the name of the setting.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", .0.join("; "))]
 pub struct SettingsError(pub Vec<String>);
 
 impl Settings {
-    /// What people know the provider by.
+    /// Returns the display name of the provider.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// Who issues the identities.
+    /// Returns the issuer URL.
     pub fn issuer(&self) -> &str {
         &self.issuer
     }
 
-    /// Who gets in.
+    /// Returns the rules of admission.
     pub fn admission(&self) -> &Admission {
         &self.admission
     }
 
-    /// Whether browsers reach the server by https.
+    /// Returns true if browsers reach the server by https.
     pub fn is_secure(&self) -> bool {
         self.base_url.starts_with("https:")
     }
@@ -55,7 +56,7 @@ impl Settings {
 }
 
 impl fmt::Debug for Settings {
-    /// Leaves out the secret.
+    /// Formats the settings without the secret.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.debug_struct("Settings")
             .field("issuer", &self.issuer)
@@ -66,15 +67,16 @@ impl fmt::Debug for Settings {
     }
 }
 
-/// An address without name, password and fragment.
+/// Parses a URL without user name, password and fragment.
 pub(crate) fn url(text: &str) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
     (plain && url.has_host()).then_some(url)
 }
 
-/// Whether nobody can listen in: by https, or within this machine.
+/// Returns true if a connection to the URL cannot be intercepted: by https, or within this machine.
 pub(crate) fn is_safe(url: &Url) -> bool {
+    // An IPv6 address has brackets in a URL.
     let host = url.host_str().unwrap_or_default().trim_matches(['[', ']']);
     let here = host == "localhost" || host.parse().is_ok_and(|ip: IpAddr| ip.is_loopback());
     url.scheme() == "https" || (url.scheme() == "http" && here)

@@ -1,82 +1,86 @@
-//! What a browser keeps between leaving for the provider and coming back: one secret, from which
-//! all that must not be guessed follows, with where to go then, and sealed so that its age is true.
+//! Ticket that a browser keeps from the redirect to the provider until its return: one secret, from
+//! which state, nonce and verifier are derived, and the target afterwards, sealed so that its age
+//! cannot be forged.
 
 use crate::{hex, same, secret, sha256, sign};
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
 use serde::{Deserialize, Serialize};
 
-/// For how long a sign-in may be under way, seconds.
+/// Maximum duration of a sign-in, s.
 pub const LIFETIME_S: i64 = 600;
 
-/// What a sign-in is for.
+/// Purpose of a sign-in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Purpose {
-    /// To begin a session.
+    /// Begin a session.
     SignIn,
-    /// To be known as this user from now on.
+    /// Link the identity to this user.
     Link(String),
 }
 
-/// A sign-in that is under way.
+/// A sign-in in progress.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Ticket {
     secret: String,
-    /// Since when, seconds of the Unix epoch.
+    /// Start, seconds of the Unix epoch.
     since_s: i64,
-    /// What for.
+    /// Purpose.
     pub purpose: Purpose,
-    /// Where to go then.
+    /// Target of the browser afterwards.
     pub next: String,
 }
 
 impl Ticket {
-    /// A new one; none where the system gives no random numbers.
+    /// Creates a ticket; none if the system gives no random numbers.
     pub fn new(purpose: Purpose, next: &str, since_s: i64) -> Option<Self> {
         Some(Self { secret: secret().ok()?, since_s, purpose, next: next.to_owned() })
     }
 
-    /// What the provider sends back as it is: only this browser's answer has it.
+    /// Returns the `state`, which the provider sends back unchanged: only the answer to this
+    /// browser has it.
     pub fn state(&self) -> String {
         sign(&self.secret, b"state")
     }
 
-    /// What the ID token must hold: it was made for this sign-in.
+    /// Returns the `nonce`, which shows that the ID token was made for this sign-in.
     pub fn nonce(&self) -> String {
         sign(&self.secret, b"nonce")
     }
 
-    /// Who has the code must have this, too (RFC 7636, 4.1): 64 of the letters that it allows.
+    /// Returns the PKCE verifier (RFC 7636, 4.1), needed in addition to the code: 64 of the allowed
+    /// characters.
     pub fn verifier(&self) -> String {
         sign(&self.secret, b"verifier")
     }
 
-    /// What the provider is told of [`Self::verifier`] beforehand (RFC 7636, 4.2).
+    /// Returns the PKCE challenge of [`Self::verifier`] (RFC 7636, 4.2).
     pub fn challenge(&self) -> String {
         BASE64_URL_SAFE_NO_PAD.encode(sha256(&self.verifier()))
     }
 
-    /// By what it is known that it has been used.
+    /// Returns the hash by which a second use is recognised.
     pub fn sha256(&self) -> String {
         hex(&sha256(&self.secret))
     }
 
-    /// When it is over, seconds of the Unix epoch.
+    /// Returns the expiry, seconds of the Unix epoch.
     pub fn until_s(&self) -> i64 {
         self.since_s + LIFETIME_S
     }
 
-    /// As the browser keeps it.
+    /// Returns the ticket as text with a seal, for the browser; none if it cannot be written.
     pub fn sealed(&self, key: &str) -> Option<String> {
         let body = BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(self).ok()?);
         let seal = sign(key, body.as_bytes());
         Some(format!("{body}.{seal}"))
     }
 
-    /// From what a browser has kept; none where the seal is wrong, or it is over.
+    /// Reads a sealed ticket; none if the seal is wrong, or it has expired.
     pub fn opened(text: &str, key: &str, now_s: i64) -> Option<Self> {
         let (body, seal) = text.split_once('.')?;
+        // The seal is checked before the content is parsed.
         if !same(seal.as_bytes(), sign(key, body.as_bytes()).as_bytes()) {
             return None;
         }

@@ -1,4 +1,4 @@
-//! What makes an ID token trustworthy (OpenID Connect Core 1.0, 3.1.3.7; RFC 8725).
+//! Verification of ID tokens (OpenID Connect Core 1.0, 3.1.3.7; RFC 8725).
 
 use crate::same;
 use jsonwebtoken::errors::ErrorKind;
@@ -9,12 +9,12 @@ use crate::openid::failure::{Failure, Result};
 use crate::openid::keys::Keys;
 use crate::openid::ring_keys;
 
-/// The longest subject (OpenID Connect Core 1.0, 2).
+/// Maximum length of a subject (OpenID Connect Core 1.0, 2).
 const LONGEST_SUBJECT: usize = 255;
-/// How far clocks may be apart, seconds.
+/// Accepted difference of clocks, s.
 const APART_S: u64 = 60;
 
-/// What a token must hold.
+/// Claims that a token must have.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Expected<'a> {
     pub issuer: &'a str,
@@ -26,10 +26,10 @@ fn untrusted(why: &str) -> Failure {
     Failure::Untrusted(why.to_owned())
 }
 
-/// What a token says before anything of it is believed: how it is signed, and by which key.
+/// Reads the header of a token, which is not trusted yet: algorithm and name of the key.
 ///
 /// # Errors
-/// It is no token, or not signed by a key that only the provider has.
+/// Returns an error if it is not a token, or is not signed by a private key of the provider.
 pub(crate) fn header(token: &str) -> Result<Header> {
     let header = decode_header(token)
         .map_err(|_| untrusted("its token is no signed token of a kind that is known here"))?;
@@ -40,10 +40,10 @@ pub(crate) fn header(token: &str) -> Result<Header> {
     }
 }
 
-/// The claims of a token; none where no key is known that could have signed it.
+/// Returns the verified claims of a token; none if no known key could have signed it.
 ///
 /// # Errors
-/// The token is not what it must be.
+/// Returns an error if the token is not valid.
 pub(crate) fn verified(
     token: &str,
     header: &Header,
@@ -64,12 +64,13 @@ pub(crate) fn verified(
     Ok(Some(claims))
 }
 
-/// What the library leaves to its users.
+/// Checks the rules that the library leaves to its users: authorised party, nonce and subject.
 fn checked(claims: &Claims, expected: Expected<'_>) -> Result<()> {
     let all = claims.aud.all();
     if claims.iss != expected.issuer || !all.iter().any(|one| one == expected.client_id) {
         return Err(untrusted("its token is another provider's, or for another server"));
     }
+    // `azp` must name this client if it is present, and must be present with several audiences.
     let party = claims.azp.as_deref();
     if party.is_some_and(|party| party != expected.client_id) || (all.len() > 1 && party.is_none())
     {

@@ -1,16 +1,16 @@
-//! What a bundle holds.
+//! Content of a bundle.
 
 use std::collections::BTreeMap;
 
 use bytes::Bytes;
 use serde::{Deserialize, Serialize};
 
-/// Everything but the objects. Ships, laws and versions are named; what a version starts from is
-/// among them.
+/// Content of a bundle without the objects. Ships, laws and versions are referred to by name; the
+/// source versions of each version are included.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Content {
-    /// The ship that was asked for.
+    /// The ship that was exported.
     pub ship: String,
     /// Texts of laws by name.
     pub laws: BTreeMap<String, String>,
@@ -18,9 +18,9 @@ pub struct Content {
     pub effects: Vec<String>,
     /// Documents of ships.
     pub ships: Vec<ShipRecord>,
-    /// Trials; their samples stand beside, by hash.
+    /// Trials; their samples are objects of the bundle, by hash.
     pub trials: Vec<TrialRecord>,
-    /// Versions by ship, each line from its first on.
+    /// Versions by ship, each history from its first version on.
     pub lines: BTreeMap<String, Vec<VersionRecord>>,
     /// Versions of the ship by alias.
     pub aliases: BTreeMap<String, i64>,
@@ -40,7 +40,7 @@ pub struct ShipRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Revision {
-    /// What people call it.
+    /// Name for people.
     pub title: String,
     /// Its kind.
     pub category: String,
@@ -56,7 +56,7 @@ pub struct TrialRecord {
     pub ship: String,
     /// The SHA-256 of the samples.
     pub sha256: String,
-    /// What the uploader called it.
+    /// Name given on upload.
     pub name: String,
     /// The manifest, JSON.
     pub manifest: String,
@@ -66,13 +66,13 @@ pub struct TrialRecord {
     pub manoeuvre: Option<String>,
     /// The number of samples.
     pub sample_rows: i64,
-    /// How long it lasts, s.
+    /// Duration, s.
     pub duration_s: f64,
-    /// What the checks had to say, JSON.
+    /// Warnings of the checks, JSON.
     pub warnings: String,
 }
 
-/// A version of a line.
+/// Version of a ship's model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VersionRecord {
@@ -80,16 +80,16 @@ pub struct VersionRecord {
     pub parent: Option<(String, i64)>,
     /// The law of motion.
     pub law: String,
-    /// How it was made.
+    /// Method of its derivation.
     pub method: String,
     /// The SHA-256 of its document.
     pub sha256: String,
-    /// The whole record of it, byte for byte.
+    /// Document of the version, byte for byte.
     pub document: String,
-    /// The SHA-256 of the weights of its learned branch, where it has one.
+    /// SHA-256 of the weights of its learned correction, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weights: Option<String>,
-    /// Reports on it, the first one first.
+    /// Reports on the version, oldest first.
     pub reports: Vec<ReportRecord>,
 }
 
@@ -97,7 +97,7 @@ pub struct VersionRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReportRecord {
-    /// What it reports.
+    /// Kind of report.
     pub kind: String,
     /// Its data, JSON.
     pub document: String,
@@ -110,6 +110,6 @@ pub struct ReportRecord {
 pub struct Bundle {
     /// Everything but the objects.
     pub content: Content,
-    /// Samples of trials and weights of learned branches as they are stored, by their SHA-256.
+    /// Samples of trials and weights of learned corrections as they are stored, by their SHA-256.
     pub objects: BTreeMap<String, Bytes>,
 }

@@ -1,28 +1,28 @@
-//! Why a bundle cannot be made, read or taken.
+//! Errors of bundles.
 
 use sistership_store::StoreError;
 
 use crate::error::DeriveError;
 
-/// Why a bundle cannot be made, read or taken.
+/// Error of a bundle that cannot be written, read or imported.
 #[derive(Debug, thiserror::Error)]
 pub enum BundleError {
-    /// The archive does not answer, or something is not there.
+    /// The archive does not answer, or a row is missing.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A document does not read.
+    /// A document cannot be read.
     #[error(transparent)]
     Document(#[from] DeriveError),
-    /// A version was derived from what a bundle does not hold.
+    /// A version was derived from a prior, which a bundle does not hold.
     #[error("version {0} was refined with the prior of a family, which a bundle does not hold")]
     Prior(String),
-    /// The file is no bundle, or is not what it was.
+    /// The file is no bundle, or was changed.
     #[error("{0}")]
     File(String),
-    /// A key is not one that signs bundles, or checks them.
+    /// A key that cannot sign or verify bundles.
     #[error("{0}")]
     Key(&'static str),
-    /// What is in the archive contradicts the bundle; nothing was written.
+    /// Rows of the archive contradict the bundle; nothing was written.
     #[error("nothing was taken:\n{}", .0.join("\n"))]
     Conflicts(Vec<String>),
 }

@@ -1,4 +1,4 @@
-//! A bundle as a file: an archive with a manifest of the hashes of all that is in it, which may be
+//! Bundle as a file: a ZIP archive with a manifest of the SHA-256 of every file in it, which may be
 //! signed.
 
 use std::collections::BTreeMap;
@@ -17,14 +17,14 @@ use super::signature::{Signature, SigningKey, VerifyingKey};
 /// The format of a bundle.
 const FORMAT: &str = "sistership-bundle/1";
 const MANIFEST: &str = "manifest.json";
-/// The signature of the manifest, 64 bytes, and the key that it is of, DER.
+/// Signature of the manifest (64 bytes).
 const SIGNATURE: &str = "manifest.sig";
 const SIGNER: &str = "signer.der";
 const CONTENT: &str = "content.json";
-/// Largest bundle once it is unpacked, bytes: it is in memory as a whole.
+/// Largest bundle after unpacking, bytes: it is in memory as a whole.
 const MOST: u64 = 1 << 30;
 
-/// What a bundle says of itself.
+/// Manifest of a bundle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Manifest {
@@ -36,10 +36,10 @@ struct Manifest {
 }
 
 impl Bundle {
-    /// The file; the same bundle and key give the same bytes.
+    /// Packs the bundle into a file; the same bundle and key give the same bytes.
     ///
     /// # Errors
-    /// Says why it cannot be packed.
+    /// Returns an error if the content cannot be serialised or the archive cannot be written.
     pub fn packed(&self, key: Option<&SigningKey>) -> Result<Vec<u8>, BundleError> {
         let content = serde_json::to_vec(&self.content).map_err(broken)?;
         let mut files = BTreeMap::from([(CONTENT.to_owned(), Bytes::from(content))]);
@@ -53,6 +53,7 @@ impl Bundle {
         };
         let manifest = serde_json::to_vec_pretty(&manifest).map_err(broken)?;
         let signature = key.map(|key| key.sign(&manifest));
+        // The manifest and its signature come first in the archive.
         let first = std::iter::once((MANIFEST.to_owned(), Bytes::from(manifest)));
         let first = first.chain(signature.into_iter().flat_map(|Signature { key, bytes }| {
             let signer = Bytes::copy_from_slice(key.der());
@@ -60,6 +61,7 @@ impl Bundle {
         }));
         let pack = || -> zip::result::ZipResult<Vec<u8>> {
             let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+            // A fixed time of modification: the bytes must not depend on the time of export.
             let time = zip::DateTime::default();
             let options = SimpleFileOptions::default().last_modified_time(time);
             for (name, bytes) in first.chain(files) {
@@ -71,17 +73,18 @@ impl Bundle {
         pack().map_err(broken)
     }
 
-    /// Reads a file, and checks every hash in it and its signature, if it is signed: then the key
-    /// that has signed it is returned beside.
+    /// Reads a file and checks every hash in it, and its signature if there is one; returns the
+    /// bundle and the key that signed it.
     ///
     /// # Errors
-    /// The file is no bundle, some part of it is not what the manifest says, or the manifest is not
-    /// what was signed.
+    /// Returns an error if the file is no bundle, if a part of it differs from its hash in the
+    /// manifest, or if the signature is not valid for the manifest.
     pub fn unpacked(bytes: &[u8]) -> Result<(Self, Option<VerifyingKey>), BundleError> {
         let mut archive = ZipArchive::new(Cursor::new(bytes))
             .map_err(|error| BundleError::File(format!("is no bundle: {error}")))?;
         let mut left = MOST;
         let manifest = read(&mut archive, MANIFEST, &mut left)?;
+        // The signature is checked over the bytes of the manifest, before these are interpreted.
         let signer = signer(&mut archive, &manifest, &mut left)?;
         let manifest: Manifest = serde_json::from_slice(&manifest).map_err(broken)?;
         if manifest.format != FORMAT {
@@ -89,6 +92,7 @@ impl Bundle {
             return Err(BundleError::File(format!("is of the format `{found}`, not `{FORMAT}`")));
         }
         let mut files = BTreeMap::new();
+        // Files that the manifest does not name are never read.
         for (name, hash) in &manifest.files {
             let bytes = read(&mut archive, name, &mut left)?;
             if sha256(&bytes) != *hash {
@@ -109,6 +113,8 @@ impl Bundle {
                 return Err(BundleError::File(message));
             }
         }
+        // An object is stored under its own hash, and everything that the content refers to must
+        // exist.
         let mut objects = BTreeMap::new();
         for (name, bytes) in files {
             let hash = sha256(&bytes);
@@ -131,7 +137,7 @@ impl Bundle {
 }
 
 impl Content {
-    /// Every version with its line and number.
+    /// Iterator over every version with its ship and number (from 1).
     pub fn versions(&self) -> impl Iterator<Item = (&str, i64, &super::content::VersionRecord)> {
         self.lines.iter().flat_map(|(line, versions)| {
             (1..).zip(versions).map(move |(number, version)| (line.as_str(), number, version))
@@ -147,12 +153,13 @@ fn broken(error: impl std::fmt::Display) -> BundleError {
     BundleError::File(error.to_string())
 }
 
-/// Who has signed the manifest; none where nobody has.
+/// Returns the key that signed the manifest; `None` for a bundle without signature.
 fn signer(
     archive: &mut ZipArchive<Cursor<&[u8]>>,
     manifest: &[u8],
     left: &mut u64,
 ) -> Result<Option<VerifyingKey>, BundleError> {
+    // One of the two files without the other is an error, not an unsigned bundle.
     if ![SIGNATURE, SIGNER].iter().any(|name| archive.index_for_name(name).is_some()) {
         return Ok(None);
     }
@@ -164,7 +171,8 @@ fn signer(
     signer.ok_or_else(forged).map(Some)
 }
 
-/// A file of the archive; `left` is what all of them may still take.
+/// Reads a file of the archive; `left` is the number of bytes that all files together may still
+/// take.
 fn read(
     archive: &mut ZipArchive<Cursor<&[u8]>>,
     name: &str,
@@ -174,6 +182,7 @@ fn read(
         .by_name(name)
         .map_err(|error| BundleError::File(format!("lacks {name}: {error}")))?;
     let mut bytes = Vec::new();
+    // One byte more than allowed is read, so that a file above the limit is noticed.
     file.take(*left + 1).read_to_end(&mut bytes).map_err(broken)?;
     *left = left
         .checked_sub(bytes.len() as u64)

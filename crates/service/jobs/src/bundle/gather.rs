@@ -1,4 +1,4 @@
-//! From an archive to a bundle.
+//! Export of a ship from an archive to a bundle.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,11 +14,11 @@ use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, BundleError>;
 
-/// Gathers a ship with all its versions, and of other ships the lines that these start from, up to
-/// the version that is needed: numbers stay what they are.
+/// Exports a ship with all its versions, and of other ships the versions that these start from, up
+/// to the last one needed, so that version numbers stay the same.
 ///
 /// # Errors
-/// Names what is not there, or what a bundle cannot hold.
+/// Returns an error that names what is missing, or what a bundle cannot hold.
 pub async fn gather(archive: &Archive, ship: &str) -> Result<Bundle> {
     let mut gathering = Gathering { archive, needed: BTreeMap::new(), bundle: empty(ship) };
     archive.store.ships().get(ship).await?;
@@ -42,17 +42,20 @@ fn empty(ship: &str) -> Bundle {
 
 struct Gathering<'a> {
     archive: &'a Archive,
-    /// The last version that is needed of each line.
+    /// Number of the last version that is needed of each ship.
     needed: BTreeMap<String, i64>,
     bundle: Bundle,
 }
 
 impl Gathering<'_> {
-    /// Lines grow while what their versions start from is found.
+    /// Adds versions until each ship has those that are needed; the sources of a version may add
+    /// more.
     async fn lines(&mut self) -> Result<()> {
         let has = |gathering: &Self, line: &String| {
             gathering.bundle.content.lines.get(line).map_or(0, Vec::len) as i64
         };
+        // `version` below may raise `needed` of any ship, so the search starts anew after each
+        // version.
         let open = |gathering: &Self| {
             let lines = gathering.needed.iter();
             let mut open = lines.filter(|(line, number)| has(gathering, line) < **number);
@@ -70,6 +73,7 @@ impl Gathering<'_> {
     async fn version(&mut self, version: &Version) -> Result<VersionRecord> {
         let head = &version.head;
         let VersionDocument { recipe, model, .. } = document(version)?;
+        // The prior of a family is none of the documents that a bundle can hold.
         if recipe.prior().is_some() {
             return Err(BundleError::Prior(format!("{}/{}", head.model, head.number)));
         }
@@ -101,14 +105,16 @@ impl Gathering<'_> {
     }
 
     fn need(&mut self, line: &str, number: i64) {
+        // All versions before the needed one follow, because numbers must have no gaps.
         let last = self.needed.entry(line.to_owned()).or_default();
         *last = number.max(*last);
     }
 
-    /// Laws, libraries and samples that a recipe names.
+    /// Adds the laws, libraries of effects and samples that a recipe names.
     async fn inputs(&mut self, ship: &str, law: &str, recipe: &Recipe) -> Result<()> {
         let store = &self.archive.store;
         let mut laws = BTreeSet::from([law.to_owned()]);
+        // A refinement across laws also reads the law of its source.
         if let Recipe::Plain(version::Recipe::Refinement { across: Some(across), .. }) = recipe {
             laws.insert(across.law.clone());
         }
@@ -126,7 +132,8 @@ impl Gathering<'_> {
             self.object(&trial.sha256).await?;
             match store.trials().find(ship, &trial.sha256).await {
                 Ok(row) => self.trial(row),
-                // It was deleted, or came from elsewhere: the recipe needs its samples only.
+                // The trial was deleted or belongs to another ship: the recipe needs only its
+                // samples.
                 Err(StoreError::NotFound { .. }) => {}
                 Err(error) => return Err(error.into()),
             }
@@ -160,11 +167,12 @@ impl Gathering<'_> {
         }
     }
 
-    /// Reports on a version, the first one first.
+    /// Returns the reports on a version, oldest first.
     async fn reports(&self, version: &str) -> Result<Vec<ReportRecord>> {
         let reports = self.archive.store.reports();
         let heads = reports.by_version(version, &Page::first(MAX_LIMIT)).await?;
         let mut all = Vec::new();
+        // The store lists the newest first.
         for head in heads.items.iter().rev() {
             let report = reports.get(&head.id).await?;
             let (kind, document, html) = (report.head.kind, report.document, report.html);
@@ -181,7 +189,7 @@ impl Gathering<'_> {
         Ok(())
     }
 
-    /// Every trial of the ship, also those that no version was derived from.
+    /// Adds every trial of the ship, also those that no version was derived from.
     async fn trials(&mut self, ship: &str) -> Result<()> {
         let mut page = Page::first(MAX_LIMIT);
         loop {

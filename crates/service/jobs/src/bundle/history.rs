@@ -1,4 +1,4 @@
-//! What an archive has of a ship, if it has it.
+//! Lookups in an archive where a missing row is not an error.
 
 use sistership_store::{MAX_LIMIT, Page, StoreError};
 
@@ -8,7 +8,7 @@ use crate::archive::Archive;
 
 type Result<T> = std::result::Result<T, BundleError>;
 
-/// What was found; nothing where it is not there.
+/// Converts "not found" to `None`.
 pub fn found<T>(result: std::result::Result<T, StoreError>) -> Result<Option<T>> {
     match result {
         Ok(found) => Ok(Some(found)),
@@ -17,7 +17,7 @@ pub fn found<T>(result: std::result::Result<T, StoreError>) -> Result<Option<T>>
     }
 }
 
-/// The revisions of a ship, the first one first; none where there is no such ship.
+/// Returns the revisions of a ship, oldest first; empty if there is no such ship.
 pub async fn revisions(archive: &Archive, name: &str) -> Result<Vec<Revision>> {
     let mut all = Vec::new();
     let mut page = Page::first(MAX_LIMIT);

@@ -1,5 +1,5 @@
-//! A ship as one file: its documents, versions with what they were derived from, trials and
-//! reports, which another archive takes with every hash and all lineage.
+//! Exchange of a ship as one file: its documents, its versions with their inputs, trials and
+//! reports, which another archive imports with all hashes and the whole lineage.
 
 mod content;
 mod error;

@@ -1,4 +1,4 @@
-//! Who made a bundle: an Ed25519 signature (RFC 8032) of the manifest, which has the hash of
+//! Signature of a bundle: an Ed25519 signature (RFC 8032) of the manifest, which has the hash of
 //! everything else. Keys are those of `openssl genpkey -algorithm ed25519`, so that OpenSSL can
 //! check a bundle without this program.
 
@@ -11,8 +11,7 @@ use sistership_model::version::sha256;
 
 use super::error::BundleError;
 
-/// What stands before the 32 bytes of an Ed25519 key in a SubjectPublicKeyInfo: RFC 8410,
-/// section 4.
+/// Bytes before the 32 bytes of an Ed25519 key in a SubjectPublicKeyInfo: RFC 8410, section 4.
 const PREFIX: [u8; 12] = [0x30, 0x2a, 0x30, 0x05, 0x06, 0x03, 0x2b, 0x65, 0x70, 0x03, 0x21, 0x00];
 
 /// A key that signs bundles.
@@ -25,19 +24,21 @@ impl fmt::Debug for SigningKey {
 }
 
 impl SigningKey {
-    /// From a private key as PEM.
+    /// Reads a private key in PEM.
     ///
     /// # Errors
-    /// It is no Ed25519 key.
+    /// Returns an error if it is no Ed25519 key.
     pub fn from_pem(text: &[u8]) -> Result<Self, BundleError> {
+        // The cause is dropped on purpose: it could quote parts of a private key.
         let is_none = || BundleError::Key("has no Ed25519 private key in PEM (PKCS #8)");
         let key = PrivatePkcs8KeyDer::from_pem_slice(text).map_err(|_| is_none())?;
-        // OpenSSL writes the first version of PKCS #8, without the public key beside.
+        // OpenSSL writes version 1 of PKCS #8, which has no public key to check the private one
+        // against.
         let pair = Ed25519KeyPair::from_pkcs8_maybe_unchecked(key.secret_pkcs8_der());
         Ok(Self(pair.map_err(|_| is_none())?))
     }
 
-    /// The key that checks its signatures.
+    /// Returns the key that verifies its signatures.
     pub fn verifying(&self) -> VerifyingKey {
         let key = self.0.public_key().as_ref();
         VerifyingKey([&PREFIX[..], key].concat())
@@ -49,7 +50,7 @@ impl SigningKey {
     }
 }
 
-/// A key that checks signatures of bundles: a SubjectPublicKeyInfo.
+/// Key that verifies signatures of bundles: a SubjectPublicKeyInfo.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VerifyingKey(Vec<u8>);
 
@@ -61,10 +62,10 @@ impl fmt::Display for VerifyingKey {
 }
 
 impl VerifyingKey {
-    /// From a public key as PEM.
+    /// Reads a public key in PEM.
     ///
     /// # Errors
-    /// It is no Ed25519 key.
+    /// Returns an error if it is no Ed25519 key.
     pub fn from_pem(text: &[u8]) -> Result<Self, BundleError> {
         let is_none = || BundleError::Key("has no Ed25519 public key in PEM");
         let key = SubjectPublicKeyInfoDer::from_pem_slice(text).map_err(|_| is_none())?;
@@ -75,30 +76,31 @@ impl VerifyingKey {
         (der.len() == PREFIX.len() + 32 && der.starts_with(&PREFIX)).then(|| Self(der.to_vec()))
     }
 
-    /// The key as it stands in a bundle.
+    /// Key in DER, as in a bundle.
     pub(super) fn der(&self) -> &[u8] {
         &self.0
     }
 }
 
-/// A signature and the key that it is said to be of.
+/// Signature with the key that it claims; not yet verified.
 pub(super) struct Signature {
     pub(super) key: VerifyingKey,
     pub(super) bytes: Vec<u8>,
 }
 
 impl Signature {
-    /// The key, where the signature is that of the manifest.
+    /// Returns the key if the signature is valid for the manifest.
     pub(super) fn of(self, manifest: &[u8]) -> Option<VerifyingKey> {
         let key = UnparsedPublicKey::new(&ED25519, &self.key.0[PREFIX.len()..]);
         key.verify(manifest, &self.bytes).ok().map(|()| self.key)
     }
 }
 
-/// Takes a signer only where it is one of those that are trusted; without any, every one is.
+/// Checks that the signer is one of the trusted keys; without trusted keys every bundle is
+/// accepted.
 ///
 /// # Errors
-/// Names who has signed.
+/// Returns an error that names the signer.
 pub fn trusted(signer: Option<&VerifyingKey>, keys: &[VerifyingKey]) -> Result<(), BundleError> {
     match signer {
         _ if keys.is_empty() => Ok(()),

@@ -1,7 +1,7 @@
-//! From a bundle into an archive.
+//! Import of a bundle into an archive.
 //!
-//! Everything is looked at before anything is written. Rows are only added, and one that is there
-//! is left as it is, so that a bundle whose taking was interrupted is taken again.
+//! Everything is checked before anything is written. Rows are only added and existing ones stay as
+//! they are, so that an import that was interrupted can be repeated.
 
 use serde::Serialize;
 use sistership_model::version::sha256;
@@ -15,25 +15,26 @@ use crate::line::{LATEST, step};
 
 type Result<T> = std::result::Result<T, BundleError>;
 
-/// What was new to the archive.
+/// Result of an import: the rows that are new to the archive.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Taken {
     /// The ship.
     pub ship: String,
-    /// Ships that were not there.
+    /// New ships.
     pub ships: Vec<String>,
-    /// Versions that were not there, `ship/number`.
+    /// New versions, `ship/number`.
     pub versions: Vec<String>,
-    /// How many trials were not there.
+    /// Number of new trials.
     pub trials: usize,
-    /// How many versions of the bundle were there already.
+    /// Number of versions of the bundle that the archive had already.
     pub known: usize,
 }
 
-/// Takes a bundle in.
+/// Imports a bundle.
 ///
 /// # Errors
-/// Names everything in the archive that contradicts the bundle, of which then nothing is taken.
+/// Returns an error that names everything in the archive that contradicts the bundle; nothing is
+/// written then.
 pub async fn take(archive: &Archive, bundle: &Bundle) -> Result<Taken> {
     let content = &bundle.content;
     let conflicts = conflicts(archive, content).await?;
@@ -50,6 +51,7 @@ pub async fn take(archive: &Archive, bundle: &Bundle) -> Result<Taken> {
     for ship in &content.ships {
         taken.ships.extend(ship_taken(archive, ship).await?.then(|| ship.name.clone()));
     }
+    // Objects are durable before the rows of trials and versions that refer to them.
     for bytes in bundle.objects.values() {
         archive.objects.put(bytes.clone()).await?;
     }
@@ -59,7 +61,7 @@ pub async fn take(archive: &Archive, bundle: &Bundle) -> Result<Taken> {
     Ok(taken)
 }
 
-/// What is there under the same name, and is something else.
+/// Lists rows of the archive that have the same name and other content.
 async fn conflicts(archive: &Archive, content: &Content) -> Result<Vec<String>> {
     let mut all = Vec::new();
     for (name, text) in &content.laws {
@@ -70,6 +72,7 @@ async fn conflicts(archive: &Archive, content: &Content) -> Result<Vec<String>> 
     }
     for ship in &content.ships {
         let known = revisions(archive, &ship.name).await?;
+        // One history may be longer than the other; the common part must agree.
         if known.iter().zip(&ship.revisions).any(|(here, there)| here.document != there.document) {
             all.push(format!("the ship `{}` has another history here", ship.name));
         }
@@ -83,10 +86,11 @@ async fn conflicts(archive: &Archive, content: &Content) -> Result<Vec<String>> 
     Ok(all)
 }
 
-/// Brings a ship up to the bundle's last revision; whether it was not there.
+/// Adds the revisions of a ship that are missing; returns true if the ship is new.
 async fn ship_taken(archive: &Archive, ship: &ShipRecord) -> Result<bool> {
     let known = revisions(archive, &ship.name).await?.len();
     for (before, revision) in ship.revisions.iter().enumerate().skip(known) {
+        // Revisions are added one by one, so that the archive has the same history.
         let Revision { title, category, document } = revision.clone();
         let new = NewShip { name: ship.name.clone(), title, category, document };
         match before {
@@ -115,7 +119,8 @@ async fn trials_taken(archive: &Archive, content: &Content) -> Result<usize> {
     Ok(inserted.iter().filter(|trial| trial.new).count())
 }
 
-/// Makes the versions that are not there, parents first: a round takes those whose parent is there.
+/// Creates the versions that are missing, parents first: each pass creates those whose parent
+/// exists.
 async fn versions_taken(archive: &Archive, content: &Content, taken: &mut Taken) -> Result<()> {
     let mut open: Vec<(&str, i64, &VersionRecord)> = content.versions().collect();
     while !open.is_empty() {
@@ -131,6 +136,7 @@ async fn versions_taken(archive: &Archive, content: &Content, taken: &mut Taken)
                 later.push((line, number, version));
             }
         }
+        // A pass without progress: a parent is neither in the bundle nor in the archive.
         if later.len() == before {
             let (line, number, _) = later[0];
             return Err(BundleError::File(format!("lacks what {line}/{number} was made from")));
@@ -140,7 +146,8 @@ async fn versions_taken(archive: &Archive, content: &Content, taken: &mut Taken)
     Ok(())
 }
 
-/// The id of the parent, if there is one to be; nothing while it or the version before is missing.
+/// Returns the id of the parent, `Some(None)` for a version without parent, or `None` while the
+/// parent or the preceding version is missing.
 async fn ready(
     archive: &Archive,
     line: &str,
@@ -174,6 +181,7 @@ async fn version_taken(
         weights: version.weights.clone(),
     };
     let follow = step(LATEST, Expect::Any, "bundle");
+    // The store assigns the number; a concurrent writer can have taken the expected one.
     let made = archive.store.versions().create(&new, &[follow]).await?;
     if (made.number, &made.sha256) != (number, &version.sha256) {
         let message = format!("{line}/{number} became {line}/{}: others write to it", made.number);
@@ -190,8 +198,9 @@ async fn version_taken(
     Ok(())
 }
 
-/// Sets the aliases of the ship that are not there; one that is there stays where it stands.
+/// Sets the aliases of the ship that are missing; existing ones are not moved.
 async fn aliases_taken(archive: &Archive, content: &Content) -> Result<()> {
+    // `latest` follows the versions by itself.
     for (alias, number) in content.aliases.iter().filter(|(alias, _)| *alias != LATEST) {
         if found(archive.store.aliases().get(&content.ship, alias).await)?.is_none() {
             let change = step(alias, Expect::Absent, "bundle");

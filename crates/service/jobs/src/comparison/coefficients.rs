@@ -1,4 +1,4 @@
-//! Coefficients side by side.
+//! Comparison of coefficients.
 
 use std::collections::BTreeSet;
 
@@ -7,12 +7,12 @@ use utoipa::ToSchema;
 
 use super::compared::Compared;
 
-/// The value of a coefficient in one model.
+/// Value of a coefficient in one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct Estimate {
     /// Its value.
     pub value: f64,
-    /// Its standard error, where one is known.
+    /// Its standard error, if known.
     pub standard_error: Option<f64>,
 }
 
@@ -25,9 +25,10 @@ pub struct ComparedCoefficient {
     pub values: Vec<Option<Estimate>>,
 }
 
-/// Every coefficient that one of the models has. Models of different laws may give one name to what
-/// is not the same.
+/// Lists every coefficient that at least one model has. Models of different laws may use one name
+/// for coefficients of different meaning.
 pub fn side_by_side(compared: &[Compared<'_>]) -> Vec<ComparedCoefficient> {
+    // The union of the names, in alphabetical order.
     let names: BTreeSet<&String> =
         compared.iter().flat_map(|one| one.model.coefficients.keys()).collect();
     let row = |name: &String| {

@@ -1,11 +1,11 @@
-//! A model to be compared.
+//! Model of a comparison.
 
 use sistership_model::{Law, Model};
 
-/// A model to be compared.
+/// Model to be compared, with its law.
 #[derive(Debug, Clone, Copy)]
 pub struct Compared<'a> {
-    /// What it is called in the answer.
+    /// Name in the answer.
     pub name: &'a str,
     /// The model.
     pub model: &'a Model,

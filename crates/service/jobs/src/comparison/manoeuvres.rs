@@ -1,4 +1,4 @@
-//! Figures of the standard manoeuvres side by side.
+//! Comparison of the standard manoeuvres.
 
 use serde::Serialize;
 use sistership_simulation::Ship;
@@ -7,28 +7,29 @@ use utoipa::ToSchema;
 
 use super::compared::Compared;
 
-/// A figure of one model.
+/// Figure of one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct FigureValue {
-    /// Its value; null where the manoeuvre did not reach it.
+    /// Its value; null if the manoeuvre did not reach it.
     pub value: Option<f64>,
-    /// Whether a criterion is met; null where it is no criterion, or without a value.
+    /// True if the criterion is met; null for a figure that is no criterion, or without a value.
     pub pass: Option<bool>,
 }
 
 /// A figure of every model.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ComparedFigure {
-    /// What it is of: `turn 35 deg: tactical diameter`, `IMO: advance`.
+    /// Its name: `turn 35 deg: tactical diameter`, `IMO: advance`.
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// Its value for each model; null where the model's manoeuvre failed.
+    /// Its value for each model; null if the model's manoeuvre failed.
     pub values: Vec<Option<FigureValue>>,
 }
 
-/// The standard manoeuvres of a model at its own speed and revolutions.
+/// Simulates the standard manoeuvres of a model at its own speed and revolutions.
 pub fn standard_of(one: &Compared<'_>, ship: &Ship) -> StandardManoeuvres {
+    // Without revolutions the propeller would brake the ship, and the figures would mean nothing.
     if ship.has_propeller() && ship.revolutions_at(ship.approach_speed_m_s()) == 0.0 {
         let reason = format!(
             "law `{}` needs propeller revolutions and {} gives none",
@@ -39,13 +40,14 @@ pub fn standard_of(one: &Compared<'_>, ship: &Ship) -> StandardManoeuvres {
     standard(ship, &ManoeuvreSettings::default())
 }
 
-/// Every figure that one of the models has, in the order of the manoeuvres.
+/// Lists every figure that at least one model has, in the order of the manoeuvres.
 pub fn side_by_side(all: &[StandardManoeuvres]) -> Vec<ComparedFigure> {
     let figures: Vec<Vec<Figure>> = all.iter().map(StandardManoeuvres::figures).collect();
     let mut rows: Vec<ComparedFigure> = Vec::new();
     for (place, figure) in
         figures.iter().enumerate().flat_map(|(k, of)| of.iter().map(move |f| (k, f)))
     {
+        // Figures are matched by name: laws with fewer outputs have fewer figures.
         let row = rows.iter().position(|row| row.name == figure.name).unwrap_or_else(|| {
             rows.push(ComparedFigure {
                 name: figure.name.clone(),

@@ -1,4 +1,4 @@
-//! Two to five models side by side: coefficients, errors on the same trials, standard manoeuvres
+//! Comparison of two to five models: coefficients, errors on the same trials, standard manoeuvres
 //! and criteria.
 
 mod coefficients;

@@ -1,4 +1,4 @@
-//! Models side by side.
+//! Comparison of models.
 
 use serde::Serialize;
 use sistership_model::trial::Trial;
@@ -10,16 +10,16 @@ use super::compared::Compared;
 use super::manoeuvres::{self, ComparedFigure};
 use super::trials::{self, ComparedTrial};
 
-/// Fewest and most models that are compared at once.
+/// Smallest and largest number of models in a comparison.
 pub const BETWEEN: [usize; 2] = [2, 5];
 
-/// Most trials on which models are compared at once.
+/// Largest number of trials in a comparison.
 pub const MOST_TRIALS: usize = 20;
 
-/// What is the same for a whole column.
+/// Model of a comparison, with figures that concern it as a whole.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Column {
-    /// The name by which the model was asked for.
+    /// Name of the model in the request.
     pub name: String,
     /// The model's own name.
     pub model: String,
@@ -31,19 +31,19 @@ pub struct Column {
     pub speed_m_s: f64,
     /// Its length between perpendiculars, m.
     pub lpp_m: f64,
-    /// Standard manoeuvres that left the physical range or could not be sailed, with the reason.
+    /// Standard manoeuvres that left the physical range or could not be simulated, with the reason.
     pub failures: Vec<String>,
-    /// Standardised mean squared error over all samples of the trials; null where a simulation
+    /// Standardised mean squared error over all samples of the trials; null if a simulation
     /// stopped, or without trials.
     pub standardised_mse: Option<f64>,
 }
 
-/// Models side by side. Every list of values has one for each model, in the order of `models`.
+/// Comparison of models. Every list of values has one for each model, in the order of `models`.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Comparison {
     /// The models.
     pub models: Vec<Column>,
-    /// Every coefficient that one of them has.
+    /// Every coefficient that at least one of them has.
     pub coefficients: Vec<ComparedCoefficient>,
     /// Errors on the same trials.
     pub trials: Vec<ComparedTrial>,
@@ -51,35 +51,36 @@ pub struct Comparison {
     pub figures: Vec<ComparedFigure>,
 }
 
-/// Why models cannot be compared.
+/// Error of a comparison.
 #[derive(Debug, thiserror::Error)]
 pub enum ComparisonError {
-    /// Too few or too many.
+    /// Too few or too many models.
     #[error("two to five models are compared at once, not {0}")]
     Count(usize),
-    /// One of them is named twice.
+    /// A model is named twice.
     #[error("`{0}` is named twice")]
     Twice(String),
-    /// One of them cannot sail.
+    /// A model cannot be simulated.
     #[error("{name}: {reason}")]
     Model {
-        /// The name by which it was asked for.
+        /// Name of the model in the request.
         name: String,
-        /// Why not.
+        /// The reason.
         reason: PlantError,
     },
 }
 
-/// Compares models, and their errors on trials.
+/// Compares models, including their errors on trials.
 ///
 /// # Errors
-/// Says which of them cannot be compared, and why.
+/// Returns an error that names the model that cannot be compared, and the reason.
 pub fn compare(
     compared: &[Compared<'_>],
     trials: &[(&str, &Trial)],
 ) -> Result<Comparison, ComparisonError> {
     check(&compared.iter().map(|one| one.name).collect::<Vec<_>>())?;
     let ships: Vec<Ship> = compared.iter().map(ready).collect::<Result<_, _>>()?;
+    // Each model is simulated once on each trial; the totals below use these results.
     let sailed = trials::errors(compared, &ships, trials);
     let standard: Vec<_> =
         compared.iter().zip(&ships).map(|(one, ship)| manoeuvres::standard_of(one, ship)).collect();
@@ -101,14 +102,15 @@ pub fn compare(
     })
 }
 
-/// Two to five names, each once.
+/// Checks that there are two to five names and no duplicates.
 ///
 /// # Errors
-/// Says what is wrong with them.
+/// Returns an error if the number of names is wrong or one is repeated.
 pub fn check(names: &[&str]) -> Result<(), ComparisonError> {
     if !(BETWEEN[0]..=BETWEEN[1]).contains(&names.len()) {
         return Err(ComparisonError::Count(names.len()));
     }
+    // A pairwise search is enough for five names.
     match (1..names.len()).find(|&place| names[..place].contains(&names[place])) {
         Some(place) => Err(ComparisonError::Twice(names[place].to_owned())),
         None => Ok(()),

@@ -1,4 +1,4 @@
-//! Versions and trials of an archive side by side.
+//! Comparison of versions on trials of an archive.
 
 use std::sync::Arc;
 
@@ -9,18 +9,18 @@ use super::compared::Compared;
 use super::side_by_side::{Comparison, ComparisonError, compare};
 use crate::memory::trial_bytes;
 
-/// What is to be compared.
+/// Inputs of a comparison.
 #[derive(Debug, Default)]
 pub struct Asked {
-    /// Models of versions, with the weights of learned corrections, by the names under which they
-    /// were asked for, with their laws.
+    /// Models with their laws, by the names in the request; weights of learned corrections are
+    /// attached.
     pub versions: Vec<(String, Model, Arc<Law>)>,
     /// Trials.
     pub trials: Vec<sistership_store::Trial>,
 }
 
 impl Asked {
-    /// The samples that a comparison reads.
+    /// Names and hashes of the samples that the comparison reads.
     pub fn samples(&self) -> Vec<RecipeTrial> {
         let of = |trial: &sistership_store::Trial| RecipeTrial {
             name: trial.name.clone(),
@@ -30,20 +30,21 @@ impl Asked {
     }
 }
 
-/// Bytes that a comparison takes: the samples, and as much for each simulation of them.
+/// Memory that a comparison needs, bytes: the samples, and as much for each simulation of them.
 pub fn demand(asked: &Asked) -> u64 {
     let samples: u64 = asked.trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum();
     samples * (1 + asked.versions.len() as u64)
 }
 
-/// Compares them; `samples` are those of [`Asked::samples`].
+/// Compares versions; `samples` are those of the trials, in the same order.
 ///
 /// # Errors
-/// Says which version cannot be compared, and why.
+/// Returns an error that names the version that cannot be compared, and the reason.
 pub fn compared(asked: &Asked, samples: &[Trial]) -> Result<Comparison, ComparisonError> {
     let versions = asked.versions.iter();
     let versions: Vec<Compared<'_>> =
         versions.map(|(name, model, law)| Compared { name, model, law }).collect();
+    // Ids, not names: two ships may have trials with the same name.
     let ids = asked.trials.iter().map(|trial| trial.id.as_str());
     compare(&versions, &ids.zip(samples).collect::<Vec<_>>())
 }

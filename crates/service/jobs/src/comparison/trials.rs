@@ -1,4 +1,4 @@
-//! Errors on the same trials side by side.
+//! Comparison of simulation errors on the same trials.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +11,16 @@ use utoipa::ToSchema;
 
 use super::compared::Compared;
 
-/// How far a model's simulation of a trial is from what was measured.
+/// Error of a model's simulation of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct TrialError {
-    /// Root mean square errors by channel, SI; empty where the simulation stopped.
+    /// Root mean square errors by channel, SI; empty if the simulation stopped.
     pub rmse: BTreeMap<String, f64>,
-    /// The squared errors of u, v, r, psi, x and y by the variance of the channel over the trials,
-    /// summed; null where the simulation stopped.
+    /// Sum of the squared errors of u, v, r, psi, x and y, each divided by the variance of the
+    /// channel over the trials; null if the simulation stopped.
     pub standardised_mse: Option<f64>,
-    /// Why there is no error: the trial lacks a channel, or the motion left the physical range.
+    /// Reason for a missing error: the trial lacks a channel, or the motion left the physical
+    /// range.
     pub reason: Option<String>,
 }
 
@@ -28,20 +29,21 @@ pub struct TrialError {
 pub struct ComparedTrial {
     /// The trial.
     pub trial: String,
-    /// How many samples it has.
+    /// Number of samples.
     pub samples: usize,
-    /// From the first to the last sample, s.
+    /// Time from the first to the last sample, s.
     pub duration_s: f64,
     /// The error of each model.
     pub errors: Vec<TrialError>,
 }
 
-/// Every model on every trial, each simulated once from the first sample.
+/// Simulates every model on every trial, once from the first sample.
 pub fn errors(
     compared: &[Compared<'_>],
     ships: &[Ship],
     trials: &[(&str, &Trial)],
 ) -> Vec<ComparedTrial> {
+    // One scale for each channel over all trials, so that errors of models are comparable.
     let deviations =
         standard_deviations(&trials.iter().map(|(_, trial)| *trial).collect::<Vec<_>>());
     let row = |(name, trial): &(&str, &Trial)| ComparedTrial {
@@ -84,8 +86,10 @@ fn error(
     }
 }
 
-/// The mean over all samples of all trials of a model's standardised squared error.
+/// Mean of a model's standardised squared error over all samples of all trials; `None` if one of
+/// the simulations stopped or there are no samples.
 pub fn over_all(trials: &[ComparedTrial], place: usize) -> Option<f64> {
+    // Weighted by samples: sum_k(e_k n_k) / sum_k(n_k).
     let weighted = trials.iter().map(|trial| {
         Some((trial.errors[place].standardised_mse? * trial.samples as f64, trial.samples as f64))
     });

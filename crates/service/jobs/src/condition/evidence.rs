@@ -1,27 +1,27 @@
-//! The diagnoses of a champion as one sequence of evidence, in the order of its trials.
+//! Sequential evidence from the diagnoses of a champion, in the order of its trials.
 //!
-//! Each trial counts once, by the narrowest diagnosis that it is part of: what is new is judged by
-//! itself. The cumulative sum of the logarithms of how much more probable each answer is for a model
-//! that lacks something than for one that holds (Page 1954, "Continuous inspection schemes",
-//! Biometrika 41) says whether the champion still holds, and since which trial it does not: one
-//! clean trial does not clear three of which something was left. A cause too small for a trial of
-//! its own shows in the diagnosis of the whole.
+//! Each trial counts once, by the narrowest diagnosis that it is part of, so that new trials are
+//! judged by themselves. The cumulative sum of log likelihood ratios (incomplete model to complete
+//! model) of the verdicts (Page 1954, "Continuous inspection schemes", Biometrika 41) says whether
+//! the champion is still valid, and since which trial it is not: one clean trial does not clear
+//! three with unexplained forces. A cause too small for a single trial shows in the diagnosis of
+//! all.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use sistership_store::{Diagnosed, VersionHead};
 
-/// How often a diagnosis errs.
+/// Error probabilities of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvidenceLimits {
-    /// `alpha`: probability of naming or leaving something where nothing is missing, dimensionless.
-    /// Source: docs/evidence/diagnosis_unseen.md, "Clean trials of more ships": at most 2 % (0 of
-    /// 144, 95 % limit by the rule of three).
+    /// `alpha`: probability of reporting an effect or an unexplained trial although nothing is
+    /// missing, dimensionless. Source: docs/evidence/diagnosis_unseen.md, "Clean trials of more
+    /// ships": at most 2 % (0 of 144, 95 % limit by the rule of three).
     pub false_alarm: f64,
-    /// `beta`: probability of finding nothing where something of usual size is missing,
+    /// `beta`: probability of finding nothing although an effect of usual size is missing,
     /// dimensionless. Source: the probability by which a diagnosis states its detection limits
-    /// (`diagnose::DetectionLimit`). At half and double of each, three trials that leave something
-    /// are cleared by four to seven clean ones (docs/evidence/condition.md).
+    /// (`diagnose::DetectionLimit`). At half and double of each, three trials with unexplained
+    /// forces are cleared by four to seven clean ones (docs/evidence/condition.md).
     pub miss: f64,
 }
 
@@ -32,8 +32,9 @@ impl Default for EvidenceLimits {
 }
 
 impl EvidenceLimits {
-    /// The step of the cumulative sum after a diagnosis.
+    /// Step of the cumulative sum after a diagnosis: the log likelihood ratio of its verdict.
     fn step(self, holds: bool) -> f64 {
+        // ln(beta / (1 - alpha)) < 0 for a complete model, ln((1 - beta) / alpha) > 0 otherwise.
         match holds {
             true => (self.miss / (1.0 - self.false_alarm)).ln(),
             false => ((1.0 - self.miss) / self.false_alarm).ln(),
@@ -41,7 +42,7 @@ impl EvidenceLimits {
     }
 }
 
-/// What one diagnosis says of a version.
+/// Verdict of one diagnosis on a version.
 #[derive(Debug, Clone)]
 pub(super) struct Observation<'a> {
     /// The diagnosis.
@@ -52,15 +53,18 @@ pub(super) struct Observation<'a> {
     pub effects: Vec<String>,
     /// Ids of its trials, in the order of their upload.
     pub trials: Vec<String>,
-    /// Those of which it leaves something.
+    /// Trials of it with unexplained forces.
     unexplained: Vec<String>,
 }
 
 impl<'a> Observation<'a> {
-    /// Of the version that came of a diagnosis, what remained with the effects in place.
+    /// Reads a diagnosis. For the version that resulted from it, the verdict is the one with the
+    /// effects added.
     fn new(version: &VersionHead, row: &'a Diagnosed) -> Self {
         let is_subject = row.version_id == version.id;
         let verdict = match (is_subject, row.verdict.as_str()) {
+            // The resulting version contains the effects that were found, so nothing is missing
+            // from it.
             (false, "effects") => COMPLETE,
             (_, verdict) => verdict,
         };
@@ -70,12 +74,12 @@ impl<'a> Observation<'a> {
         Self { row, verdict, effects, trials, unexplained: list(&row.unexplained) }
     }
 
-    /// Whether it finds nothing missing.
+    /// True if the diagnosis finds nothing missing.
     pub fn holds(&self) -> bool {
         self.verdict == COMPLETE
     }
 
-    /// The first trial that speaks against the model: an effect is in all of them.
+    /// Returns the first trial that contradicts the model; a missing effect concerns all trials.
     pub fn first_against(&self) -> Option<&String> {
         let left = self.trials.iter().find(|trial| self.unexplained.contains(trial));
         let first = self.trials.first();
@@ -91,22 +95,24 @@ impl<'a> Observation<'a> {
 const COMPLETE: &str = "complete";
 
 fn list(text: &str) -> Vec<String> {
+    // The store writes these lists itself; an unreadable one counts as empty.
     serde_json::from_str(text).unwrap_or_default()
 }
 
-/// All that diagnoses say of a version.
+/// Evidence of all diagnoses of a version.
 #[derive(Debug, Default)]
 pub(super) struct Evidence<'a> {
     /// The diagnosis by which each trial counts, in the order of the trials.
     pub sequence: Vec<Observation<'a>>,
-    /// The newest diagnosis that gathers trials of others.
+    /// Newest diagnosis that combines trials of other diagnoses.
     pub whole: Option<Observation<'a>>,
-    /// Where in the sequence the cumulative sum has begun to rise, while it is above zero.
+    /// Index in the sequence at which the cumulative sum began to rise, if it is above zero at the
+    /// end.
     alarm: Option<usize>,
 }
 
 impl<'a> Evidence<'a> {
-    /// Weighs diagnoses, the latest first; those on a trial that is deleted do not count.
+    /// Combines diagnoses, latest first; those on a deleted trial do not count.
     pub fn new(
         version: &VersionHead,
         rows: &'a [Diagnosed],
@@ -125,33 +131,34 @@ impl<'a> Evidence<'a> {
         Self { sequence, whole, alarm }
     }
 
-    /// The diagnoses that speak against the version, that of the whole first.
+    /// Returns the diagnoses that contradict the version, that of all trials first.
     pub fn against(&self) -> Vec<&Observation<'a>> {
         let whole = self.whole.iter().filter(|whole| !whole.holds());
         let since = self.sequence.iter().skip(self.alarm.unwrap_or(self.sequence.len()));
         whole.chain(since.filter(|one| !one.holds())).collect()
     }
 
-    /// The first trial from which the version does not hold.
+    /// Returns the first trial from which the version is not valid.
     pub fn since(&self) -> Option<&String> {
         let alarm = self.alarm.and_then(|at| self.sequence[at].first_against());
         let whole = self.whole.as_ref().filter(|whole| !whole.holds());
         alarm.or_else(|| whole.and_then(Observation::first_against))
     }
 
-    /// The first trial after the last one that spoke against the version.
+    /// Returns the first trial after the last one that contradicted the version.
     pub fn holds_since(&self) -> Option<&String> {
         let last = self.sequence.iter().rposition(|one| !one.holds()).map_or(0, |at| at + 1);
         self.sequence.get(last).and_then(|one| one.trials.first())
     }
 
-    /// Every trial that counts.
+    /// Returns the ids of all trials that count.
     pub fn trials(&self) -> BTreeSet<String> {
         self.sequence.iter().flat_map(|one| one.trials.iter().cloned()).collect()
     }
 }
 
-/// The narrowest diagnosis of each trial, of equal ones the latest, in the order of the trials.
+/// Selects the narrowest diagnosis of each trial, the latest of equal ones, in the order of the
+/// trials.
 fn sequence<'a>(all: &[Observation<'a>]) -> Vec<Observation<'a>> {
     let mut of_trial: BTreeMap<&str, usize> = BTreeMap::new();
     for (at, one) in all.iter().enumerate() {
@@ -162,14 +169,16 @@ fn sequence<'a>(all: &[Observation<'a>]) -> Vec<Observation<'a>> {
             }
         }
     }
+    // `of_trial` is ordered by trial id, and ids are ordered by upload.
     let mut taken = BTreeSet::new();
     of_trial.into_values().filter(|at| taken.insert(*at)).map(|at| all[at].clone()).collect()
 }
 
-/// Where the cumulative sum has begun to rise, if it is above zero at the end.
+/// Returns the index at which the cumulative sum began to rise, if it is above zero at the end.
 fn alarm(sequence: &[Observation<'_>], limits: EvidenceLimits) -> Option<usize> {
     let (mut sum, mut start) = (0.0, None);
     for (at, one) in sequence.iter().enumerate() {
+        // Page's test: S_k = max(0, S_(k-1) + step_k).
         sum = f64::max(0.0, sum + limits.step(one.holds()));
         start = if sum > 0.0 { start.or(Some(at)) } else { None };
     }

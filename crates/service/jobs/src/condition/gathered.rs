@@ -1,5 +1,5 @@
-//! The trials of a ship since its champion was fitted, and those of them that are diagnosed with
-//! new ones.
+//! Selection of the trials that are diagnosed together with new ones: those since the champion was
+//! fitted.
 
 use std::collections::BTreeSet;
 
@@ -10,18 +10,18 @@ use crate::error::DeriveError;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
-/// The most trials that are diagnosed together, the newest of them: time and memory of a diagnosis
-/// grow as their samples, while the standard error of an effect that all trials have falls as
-/// `1/sqrt(n)`. Twelve have it within 1.4 of what 24 would give at twice the cost. What is older
-/// stays counted by its own diagnosis.
+/// Largest number of trials that are diagnosed together, the newest ones: time and memory of a
+/// diagnosis grow with the number of samples, while the standard error of an effect that all trials
+/// have falls as `1/sqrt(n)`. With twelve it is 1.4 times that of 24, at half the cost. Older
+/// trials count by their own diagnosis.
 pub const NEWEST: usize = 12;
 
-/// The ids of new trials of a version's ship with those before them since the version was fitted,
-/// in the order of their upload: at most [`NEWEST`], and as many as `is_affordable` allows by their
-/// samples. None where there are no others, or these have been diagnosed together.
+/// Returns the ids of new trials together with earlier ones since the version was fitted, in the
+/// order of their upload: a limited number, and as many as `is_affordable` allows by their number
+/// of samples. `None` if there are no earlier trials, or if these have been diagnosed together.
 ///
 /// # Errors
-/// The store does not answer, or the version does not read.
+/// Returns an error if the store does not answer, or if the version cannot be read.
 pub async fn gathered(
     archive: &Archive,
     version: &Version,
@@ -32,6 +32,7 @@ pub async fn gathered(
     let with_new = |trial: &&Trial| new.contains(&trial.id);
     let new_rows: u64 = trials.iter().filter(with_new).map(rows).sum();
     let earlier = trials.iter().rev().filter(|trial| !new.contains(&trial.id));
+    // Earlier trials are added from the newest back until number or memory is exhausted.
     let (mut ids, mut samples) = (new.to_vec(), new_rows);
     for trial in earlier.take(NEWEST.saturating_sub(new.len())) {
         samples += rows(trial);
@@ -40,7 +41,9 @@ pub async fn gathered(
         }
         ids.push(trial.id.clone());
     }
+    // Ids are ordered by time of upload.
     ids.sort();
+    // The same set of trials is not diagnosed twice.
     let is_known = ids.len() == new.len() || is_diagnosed(archive, version, &ids).await?;
     Ok(if is_known { None } else { Some(ids) })
 }
@@ -49,7 +52,7 @@ fn rows(trial: &Trial) -> u64 {
     u64::try_from(trial.sample_rows).unwrap_or(0)
 }
 
-/// Whether one of the newest diagnoses of a version is of these trials.
+/// Returns true if one of the newest diagnoses of a version has exactly these trials.
 async fn is_diagnosed(archive: &Archive, version: &Version, ids: &[String]) -> Result<bool> {
     let page = Page::first(MAX_LIMIT);
     let known = archive.store.diagnoses().by_version(&version.head.id, &page).await?.items;
@@ -61,8 +64,8 @@ async fn is_diagnosed(archive: &Archive, version: &Version, ids: &[String]) -> R
     }))
 }
 
-/// The trials of a ship that were uploaded after the last one that a version was made of; all of
-/// them where it was made of none.
+/// Returns the trials of a ship that were uploaded after the last one that a version was fitted on;
+/// all of them if it was fitted on none.
 async fn trials_since(archive: &Archive, version: &Version) -> Result<Vec<Trial>> {
     let mut all = all_trials(archive, &version.head.model).await?;
     let fitted = fitted_samples(archive, version).await?;
@@ -70,7 +73,7 @@ async fn trials_since(archive: &Archive, version: &Version) -> Result<Vec<Trial>
     Ok(all.split_off(last.map_or(0, |last| last + 1)))
 }
 
-/// The trials of a ship, the oldest first.
+/// Reads the trials of a ship, oldest first.
 async fn all_trials(archive: &Archive, ship: &str) -> Result<Vec<Trial>> {
     let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
     loop {
@@ -81,16 +84,18 @@ async fn all_trials(archive: &Archive, ship: &str) -> Result<Vec<Trial>> {
     }
 }
 
-/// The hashes of the trials that a version was made of, and of those that went into the versions
-/// that were diagnosed for it.
+/// Returns the hashes of the trials that a version was fitted on, and of those of the versions
+/// whose diagnosis led to it.
 ///
 /// # Errors
-/// The store does not answer, or a version does not read.
+/// Returns an error if the store does not answer, or if a version cannot be read.
 pub async fn fitted_samples(archive: &Archive, version: &Version) -> Result<BTreeSet<String>> {
     let mut recipe = document(version)?.recipe;
     let mut fitted = BTreeSet::new();
     loop {
         fitted.extend(recipe.trials().iter().map(|trial| trial.sha256.clone()));
+        // A version with effects comes from a diagnosis of an earlier version, whose trials count,
+        // too.
         let Some(earlier) = recipe.diagnosed() else { return Ok(fitted) };
         let earlier = archive.store.versions().get(&earlier.ship, earlier.number).await?;
         recipe = document(&earlier)?.recipe;

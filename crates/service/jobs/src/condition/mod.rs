@@ -1,5 +1,5 @@
-//! Whether the model of a ship still holds: everything that diagnoses and drift say of its present
-//! champion since it was fitted, weighed together.
+//! Validity of a ship's model: all diagnoses of its champion and the drift since it was fitted,
+//! combined.
 
 mod evidence;
 mod gathered;
@@ -18,73 +18,73 @@ use crate::line::{CHAMPION, alias};
 pub use gathered::{NEWEST, fitted_samples, gathered};
 pub use recent_drift::{DRIFT_LIMIT, RecentDrift};
 
-/// Whether the champion of a ship still holds, by all diagnoses of it and by its drift.
+/// Validity of the champion of a ship, by all its diagnoses and its drift.
 #[derive(Debug, Clone, Default, Serialize, ToSchema)]
 pub struct Condition {
-    /// `holds`, `does_not_hold`, or `unknown` where its champion was never diagnosed.
+    /// `holds`, `does_not_hold`, or `unknown` if its champion was never diagnosed.
     pub model: Standing,
     /// The same in one sentence.
     pub sentence: String,
     /// The number of its champion.
     pub version: Option<i64>,
-    /// What was found of the champion: `complete`, `effects`, `unexplained`, or `drift` where that
-    /// alone speaks against it.
+    /// Verdict on the champion: `complete`, `effects`, `unexplained`, or `drift` if only the drift
+    /// contradicts it.
     pub verdict: Option<String>,
     /// Names of the effects that the champion lacks.
     pub effects: Vec<String>,
     /// Ids of the trials that it was diagnosed on.
     pub trials: Vec<String>,
-    /// Ids of those that speak against it.
+    /// Ids of the trials that contradict it.
     pub against: Vec<String>,
-    /// The diagnosis that says most: of those that speak against it the one of most trials.
+    /// The most informative diagnosis: of those that contradict it, the one of most trials.
     pub found_by: Option<FoundBy>,
-    /// The first trial from which it is so: that from which it does not hold, or from which each
-    /// trial was clean.
+    /// The first trial of this condition: from it on the champion is not valid, or every trial was
+    /// clean.
     pub since: Option<SinceTrial>,
-    /// How much more the champion leaves of its newest trials than of those it was fitted on.
+    /// Unexplained force on its newest trials relative to the trials it was fitted on.
     pub drift: Option<RecentDrift>,
-    /// The diagnoses by which each trial counts, in the order of the trials, then that of the
-    /// whole.
+    /// The diagnoses by which each trial counts, in the order of the trials, then that of all
+    /// trials.
     pub diagnoses: Vec<WeighedDiagnosis>,
     /// The version with the effects that the champion lacks.
     pub with_effects: Option<MadeVersion>,
-    /// The newest diagnosis, and how many of all count.
+    /// Id of the newest diagnosis, and the number of deleted trials; part of the entity tag.
     #[serde(skip)]
     state: String,
 }
 
-/// Whether a model holds.
+/// Validity of a model.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// Its residual is what the noise predicts.
+    /// Its residual is explained by the measurement noise.
     Holds,
     /// Something is missing.
     DoesNotHold,
-    /// Nobody has looked.
+    /// It was never diagnosed.
     #[default]
     Unknown,
 }
 
-/// A diagnosis.
+/// Reference to a diagnosis.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct FoundBy {
     /// Its id.
     pub diagnosis: String,
-    /// When it was made, microseconds since 1970.
+    /// Time of the diagnosis, microseconds since 1970.
     pub at_us: i64,
-    /// Where its report is, as data and as a page (`?format=html`).
+    /// Path of its report, as data and as a page (`?format=html`).
     pub report: String,
 }
 
-/// A trial since which a condition is so.
+/// The first trial of a condition.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct SinceTrial {
     /// Its id.
     pub trial: String,
-    /// What people call it.
+    /// Its name for people.
     pub name: String,
-    /// When it was uploaded, microseconds since 1970.
+    /// Time of its upload, microseconds since 1970.
     pub at_us: i64,
 }
 
@@ -98,24 +98,24 @@ pub struct WeighedDiagnosis {
     pub trials: Vec<String>,
     /// `complete`, `effects` or `unexplained`.
     pub verdict: String,
-    /// Whether it is of the whole: trials that other diagnoses are of, too.
+    /// True for the diagnosis of all trials, which other diagnoses share.
     pub whole: bool,
 }
 
-/// A version that came of a diagnosis.
+/// Version that resulted from a diagnosis.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct MadeVersion {
     /// Its number.
     pub number: i64,
-    /// Where it is.
+    /// Its path.
     pub at: String,
 }
 
 impl Condition {
-    /// The condition of a ship now.
+    /// Reads the present condition of a ship.
     ///
     /// # Errors
-    /// The store does not answer.
+    /// Returns an error if the store does not answer.
     pub async fn of(store: &Store, ship: &str) -> Result<Self, StoreError> {
         let Some(champion) = alias(store, ship, CHAMPION).await? else {
             return Ok(Self {
@@ -125,6 +125,7 @@ impl Condition {
         };
         let version = store.versions().head(ship, champion.version_number).await?;
         let rows = store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
+        // What a deleted trial showed must not count.
         let deleted = store.deleted_trials(&trials_of(&rows)).await?;
         let mut condition = Self::weighed(&version, &rows, &deleted);
         if let Some(since) = &mut condition.since {
@@ -139,9 +140,10 @@ impl Condition {
         Ok(condition)
     }
 
-    /// The condition by the diagnoses that concern a champion, the latest first, without those on
-    /// deleted trials: without sentence, names of trials, and what was made.
+    /// Returns the condition by the diagnoses of a champion, latest first, without those on deleted
+    /// trials. The sentence, names of trials and the version with effects are not filled in.
     pub fn weighed(version: &VersionHead, rows: &[Diagnosed], deleted: &[String]) -> Self {
+        // The store gives the latest diagnosis first.
         let evidence = Evidence::new(version, rows, deleted, EvidenceLimits::default());
         let number = Some(version.number);
         if evidence.sequence.is_empty() {
@@ -156,6 +158,7 @@ impl Condition {
             drift,
             ..Self::default()
         };
+        // Drift alone is enough: it may rise before a diagnosis on single trials finds a cause.
         let drifted = condition.drift.as_ref().is_some_and(RecentDrift::is_above_limit);
         match evidence.against().is_empty() && !drifted {
             true => condition.holding(&evidence),
@@ -164,6 +167,7 @@ impl Condition {
     }
 
     fn holding(self, evidence: &Evidence<'_>) -> Self {
+        // Ids are ordered by time, so the larger one is the newer diagnosis.
         let newest = evidence.whole.iter().chain(evidence.sequence.last());
         let found_by = newest.max_by(|a, b| a.row.id.cmp(&b.row.id));
         Self {
@@ -179,6 +183,7 @@ impl Condition {
         let against = evidence.against();
         let drifted = self.drift.as_ref().and_then(|drift| drift.since.as_ref());
         let since = evidence.since().or(drifted).map(|trial| SinceTrial::of(trial));
+        // The diagnosis of most trials has the smallest standard errors.
         let found_by = against.iter().max_by_key(|one| one.trials.len());
         Self {
             model: Standing::DoesNotHold,
@@ -191,21 +196,22 @@ impl Condition {
         }
     }
 
-    /// The id of the version with what is missing, where one was made.
+    /// Returns the id of the version with the missing effects, if there is one.
     fn made<'a>(&self, version: &VersionHead, rows: &'a [Diagnosed]) -> Option<&'a String> {
         let mut of_version = rows.iter().filter(|row| row.version_id == version.id);
         let made = of_version.find_map(|row| row.made_id.as_ref());
+        // If the model is valid by all evidence, nothing needs to be added to it.
         made.filter(|_| self.model == Standing::DoesNotHold)
     }
 
-    /// Tells one state of the condition from another.
+    /// Tag that differs between any two states of the condition.
     pub fn tag(&self) -> String {
         let version = self.version.map(|number| format!(".{number}")).unwrap_or_default();
         version + &self.state
     }
 }
 
-/// Ids of the trials of diagnoses.
+/// Returns the ids of the trials of diagnoses, each once.
 pub fn trials_of(rows: &[Diagnosed]) -> Vec<String> {
     let list = |row: &Diagnosed| serde_json::from_str(&row.trials).unwrap_or_default();
     let ids: BTreeSet<String> =
@@ -218,7 +224,7 @@ fn state(rows: &[Diagnosed], deleted: &[String]) -> String {
     format!(".{newest}.{}", deleted.len())
 }
 
-/// The drift at the newest diagnosis of a version where it was measured.
+/// Returns the drift recorded by the newest diagnosis of a version that has one.
 fn drift(version: &VersionHead, rows: &[Diagnosed]) -> Option<RecentDrift> {
     let mut of_version = rows.iter().filter(|row| row.version_id == version.id);
     of_version.find_map(|row| serde_json::from_str(row.drift.as_deref()?).ok())

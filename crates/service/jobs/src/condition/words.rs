@@ -1,4 +1,4 @@
-//! The condition of a ship in one sentence.
+//! Description of the condition of a ship in one sentence.
 
 use super::{Condition, Standing};
 
@@ -23,12 +23,14 @@ impl Condition {
         named.map_or_else(String::new, |since| format!(" since the trial {}", since.name))
     }
 
-    /// What speaks against the model.
+    /// Describes the evidence against the model.
     fn faults(&self) -> String {
         let (against, all) = (self.against.len(), trials(self.trials.len()));
+        // "on 3 trials" if all of them contradict the model, else "on 2 of 3 trials".
         let on = if against == self.trials.len() { all } else { format!("{against} of {all}") };
         let effects = self.effects.join(" and ");
         let found = match (effects.is_empty(), self.verdict.as_deref()) {
+            // No diagnosis contradicts the model; the drift is described below.
             (_, Some("drift")) => None,
             (true, _) => {
                 Some(format!("on {on} something is missing that no known effect explains"))

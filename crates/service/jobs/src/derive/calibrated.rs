@@ -1,5 +1,5 @@
-//! What the trials of a refinement or a training leave open, kept with its model. The command line
-//! and the server both come here, so that a version verifies whoever made it.
+//! Calibration of the model uncertainty on the trials of a refinement or a training, kept with the
+//! model. The command line and the server share it, so that both derive the same version.
 
 use std::sync::Arc;
 
@@ -9,14 +9,15 @@ use sistership_model::trial::Trial;
 use sistership_model::{Effect, Law, Model};
 use sistership_model_selection::calibration_samples;
 
-/// Learns what the fitted trials leave open of a refined model; where that fails, the model goes
-/// without and a remark says why.
+/// Calibrates the uncertainty of a refined model on its fitted trials. If that fails, the model has
+/// no uncertainty and a remark gives the reason.
 pub fn with_uncertainty(
     mut refinement: Refinement,
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
 ) -> Refinement {
+    // Held-out trials remain independent: they judge the model and must not widen its uncertainty.
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
@@ -35,8 +36,9 @@ pub fn with_uncertainty(
     refinement
 }
 
-/// Learns what trials leave open of a model with a learned correction, whose weights are attached,
-/// with the settings of a search; where that fails, the model goes without and its note says why.
+/// Calibrates the uncertainty of a model with a learned correction whose weights are attached, with
+/// the settings of a search. If that fails, the model has no uncertainty and its note gives the
+/// reason.
 pub fn corrected_with_uncertainty(
     model: Model,
     law: &Law,

@@ -1,4 +1,4 @@
-//! What a derivation gives, with what it was made of.
+//! Result of a derivation, with its inputs.
 
 use std::sync::Arc;
 
@@ -14,68 +14,70 @@ use crate::recipe::Recipe;
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
-/// Told how far a derivation is (0 to 1) and what it does; answers `false` to stop it.
+/// Callback with the progress of a derivation (0 to 1) and its present step; returns `false` to
+/// stop it.
 pub type Progress = Arc<dyn Fn(f64, &str) -> bool + Send + Sync>;
 
-/// A derived version, and what it was made with.
+/// Derived version with its by-products.
 #[derive(Debug)]
 pub struct Derived {
     /// The version.
     pub document: VersionDocument,
-    /// The refinement that gave it, if one did.
+    /// The refinement that produced it, if any.
     pub refined: Option<Refined>,
-    /// The weights of its learned branch, if it has one.
+    /// Weights of its learned correction, if it has one.
     pub weights: Option<Bytes>,
 }
 
-/// A refinement with everything that went into it.
+/// Refinement with its inputs.
 #[derive(Debug)]
 pub struct Refined {
-    /// What came out.
+    /// The result.
     pub refinement: Refinement,
-    /// What went in.
+    /// The inputs.
     pub ingredients: Ingredients,
 }
 
-/// What a refinement is made of.
+/// Inputs of a refinement.
 #[derive(Debug)]
 pub struct Ingredients {
     /// The ship.
     pub target: Vessel,
-    /// The model that is refined; a law without coefficients where there is no source.
+    /// The source model; a law without coefficients if there is none.
     pub model: Model,
-    /// Its law, where it is another than what is fitted.
+    /// Law of the source model, if it is not the law that is fitted.
     pub source_law: Option<Law>,
-    /// The law of what is fitted.
+    /// Law that is fitted.
     pub law: Law,
-    /// The library of effects that its calibration is learned with.
+    /// Library of effects that the calibration of its uncertainty uses.
     pub library: Library,
     /// The trials, in the recipe's order.
     pub trials: Vec<Trial>,
-    /// The ships whose population is the prior.
+    /// Ships of the population that is the prior.
     pub population: Vec<Member>,
     /// The settings.
     pub settings: Settings,
 }
 
 impl Derived {
-    /// A document, and nothing beside it.
+    /// Creates the result of a derivation that has only a document.
     pub(super) fn of(document: VersionDocument) -> Self {
         Self { document, refined: None, weights: None }
     }
 
-    /// The same with every setting that was used spelled out in the recipe of a refinement, so that
-    /// no later default speaks for it. Evaluations stay as they were asked for: they are a limit,
-    /// and not what was spent.
+    /// Records every setting that was used in the recipe of a refinement, so that later defaults do
+    /// not change it. The number of evaluations stays as requested: it is a limit, not what was
+    /// used.
     ///
     /// # Errors
-    /// A setting is not finite.
+    /// Returns an error if a setting is not finite.
     pub fn spelled_out(mut self) -> Result<Self, DeriveError> {
         if let (Some(refined), Recipe::Plain(version::Recipe::Refinement { settings, .. })) =
             (&self.refined, &mut self.document.recipe)
         {
             let mut used = refined.refinement.settings.clone();
             let asked = refined.ingredients.settings.cma_es.clone().unwrap_or_default().evaluations;
+            // The refinement reports the evaluations it used; the recipe keeps the requested limit.
             used.cma_es.iter_mut().for_each(|search| search.evaluations = asked);
             *settings = sorted(serde_json::to_value(used)?);
         }

@@ -1,5 +1,5 @@
-//! Deriving a diagnosis, and the version with the effects that it finds: a function of what its
-//! recipe names by hash.
+//! Derivation of a diagnosis and of the version with the effects that it finds: a function of the
+//! inputs that its recipe names by hash.
 
 use serde_json::Value;
 use sistership_diagnosis::{Diagnosis, Request, Settings, diagnose};
@@ -16,12 +16,12 @@ use crate::recipe::{DiagnosisRecipe, Recipe};
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
-/// A diagnosis with everything that went into it.
+/// Diagnosis with its inputs.
 #[derive(Debug)]
 pub struct Diagnosed {
-    /// What came out.
+    /// The result.
     pub diagnosis: Diagnosis,
-    /// How.
+    /// Its recipe.
     pub recipe: DiagnosisRecipe,
     /// The model that was diagnosed.
     pub model: Model,
@@ -31,10 +31,10 @@ pub struct Diagnosed {
     pub trials: Vec<Trial>,
 }
 
-/// Carries out the diagnosis that a recipe describes.
+/// Runs the diagnosis that a recipe describes.
 ///
 /// # Errors
-/// Says what is missing or has changed, or why the diagnosis is refused.
+/// Returns an error if an input is missing or has changed, or if the diagnosis is refused.
 pub async fn diagnosed(
     archive: &Archive,
     recipe: DiagnosisRecipe,
@@ -43,11 +43,12 @@ pub async fn diagnosed(
     let inputs = Inputs::new(archive);
     let named = Recipe::Diagnosis(recipe.clone());
     let diagnosed = diagnosed_from(&inputs, recipe, progress).await?;
+    // Every document that was read must be named by the recipe, else it could not be derived again.
     inputs.check(&named)?;
     Ok(diagnosed)
 }
 
-/// The same from inputs that are noted.
+/// Runs the diagnosis on inputs that record what is read.
 pub(super) async fn diagnosed_from(
     inputs: &Inputs<'_>,
     recipe: DiagnosisRecipe,
@@ -78,10 +79,10 @@ fn carry_out(
 }
 
 impl Diagnosed {
-    /// The version that comes of it; none where no effect was found.
+    /// Returns the version with the effects that were found; `None` if none was found.
     ///
     /// # Errors
-    /// A number of the report is not finite.
+    /// Returns an error if a number of the report is not finite.
     pub fn document(&self) -> Result<Option<VersionDocument>, serde_json::Error> {
         let Some(model) = &self.diagnosis.model else { return Ok(None) };
         Ok(Some(VersionDocument {
@@ -94,7 +95,7 @@ impl Diagnosed {
     }
 }
 
-/// What a diagnosis reported, without the model that the version holds anyway and the series that
+/// Report of a diagnosis, without the model, which the version holds, and without the series, which
 /// only plots need.
 fn report(diagnosis: &Diagnosis) -> Result<Value, serde_json::Error> {
     let mut report = serde_json::to_value(diagnosis)?;

@@ -1,5 +1,5 @@
-//! From a recipe to the version that it describes. Jobs and [`verify`](mod@crate::verify) both go
-//! this way, so that they cannot differ.
+//! Derivation of the version that a recipe describes. Jobs and [`verify`](mod@crate::verify) both
+//! use it, so that their results cannot differ.
 
 mod calibrated;
 mod derived;
@@ -27,7 +27,7 @@ use crate::recipe::Recipe;
 /// Derives the version of a ship that a recipe describes.
 ///
 /// # Errors
-/// Says what is missing or has changed, or why the refinement is refused.
+/// Returns an error if an input is missing or has changed, or if the derivation is refused.
 pub async fn derive(
     archive: &Archive,
     ship: &str,
@@ -40,6 +40,7 @@ pub async fn derive(
             published::published(inputs, ship, model, ship_sha256, law_sha256).await
         }
         Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
+            // All reads come first: the refinement itself is a function on a blocking thread.
             let ingredients = refined::gather(inputs, ship, recipe).await?;
             let recipe = recipe.clone();
             tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress))
@@ -53,6 +54,8 @@ pub async fn derive(
         Recipe::Diagnosis(recipe) => {
             let document =
                 diagnosed::diagnosed_from(inputs, recipe.clone(), progress).await?.document()?;
+            // The recipe belongs to a version, so the diagnosis did find an effect when it was
+            // made.
             let nothing = || {
                 DeriveError::Lost(
                     "the diagnosis finds no effect now, so that no version comes of it".into(),
@@ -61,6 +64,7 @@ pub async fn derive(
             Ok(Derived::of(document.ok_or_else(nothing)?))
         }
     }?;
+    // Every document that was read must be named by the recipe, else it could not be derived again.
     inputs.check(recipe)?;
     Ok(derived)
 }

@@ -1,4 +1,4 @@
-//! The version of a model that a ship's own document publishes.
+//! Versions of models that a ship's own document publishes.
 
 use serde_json::Value;
 use sistership_model::version::{self, FORMAT};
@@ -10,7 +10,7 @@ use crate::inputs::Inputs;
 use crate::recipe::Recipe;
 use crate::version::VersionDocument;
 
-/// From the ship's document as its recipe names it.
+/// Derives the version from the ship's document that the recipe names by hash.
 pub(super) async fn published(
     inputs: &Inputs<'_>,
     ship: &str,
@@ -20,13 +20,14 @@ pub(super) async fn published(
 ) -> Result<Derived, DeriveError> {
     let vessel = inputs.ship(ship, ship_sha256).await?;
     let lost = || DeriveError::Lost(format!("the ship `{ship}` has no model `{model}`"));
+    // The recipe names no law: the ship's document does.
     let file = vessel.file.models.iter().find(|file| file.name == model).ok_or_else(lost)?;
     let law = inputs.law(&file.law, law_sha256).await?;
     let document = published_document(&vessel, model, &law, ship_sha256, law_sha256)?;
     Ok(Derived::of(document))
 }
 
-/// The version of a model that a ship's own document publishes.
+/// Returns the version of a model that a ship's own document publishes.
 pub fn published_document(
     vessel: &Vessel,
     model: &str,

@@ -1,4 +1,4 @@
-//! Deriving a refined version: a function of its ingredients, each found by its hash.
+//! Derivation of a refined version: a function of its inputs, each found by its hash.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::recipe;
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
-/// Loads what a recipe names, each by its hash.
+/// Loads the inputs that a recipe names, each by its hash.
 pub(super) async fn gather(
     inputs: &Inputs<'_>,
     ship: &str,
@@ -43,11 +43,12 @@ pub(super) async fn gather(
     };
     let settings: Settings = serde_json::from_value(recorded.clone())?;
     let target = inputs.ship(ship, ship_sha256).await?;
+    // Recipes of the first release name no library; they used the first one.
     let library = inputs.effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
     let trials = inputs.trials(trials).await?;
     let (model, law, source_law) = match source {
         Some(source) => {
-            // What was learned beside the source's law is no prior of coefficients.
+            // The learned correction of the source gives no prior for coefficients.
             let model = inputs.source(source).await?.foundation();
             let name = across.as_ref().map_or(&model.law, |across| &across.law);
             let law = inputs.law(name, law_sha256).await?;
@@ -84,7 +85,7 @@ fn unnamed() -> DeriveError {
     DeriveError::Lost("the recipe names neither a source nor a law".into())
 }
 
-/// A law without coefficients, for the approach of the trials that are fitted.
+/// Returns a model without coefficients, with the approach speed of the fitted trials.
 fn without_source(
     law: &Law,
     target: &Vessel,
@@ -105,10 +106,10 @@ pub(super) fn refined(
     Ok(Derived { refined: Some(Refined { refinement, ingredients }), ..Derived::of(document) })
 }
 
-/// The version that a refinement gives: a function of its ingredients and nothing else.
+/// Returns the version that a refinement gives: a function of its inputs only.
 ///
 /// # Errors
-/// Why the refinement is refused, or that it was stopped.
+/// Returns an error if the refinement is refused or was stopped.
 pub fn refined_document(
     ingredients: &Ingredients,
     recipe: &Recipe,
@@ -131,6 +132,8 @@ pub fn refined_document(
     if !progress(0.97, "estimating the noise model") {
         return Err(RefineError::Cancelled.into());
     }
+    // The uncertainty follows the coefficients: it is calibrated on the residuals of the refined
+    // model.
     let refinement = with_uncertainty(refinement, law, &ingredients.library.effects, &trials);
     let document = VersionDocument {
         format: FORMAT.to_owned(),
@@ -142,7 +145,7 @@ pub fn refined_document(
     Ok((document, refinement))
 }
 
-/// What a refinement reported, without the model that the version holds anyway.
+/// Report of a refinement, without the model, which the version holds.
 fn report(refinement: &Refinement) -> Result<Value, serde_json::Error> {
     let mut report = serde_json::to_value(refinement)?;
     if let Some(fields) = report.as_object_mut() {

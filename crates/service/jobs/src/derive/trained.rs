@@ -1,4 +1,5 @@
-//! Deriving a version with a learned branch: a function of what its recipe names by hash.
+//! Derivation of a version with a learned correction: a function of the inputs that its recipe
+//! names by hash.
 
 use serde_json::Value;
 use sistership_identification::refine::RefineError;
@@ -16,7 +17,7 @@ use crate::recipe::{Recipe, TrainingRecipe};
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
-/// Trains the branch that a recipe describes.
+/// Trains the learned correction that a recipe describes.
 pub(super) async fn trained(
     inputs: &Inputs<'_>,
     ship: &str,
@@ -28,6 +29,7 @@ pub(super) async fn trained(
         let message = format!("`{}` has a learned branch already", foundation.name);
         return Err(DeriveError::Lost(message));
     }
+    // All inputs are loaded here; the blocking thread below does no I/O.
     let law = inputs.law(&foundation.law, &recipe.law_sha256).await?;
     let library = inputs.effects(&recipe.effects_sha256).await?;
     let trials = inputs.trials(&recipe.trials).await?;
@@ -48,6 +50,7 @@ fn carry_out(
         let on = progress(done, what);
         if on { Ok(()) } else { Err(DeriveError::Refine(RefineError::Cancelled)) }
     };
+    // The fractions of progress are rough shares of the time.
     go_on(0.1, "training the branch")?;
     let (branch, weights) = train(foundation, law, &trials, &recipe.settings)?;
     go_on(0.3, "judging it on trials left out")?;
@@ -55,6 +58,7 @@ fn carry_out(
     go_on(0.8, "learning what the trials leave open")?;
     let weights = weights.bytes().map_err(sistership_learned::TrainError::from)?;
     let mut model = with_branch(foundation, branch);
+    // The calibration simulates the model, so the weights must be attached before it.
     attach(&mut model, &weights)?;
     let model = corrected_with_uncertainty(model, law, &library.effects, &trials);
     let document = VersionDocument {
@@ -67,7 +71,7 @@ fn carry_out(
     Ok(Derived { document, refined: None, weights: Some(weights.into()) })
 }
 
-/// What trials left out said; null where there was only one.
+/// Report of the cross-validation on held-out trials; null if there was only one trial.
 fn report(judgement: Option<&Judgement>) -> Result<Value, DeriveError> {
     Ok(sorted(serde_json::to_value(judgement)?))
 }

@@ -1,4 +1,4 @@
-//! Asking for the refinement of a family.
+//! Request for the refinement of a family.
 
 use serde::Deserialize;
 use sistership_fleet::bulk::BulkSettings;
@@ -12,23 +12,23 @@ use super::order::{BULK, Chunk, Order};
 use crate::recipe::PriorName;
 use crate::schema::described;
 
-/// Most ships in a chunk, and how many there are where nobody says: few enough that a worker which
-/// dies loses little.
+/// Largest and default number of ships in a chunk: few enough that little work is lost when a
+/// worker stops.
 const MOST: usize = 500;
 const CHUNK: usize = 50;
 
-/// Why the refinement of a family is not queued.
+/// Error of a request for the refinement of a family.
 #[derive(Debug, thiserror::Error)]
 pub enum OrderError {
-    /// A setting is out of range, or what it names is not there.
+    /// A setting is out of range, or refers to something that does not exist.
     #[error("{field}: {message}")]
     Setting {
         /// The setting.
         field: String,
-        /// What would be right.
+        /// Message that says what is allowed.
         message: String,
     },
-    /// The store does not have it, or does not answer.
+    /// A row is missing, or the store does not answer.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The order cannot be written.
@@ -42,30 +42,31 @@ fn setting(field: &str, message: impl Into<String>) -> OrderError {
     OrderError::Setting { field: field.to_owned(), message: message.into() }
 }
 
-/// A refinement of all members of a family.
+/// Refinement of all members of a family.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Asked {
-    /// Where each member starts.
+    /// The model from which each member starts.
     pub start: Start,
-    /// What holds the coefficients.
+    /// The prior of the coefficients.
     pub prior: PriorChoice,
-    /// What makes a champion.
+    /// The rule by which a refined model becomes champion.
     pub rule: Rule,
-    /// Ships that a worker takes at a time, 1 to 500; 50 where absent.
+    /// Number of ships in a job, 1 to 500; default 50.
     #[schema(minimum = 1, maximum = 500)]
     pub chunk_ships: Option<usize>,
-    /// Settings; each has a default, and all are kept with the versions.
+    /// Settings; each has a default, and all are recorded with the versions.
     #[schema(schema_with = described::<BulkSettings>)]
     pub settings: BulkSettings,
 }
 
-/// Queues the refinement of a family in chunks.
+/// Queues the refinement of a family in chunks of ships.
 ///
 /// # Errors
-/// Names what is not there, or the setting that is out of range.
+/// Returns an error that names what is missing, or the setting that is out of range.
 pub async fn order_refinement(store: &Store, family: &str, asked: &Asked) -> Result<Bulk> {
     asked.settings.check().map_err(|error| setting("settings", error.to_string()))?;
+    // A negative share is valid: it demands an improvement.
     if asked.rule.no_worse_than.is_some_and(|share| !share.is_finite()) {
         return Err(setting("rule.no_worse_than", "must be a finite number"));
     }
@@ -81,6 +82,7 @@ pub async fn order_refinement(store: &Store, family: &str, asked: &Asked) -> Res
             format!("`{family}` has no members; add some with POST /v1/families/{family}/members"),
         ));
     }
+    // The members are fixed here: a ship that joins later is not part of this refinement.
     let chunks: Vec<Vec<String>> = ships.chunks(size).map(<[String]>::to_vec).collect();
     let request = serde_json::to_string(&order)?;
     let chunk = |bulk: &str, ships: &[String]| {
@@ -118,6 +120,7 @@ async fn last_prior(store: &Store, family: &str) -> Result<PriorName> {
         Ok(prior) => {
             Ok(PriorName { family: prior.family, revision: prior.revision, sha256: prior.sha256 })
         }
+        // The family exists, as it was read above; only its prior is missing.
         Err(StoreError::NotFound { .. }) => {
             let how =
                 format!("POST /v1/families/{family}/prior learns it; `foundation` needs none");

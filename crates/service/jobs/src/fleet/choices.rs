@@ -1,35 +1,35 @@
-//! What may be chosen of a bulk refinement.
+//! Options of a bulk refinement.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Where a member starts.
+/// Starting model of a member.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
-    /// At its champion; at the family's foundation where it has none.
+    /// Its champion, or the family's foundation if it has none.
     #[default]
     Champion,
-    /// At the family's foundation, carried over to its particulars.
+    /// The family's foundation, transferred to its particulars.
     Foundation,
 }
 
-/// What holds the coefficients.
+/// Prior of the coefficients.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PriorChoice {
-    /// What the family has taught last.
+    /// The latest prior of the family.
     #[default]
     Family,
     /// The foundation's coefficients.
     Foundation,
 }
 
-/// What makes a champion.
+/// Rule by which a refined model becomes champion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rule {
-    /// A refined model becomes champion where no axis' error, on trials left out, exceeds the one
-    /// before by more than this share. Where absent, a person's word only.
+    /// A refined model becomes champion if no axis' error on held-out trials exceeds that of the
+    /// present champion by more than this share. By default only a person promotes it.
     pub no_worse_than: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! Drift: what a ship's champion leaves of each of its trials, in the order in which they came.
+//! Drift: the unexplained force of a ship's champion on each of its trials, in the order of upload.
 
 use std::collections::BTreeMap;
 
@@ -15,44 +15,44 @@ use crate::error::DeriveError;
 use crate::line::CHAMPION;
 use crate::version::VersionDocument;
 
-/// What a champion leaves of its ship's trials over time.
+/// Unexplained force of a champion on its ship's trials over time.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Drift {
     /// The ship.
     pub ship: String,
     /// The number of its champion.
     pub version: i64,
-    /// What is left of new trials by what is left of those that the champion was fitted on, by
-    /// axis: 1 where it holds as well as on those. Empty where there are none of either.
+    /// Unexplained force on new trials divided by that on the trials that the champion was fitted
+    /// on, by axis: 1 if it is as good as on those. Empty if there are none of either.
     pub ratio: BTreeMap<String, f64>,
-    /// The largest of them.
+    /// The largest of these ratios.
     pub worst: Option<f64>,
-    /// Every trial, the oldest first.
+    /// Every trial, oldest first.
     pub trials: Vec<TrialResidual>,
-    /// Why nothing can be said, if so.
+    /// Reason if no drift can be computed.
     pub reason: Option<String>,
 }
 
-/// What a champion leaves of a trial.
+/// Unexplained force of a champion on a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct TrialResidual {
     /// The trial's id.
     pub trial: String,
-    /// What people call it.
+    /// Its name for people.
     pub name: String,
-    /// When it was uploaded, microseconds since 1970.
+    /// Time of its upload, microseconds since 1970.
     pub at_us: i64,
-    /// Whether the champion was fitted on it.
+    /// True if the champion was fitted on it.
     pub fitted: bool,
-    /// Root mean square of what is left of the force, by that of the force itself, by axis.
+    /// Root mean square of the unexplained force divided by that of the force itself, by axis.
     pub residual: BTreeMap<String, f64>,
 }
 
 impl Drift {
-    /// Of a ship's champion now; none where it has none.
+    /// Computes the drift of a ship's present champion; `None` if it has none.
     ///
     /// # Errors
-    /// The store, or a document that is damaged.
+    /// Returns an error if the store does not answer, or if a document is damaged.
     pub async fn of(archive: &Archive, ship: &str) -> Result<Option<Self>, DeriveError> {
         let store = &archive.store;
         let number = match store.aliases().get(ship, CHAMPION).await {
@@ -61,6 +61,7 @@ impl Drift {
             Err(error) => return Err(error.into()),
         };
         let mut version = document(&store.versions().get(ship, number).await?)?;
+        // The correction is part of the champion, so it counts in its residual.
         archive.attach(&mut version.model).await?;
         let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
         let mut drift = Self {
@@ -75,6 +76,7 @@ impl Drift {
             Ok(frame) => frame,
             Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
         };
+        // All trials: the ratio needs those that were fitted as well.
         let trials = newest(archive, ship, usize::MAX).await?;
         drift.trials = residuals(archive, &frame, &version, trials).await?;
         drift.compare();
@@ -83,6 +85,7 @@ impl Drift {
 
     fn compare(&mut self) {
         for axis in Axis::ALL.map(|axis| axis.to_string()) {
+            // Ratio of root mean squares over the trials: sqrt(mean(r_new^2) / mean(r_fitted^2)).
             let mean_square = |fitted: bool| {
                 let of = |trial: &TrialResidual| {
                     (trial.fitted == fitted)
@@ -102,11 +105,11 @@ impl Drift {
     }
 }
 
-/// What a version leaves of the newest of a ship's trials, at most `count`, the oldest first: of
-/// each the largest over the axes. Nothing where its law gives no such residual.
+/// Returns the unexplained force of a version on the newest trials of its ship, at most `count`,
+/// oldest first: for each trial the largest over the axes. Empty if its law gives no such residual.
 ///
 /// # Errors
-/// The store, or samples that are lost.
+/// Returns an error if the store does not answer, or if samples are missing.
 pub async fn left_of_newest(
     archive: &Archive,
     version: &VersionDocument,
@@ -122,13 +125,14 @@ pub async fn left_of_newest(
     Ok(left.iter().map(TrialResidual::largest).collect())
 }
 
-/// The newest of a ship's trials, at most `count`, the oldest first.
+/// Reads the newest trials of a ship, at most `count`, oldest first.
 async fn newest(archive: &Archive, ship: &str, count: usize) -> Result<Vec<Trial>, StoreError> {
     let mut newest = Vec::new();
     let mut page = Page::first(MAX_LIMIT);
     loop {
         let trials = archive.store.trials().list(ship, &page).await?;
         newest.extend(trials.items);
+        // Pages come oldest first; only the last `count` rows are kept in memory.
         newest.drain(..newest.len().saturating_sub(count));
         let Some(next) = trials.next else { return Ok(newest) };
         page = Page::after(next, MAX_LIMIT);
@@ -136,13 +140,13 @@ async fn newest(archive: &Archive, ship: &str, count: usize) -> Result<Vec<Trial
 }
 
 impl TrialResidual {
-    /// The largest over the axes.
+    /// Returns the largest residual over the axes.
     pub fn largest(&self) -> f64 {
         self.residual.values().copied().fold(0.0, f64::max)
     }
 }
 
-/// What a version leaves of trials; one that lacks a channel says nothing of it.
+/// Computes the residual of a version on trials; a trial that lacks a channel is skipped.
 async fn residuals(
     archive: &Archive,
     frame: &Frame,
@@ -157,6 +161,7 @@ async fn residuals(
         let named = RecipeTrial { name: trial.name.clone(), sha256: trial.sha256.clone() };
         let residual = match statistics_of(archive, frame, &[named]).await {
             Ok(statistics) => residual(&statistics[0], &coefficients)?,
+            // The trial cannot be evaluated, for example because a channel is missing.
             Err(DeriveError::Refine(_)) => continue,
             Err(error) => return Err(error),
         };

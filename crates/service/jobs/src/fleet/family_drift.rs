@@ -1,4 +1,4 @@
-//! Ships of a family whose model no longer holds.
+//! Ships of a family whose model is no longer valid.
 
 use serde::Serialize;
 use sistership_store::Page;
@@ -10,38 +10,40 @@ use crate::condition::{Condition, Standing};
 use crate::error::DeriveError;
 use crate::search::standing::Class;
 
-/// The members of a family, the one whose model holds least first.
+/// Members of a family, the one with the least valid model first.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct FamilyDrift {
     /// Its name.
     pub family: String,
-    /// How many members it has.
+    /// Number of members.
     pub members: i64,
-    /// Those that were looked at.
+    /// The members that were examined.
     pub ships: Vec<MemberDrift>,
 }
 
-/// How the model of a member holds.
+/// Validity of the model of a member.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct MemberDrift {
     /// The ship.
     pub ship: String,
-    /// What all diagnoses of its champion say: the effects that it lacks.
+    /// The verdict of all diagnoses of its champion, with the effects that it lacks.
     pub condition: Condition,
-    /// What its champion leaves of its trials over time.
+    /// Unexplained force of its champion on its trials over time.
     pub drift: Option<Drift>,
 }
 
 impl FamilyDrift {
-    /// Of the members whose diagnosis says that they do not hold, and of the first others up to
+    /// Examines the members whose model is not valid by diagnosis, and the first others up to
     /// `limit`.
     ///
     /// # Errors
-    /// There is no such family, the store does not answer, or a document is damaged.
+    /// Returns an error if there is no such family, if the store does not answer, or if a document
+    /// is damaged.
     pub async fn of(archive: &Archive, name: &str, limit: i64) -> Result<Self, DeriveError> {
         let families = archive.store.families();
         let family = families.get(name).await?;
         let faulty = Class::DoesNotHold.range();
+        // Found by the index of facts; the condition below is read anew and may have changed.
         let drifted = families.within(&family.name, &faulty, limit).await?;
         let others = families.members(&family.name, &Page::first(limit)).await?.items;
         let known: std::collections::BTreeSet<String> =
@@ -53,6 +55,7 @@ impl FamilyDrift {
             let drift = Drift::of(archive, &member.ship).await?;
             ships.push(MemberDrift { ship: member.ship, condition, drift });
         }
+        // Invalid models first, then by decreasing drift.
         ships.sort_by(|a, b| {
             b.worse().0.cmp(&a.worse().0).then(b.worse().1.total_cmp(&a.worse().1))
         });
@@ -61,8 +64,7 @@ impl FamilyDrift {
 }
 
 impl MemberDrift {
-    /// Whether the diagnosis says that its model does not hold, and how much more it leaves of what
-    /// is new.
+    /// Sort key: invalidity of the model by diagnosis, then its largest drift ratio.
     fn worse(&self) -> (bool, f64) {
         let worst = self.drift.as_ref().and_then(|drift| drift.worst);
         (self.condition.model == Standing::DoesNotHold, worst.unwrap_or(0.0))

@@ -1,4 +1,4 @@
-//! The model that a member is refined from: its champion, or the foundation carried over to it.
+//! Starting model of a member: its champion, or the foundation transferred to it.
 
 use sistership_model::version::{SourceVersion, sha256};
 use sistership_model::{Law, Model};
@@ -13,11 +13,11 @@ use crate::inputs::Inputs;
 use crate::line::CHAMPION;
 use crate::recipe::FamilyRecipe;
 
-/// Finds the frames of a family's members.
+/// Source of the starting models of a family's members.
 pub struct Frames<'a> {
-    /// Where champions and documents are.
+    /// Archive with champions and documents.
     pub archive: &'a Archive,
-    /// What the family is founded on.
+    /// Version that the family is founded on.
     pub foundation: &'a SourceVersion,
     /// Its model.
     pub model: &'a Model,
@@ -25,29 +25,30 @@ pub struct Frames<'a> {
     pub law: &'a Law,
 }
 
-/// Where a member starts.
+/// Starting model of a member.
 #[derive(Debug)]
 pub struct Framed {
     /// The model that is refined.
     pub model: Model,
-    /// The version that it is from.
+    /// The version that it comes from.
     pub from: SourceVersion,
-    /// The hash of its document, where the foundation was carried over to it.
+    /// The hash of the ship's document, if the foundation was transferred to it.
     pub ship_sha256: Option<String>,
-    /// The id of the version, if it is its own.
+    /// The id of the version, if it is one of the ship.
     pub version_id: Option<String>,
     /// The revision of its champion.
     pub champion: Option<i64>,
-    /// Whether the version has effects or a learned correction, which the model that is refined
-    /// does without.
+    /// True if the version has effects or a learned correction, which are removed from the model
+    /// that is refined.
     pub is_reduced: bool,
 }
 
 impl Frames<'_> {
-    /// Where a member starts now.
+    /// Returns the present starting model of a member.
     ///
     /// # Errors
-    /// A version that is damaged, or of another kind than the foundation.
+    /// Returns an error if the version is damaged, or if its law or coefficients differ from those
+    /// of the foundation.
     pub async fn of(&self, ship: &str, start: Start) -> Result<Framed, DeriveError> {
         let store = &self.archive.store;
         let champion = match store.aliases().get(ship, CHAMPION).await {
@@ -55,6 +56,8 @@ impl Frames<'_> {
             Err(sistership_store::StoreError::NotFound { .. }) => None,
             Err(error) => return Err(error.into()),
         };
+        // The revision is kept also for a start at the foundation: a promotion must not overwrite a
+        // champion that was set meanwhile.
         let revision = champion.as_ref().map(|alias| alias.revision);
         if let (Start::Champion, Some(alias)) = (start, champion) {
             let version = store.versions().get(ship, alias.version_number).await?;
@@ -77,6 +80,7 @@ impl Frames<'_> {
         let whole = document(&version)?.model;
         let is_reduced = whole.branch.is_some() || !whole.effects.is_empty();
         let model = reduced(whole);
+        // Statistics and prior of a family are those of one law and one set of coefficients.
         if model.law != self.model.law
             || !model.coefficients.keys().eq(self.model.coefficients.keys())
         {
@@ -103,13 +107,13 @@ impl Frames<'_> {
     }
 }
 
-/// A model whose coefficients statistics describe: without a learned correction, and without
-/// effects, which belong to its own trials.
+/// Returns the model without its learned correction and effects, which belong to its own trials:
+/// the statistics describe only the coefficients.
 fn reduced(model: Model) -> Model {
     Model { effects: Vec::new(), ..model.foundation() }
 }
 
-/// Where a member started, as a recipe has it.
+/// Returns the starting model of a member that a recipe records.
 pub(super) async fn recorded(
     inputs: &Inputs<'_>,
     loaded: &Loaded,
@@ -120,6 +124,7 @@ pub(super) async fn recorded(
         Some(hash) => {
             Ok(transfer(&loaded.foundation, &loaded.law, &inputs.ship(ship, hash).await?, None))
         }
+        // Without the hash of a ship's document the member started at its own version.
         None => Ok(reduced(inputs.source(&recipe.start).await?)),
     }
 }

@@ -1,4 +1,4 @@
-//! Statistics of trials: as they are kept, or made of the samples and kept from then on.
+//! Statistics of trials: read from the store, or computed from the samples and then stored.
 
 use bytes::Bytes;
 use sistership_fleet::statistics::{Frame, TrialStatistics};
@@ -8,12 +8,13 @@ use sistership_trials::samples::from_parquet;
 use crate::archive::Archive;
 use crate::error::DeriveError;
 
-/// The statistics of trials in a frame, in their order.
+/// Returns the statistics of trials in a frame, in the order of the trials.
 pub async fn statistics_of(
     archive: &Archive,
     frame: &Frame,
     trials: &[RecipeTrial],
 ) -> Result<Vec<TrialStatistics>, DeriveError> {
+    // New statistics are stored in one statement after the loop.
     let (mut all, mut fresh) = (Vec::with_capacity(trials.len()), Vec::new());
     for trial in trials {
         let key = key(frame, &trial.sha256, code_revision());
@@ -32,8 +33,8 @@ pub async fn statistics_of(
     Ok(all)
 }
 
-/// What statistics are kept under: another release makes its own, since versions that it makes are
-/// to be derived again by it.
+/// Key of stored statistics. It includes the revision of the program, because versions must be
+/// derived again by the release that made them.
 fn key(frame: &Frame, trial_sha256: &str, revision: &str) -> String {
     sha256(format!("{revision}\n{}", frame.key(trial_sha256)).as_bytes())
 }
@@ -44,7 +45,7 @@ fn read(document: &str) -> Result<TrialStatistics, DeriveError> {
     Ok(statistics)
 }
 
-/// Of a trial's samples, away from the threads that serve.
+/// Computes the statistics of a stored trial.
 async fn make(
     archive: &Archive,
     frame: &Frame,
@@ -53,7 +54,7 @@ async fn make(
     made(frame, archive.objects.get(&trial.sha256).await?).await
 }
 
-/// Of samples themselves.
+/// Computes statistics from samples, on a blocking thread.
 pub(super) async fn made(frame: &Frame, samples: Bytes) -> Result<TrialStatistics, DeriveError> {
     let frame = frame.clone();
     let work = move || Ok(TrialStatistics::of(&frame, &from_parquet(samples)?)?);

@@ -1,4 +1,4 @@
-//! Learning what a family teaches.
+//! Estimation of the prior of a family.
 
 use serde::{Deserialize, Serialize};
 use sistership_fleet::family::{self, FamilyPrior, Member};
@@ -12,12 +12,12 @@ use super::members::members;
 use crate::archive::{Archive, document};
 use crate::error::DeriveError;
 
-/// The kind of the jobs that learn a family's prior.
+/// Kind of the jobs that estimate a family's prior.
 pub const LEARN: &str = "family-prior";
-/// More members than this add little: evenly spaced ones are taken.
+/// Largest number of members that are used, evenly spaced: more add little.
 const MOST: usize = 1000;
 
-/// What such a job is asked to do.
+/// Request of such a job.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LearnJob {
@@ -25,11 +25,12 @@ pub struct LearnJob {
     pub family: String,
 }
 
-/// Learns mean and covariance over the members that have trials; `told` hears how far it is and may
-/// stop it.
+/// Estimates mean and covariance of the coefficients over the members that have trials. The
+/// callback receives the progress and may stop it.
 ///
 /// # Errors
-/// Why nothing can be learned.
+/// Returns an error if a document is missing or damaged, or if the members do not determine a
+/// prior.
 pub async fn learn(
     archive: &Archive,
     name: &str,
@@ -52,12 +53,14 @@ pub async fn learn(
                 sistership_identification::refine::RefineError::Cancelled,
             ));
         }
+        // A member without usable statistics is skipped, it does not end the job.
         known.extend(
             of_member(&frames, ship, &law_sha256)
                 .await?
                 .map(|statistics| (ship.clone(), statistics)),
         );
     }
+    // The estimation itself cannot be stopped.
     told(0.9, "learning");
     let learned = tokio::task::spawn_blocking(move || {
         let members: Vec<Member<'_>> =
@@ -67,8 +70,8 @@ pub async fn learn(
     learned.await?.map_err(|error| DeriveError::Lost(error.to_string()))
 }
 
-/// The statistics of a member; none of one without trials, or whose model is not of this family's
-/// kind.
+/// Returns the statistics of a member; `None` for a member without trials, or whose model has
+/// another law or other coefficients.
 async fn of_member(
     frames: &Frames<'_>,
     ship: &str,
@@ -83,6 +86,7 @@ async fn of_member(
         }
         Err(error) => return Err(error),
     };
+    // Each member has the frame of its own model.
     let frame = match Frame::new(&framed.model, frames.law, law_sha256, None) {
         Ok(frame) if !trials.is_empty() => frame,
         _ => return Ok(None),
@@ -90,7 +94,7 @@ async fn of_member(
     statistics_of(frames.archive, &frame, &trials).await.map(Some)
 }
 
-/// The trials of a ship, the oldest first.
+/// Reads the trials of a ship, oldest first.
 pub async fn trials_of(archive: &Archive, ship: &str) -> Result<Vec<RecipeTrial>, DeriveError> {
     let page = sistership_store::Page::first(sistership_store::MAX_LIMIT);
     let trials = archive.store.trials().list(ship, &page).await?.items;
@@ -100,7 +104,7 @@ pub async fn trials_of(archive: &Archive, ship: &str) -> Result<Vec<RecipeTrial>
         .collect())
 }
 
-/// At most [`MOST`], evenly spaced.
+/// Selects a limited number of ships, evenly spaced.
 fn spread(ships: Vec<String>) -> Vec<String> {
     let every = ships.len().div_ceil(MOST).max(1);
     ships.into_iter().step_by(every).collect()

@@ -1,4 +1,4 @@
-//! A member of a bulk refinement: gathered, refined, and what becomes of it.
+//! Member of a bulk refinement: loading, refinement and outcome.
 
 use serde_json::{Value, json};
 use sistership_fleet::bulk::BulkRefinement;
@@ -18,29 +18,29 @@ use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
-/// How the versions are made.
+/// Method name of the versions.
 const METHOD: &str = "statistics";
-/// Coefficients that move by less than this share of themselves have not moved.
+/// Relative change below which a coefficient counts as unchanged.
 const UNMOVED: f64 = 1e-9;
 
-/// A ship of the chunk, ready to be refined, or why not.
+/// Ship of the chunk, ready to be refined, or the reason why it cannot be.
 pub struct Member {
     ship: String,
     standing: Standing,
     champion: Option<i64>,
     parent: Option<String>,
-    /// Whether the champion has more than what is refined: effects or a learned correction.
+    /// True if the champion has effects or a learned correction, which are not refined.
     is_reduced: bool,
     gathered: std::result::Result<Gathered, String>,
 }
 
-/// A ship of the chunk, refined, or why not.
+/// Refinement of a ship of the chunk, or the reason why there is none.
 pub type Outcome = std::result::Result<(BulkRefinement, VersionDocument), String>;
 
-/// Gathers what a member is refined from.
+/// Loads the inputs of the refinement of a member.
 ///
 /// # Errors
-/// The database, and not the ship.
+/// Returns an error of the database or of the program; an error of the ship is part of the result.
 pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Member> {
     let standing = Standing::of(&archive.store, ship).await?;
     let mut member = Member {
@@ -53,7 +53,7 @@ pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Me
     };
     match gathered(archive, loaded, &mut member).await {
         Ok(gathered) => member.gathered = Ok(gathered),
-        // The database, and not the ship.
+        // Faults of the database or of the program end the job; those of a ship are its outcome.
         Err(error @ (DeriveError::Broken(_) | DeriveError::Refine(RefineError::Cancelled))) => {
             return Err(error);
         }
@@ -89,8 +89,9 @@ async fn gathered(archive: &Archive, loaded: &Loaded, member: &mut Member) -> Re
     Ok(Gathered { model: framed.model, statistics, recipe })
 }
 
-/// Refines a member, or says why not.
+/// Refines a member, or returns the reason why that is not possible.
 pub fn refine(loaded: &Loaded, mut member: Member) -> (Member, Outcome) {
+    // The inputs are large and are moved out; the rest of the member is needed for its outcome.
     let gathered = std::mem::replace(&mut member.gathered, Err(String::new()));
     let outcome = gathered.and_then(|gathered| {
         refined(loaded, &member.ship, gathered).map_err(|error| error.to_string())
@@ -98,10 +99,10 @@ pub fn refine(loaded: &Loaded, mut member: Member) -> (Member, Outcome) {
     (member, outcome)
 }
 
-/// What becomes of a ship: champion where the rule lets its model be one, else candidate.
+/// Returns the outcome for a ship: champion if the rule allows it for its model, else candidate.
 ///
 /// # Errors
-/// A document cannot be written.
+/// Returns an error if a document cannot be written.
 pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Result<NewOutcome> {
     let ship = member.ship.clone();
     let (refinement, document) = match outcome {
@@ -119,6 +120,7 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
     };
     let worst = refinement.worst_change();
     let summary = summary(&refinement);
+    // No new version if the trials do not change the model: its history would only grow.
     if unmoved(&refinement) {
         let outcome = "unchanged".to_owned();
         return Ok(NewOutcome {
@@ -129,7 +131,8 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
             document: summary.to_string(),
         });
     }
-    // What is refined without the champion's effects or correction does not replace it by itself.
+    // A model refined without the champion's effects or correction does not replace it
+    // automatically.
     let allowed = !member.standing.second_person && !member.is_reduced;
     let rule = loaded.order.rule.no_worse_than;
     let champion = allowed && rule.is_some_and(|share| worst <= share);
@@ -155,6 +158,8 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
 
 impl Member {
     fn moves(&self, champion: bool, reason: &str) -> Vec<AliasMove> {
+        // The alias must still be at the revision that was refined; a later change by a person
+        // wins.
         let expect = self.champion.map_or(Expect::Absent, Expect::Revision);
         let named = if champion {
             step(CHAMPION, expect, reason)
@@ -169,7 +174,7 @@ fn unmoved(refinement: &BulkRefinement) -> bool {
     refinement.coefficients.iter().all(|c| (c.refined - c.before).abs() <= UNMOVED * c.before.abs())
 }
 
-/// Before and after, without the coefficients, which the version holds.
+/// Errors before and after, without the coefficients, which the version holds.
 fn summary(refinement: &BulkRefinement) -> Value {
     let BulkRefinement { axes, pulled, before, after, trials, .. } = refinement;
     json!({ "axes": axes, "pulled": pulled, "before": before, "after": after, "trials": trials })

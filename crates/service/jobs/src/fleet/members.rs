@@ -1,8 +1,8 @@
-//! The members of a family.
+//! Members of a family.
 
 use sistership_store::{MAX_LIMIT, Page, Store, StoreError};
 
-/// Every member by name.
+/// Reads the names of all members.
 pub(super) async fn members(
     store: &Store,
     family: &str,

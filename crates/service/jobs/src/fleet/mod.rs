@@ -1,5 +1,5 @@
-//! Families of ships: what their members are refined from, what they teach, and the refinement of
-//! all of them.
+//! Families of ships: starting models of the members, the prior of the family, and the refinement
+//! of all members.
 
 mod asked;
 mod choices;

@@ -1,4 +1,4 @@
-//! What a bulk refinement is to do, with everything looked up: its row and its recipes keep it.
+//! Order of a bulk refinement with all references resolved, kept in its row and its recipes.
 
 use serde::{Deserialize, Serialize};
 use sistership_fleet::bulk::{AxisPrior, BulkSettings, Prior};
@@ -12,31 +12,31 @@ use crate::error::DeriveError;
 use crate::inputs::Inputs;
 use crate::recipe::{FamilyKind, FamilyRecipe, PriorName};
 
-/// The kind of the jobs that refine a chunk of ships.
+/// Kind of the jobs that refine a chunk of ships.
 pub const BULK: &str = "bulk-refinement";
 
-/// A bulk refinement to be done.
+/// Order of a bulk refinement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Order {
     /// The family.
     pub family: String,
-    /// What the members' models are founded on.
+    /// The version that the members' models are founded on.
     pub foundation: SourceVersion,
-    /// The law's file.
+    /// SHA-256 of the law's file.
     pub law_sha256: String,
-    /// Where each member starts.
+    /// Starting model of each member.
     pub start: Start,
-    /// The family's prior; where absent, the foundation holds the coefficients.
+    /// The family's prior; by default the coefficients of the foundation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior: Option<PriorName>,
     /// Settings.
     pub settings: BulkSettings,
-    /// What makes a champion.
+    /// Rule by which a refined model becomes champion.
     pub rule: Rule,
 }
 
-/// What a job of the kind [`BULK`] is asked to do.
+/// Request of a job that refines a chunk of ships.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Chunk {
@@ -46,19 +46,19 @@ pub struct Chunk {
     pub ships: Vec<String>,
 }
 
-/// An order with the documents that it names.
+/// Order with the documents that it names.
 #[derive(Debug)]
 pub struct Loaded {
     /// The order.
     pub order: Order,
     /// The foundation's model.
     pub foundation: Model,
-    /// The law of what is fitted.
+    /// The law that is fitted.
     pub law: Law,
     held: Held,
 }
 
-/// What holds the coefficients.
+/// Prior of the coefficients.
 #[derive(Debug)]
 enum Held {
     Foundation(BTreeMap<String, f64>),
@@ -66,7 +66,7 @@ enum Held {
 }
 
 impl Order {
-    /// The recipe of a member.
+    /// Returns the recipe of a member.
     pub fn recipe(
         &self,
         start: SourceVersion,
@@ -88,11 +88,12 @@ impl Order {
 }
 
 impl Loaded {
-    /// Reads what an order names.
+    /// Reads the documents that an order names.
     ///
     /// # Errors
-    /// What is missing or damaged.
+    /// Returns an error if a document is missing or damaged.
     pub async fn of(inputs: &Inputs<'_>, order: Order) -> Result<Self, DeriveError> {
+        // Through the recording inputs, so that the recipe of a member can be checked against them.
         let foundation = inputs.source(&order.foundation).await?;
         let law = inputs.law(&foundation.law, &order.law_sha256).await?;
         let held = match &order.prior {
@@ -104,17 +105,18 @@ impl Loaded {
         Ok(Self { order, foundation, law, held })
     }
 
-    /// What holds the coefficients.
+    /// Returns the prior of the coefficients.
     pub fn prior(&self) -> Prior<'_> {
         match &self.held {
             Held::Foundation(values) => Prior::Source(values),
+            // The design effect accounts for the correlation of samples within a trial.
             Held::Family { axes, design_effect } => {
                 Prior::Family { axes, design_effect: *design_effect }
             }
         }
     }
 
-    /// What held the coefficients, in words.
+    /// Describes the prior of the coefficients.
     pub fn held_by(&self) -> String {
         match &self.order.prior {
             Some(name) => format!(
@@ -128,6 +130,7 @@ impl Loaded {
 
 async fn family(inputs: &Inputs<'_>, name: &PriorName) -> Result<Held, DeriveError> {
     let prior = inputs.prior(name).await?;
+    // The hash was checked already: a prior that cannot be used was stored so.
     let lost = |what: FamilyPriorError| {
         DeriveError::Lost(format!(
             "the prior of the family `{}` at revision {} {what}",

@@ -1,14 +1,17 @@
-//! The drift of a champion over the newest trials since it was fitted.
+//! Drift of a champion over the newest trials since it was fitted.
 
 use super::drift::{Drift, TrialResidual};
 use crate::condition::{DRIFT_LIMIT, NEWEST, RecentDrift};
 
 impl Drift {
-    /// That of the newest trials; none where nothing is new, or the champion was fitted on none.
+    /// Returns the drift over the newest trials; `None` if there are no new trials, or if the
+    /// champion was fitted on none.
     pub fn recent(&self) -> Option<RecentDrift> {
         let last = self.trials.iter().rposition(|trial| trial.fitted)?;
         let new = &self.trials[last + 1..];
         let new = &new[new.len().saturating_sub(NEWEST)..];
+        // Per axis: RMS over the new trials divided by RMS over the fitted ones; the worst axis
+        // counts.
         let ratios = self.ratio.keys().filter_map(|axis| {
             let fitted = self.trials.iter().filter(|trial| trial.fitted);
             let before = root_mean_square(fitted, axis).filter(|before| *before > 0.0)?;

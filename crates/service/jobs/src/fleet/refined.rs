@@ -1,4 +1,4 @@
-//! One member refined: its recipe, and the version that comes of it.
+//! Refinement of one member: its recipe and the resulting version.
 
 use std::collections::BTreeMap;
 
@@ -19,17 +19,17 @@ use crate::recipe::{FamilyRecipe, Recipe};
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
-/// A member with all that its refinement takes.
+/// Inputs of the refinement of a member.
 pub struct Gathered {
     /// The model that is refined.
     pub model: Model,
     /// Statistics of the trials.
     pub statistics: Vec<TrialStatistics>,
-    /// How.
+    /// Its recipe.
     pub recipe: FamilyRecipe,
 }
 
-/// Refines a member: a function of what was gathered and nothing else.
+/// Refines a member: a function of its inputs only.
 pub fn refined(
     loaded: &Loaded,
     ship: &str,
@@ -53,9 +53,10 @@ pub fn refined(
         (c.name.clone(), fitted)
     });
     let coefficients = fitted.collect::<BTreeMap<_, _>>();
+    // The surge balance is computed anew below, because the coefficients have changed.
     let refined = refined_model(&model, &coefficients, &loaded.held_by());
     let mut refined = with_balance(refined, &loaded.law);
-    // As versions have it that were kept before ships were "it": their bytes stay.
+    // The wording of stored versions: it is part of their bytes, so it must not change.
     refined.note = Some("refined from the statistics of her trials".to_owned());
     let report = sorted(serde_json::to_value(&refinement)?);
     finite(&report)?;
@@ -69,7 +70,7 @@ pub fn refined(
     Ok((refinement, document))
 }
 
-/// What is not a number has no place in a document, where it would read as nothing.
+/// Checks that no number is missing: JSON writes a value that is not finite as null.
 fn finite(report: &Value) -> Result<(), DeriveError> {
     let bad = |key: &str| {
         DeriveError::Refine(RefineError::Data(format!(
@@ -83,12 +84,13 @@ fn finite(report: &Value) -> Result<(), DeriveError> {
     fields.find(|(_, value)| value.is_null()).map_or(Ok(()), |(key, _)| Err(bad(key)))
 }
 
-/// Derives a member's version again, from the samples themselves.
+/// Derives a member's version again, from the samples themselves instead of stored statistics.
 pub async fn derived(
     inputs: &Inputs<'_>,
     ship: &str,
     recipe: &FamilyRecipe,
 ) -> Result<VersionDocument, DeriveError> {
+    // Family, start and rule do not enter the bytes of a version; the recipe has the rest.
     let order = Order {
         family: String::new(),
         foundation: recipe.foundation.clone(),
@@ -105,7 +107,8 @@ pub async fn derived(
     for trial in &recipe.trials {
         statistics.push(made(&frame, inputs.samples(trial).await?).await?);
     }
-    // The recorded program stays in the recipe, as in every other version that is derived again.
+    // The recipe keeps the recorded revision of the program, as in every version that is derived
+    // again.
     let gathered = Gathered { model, statistics, recipe: recipe.clone() };
     let ship = ship.to_owned();
     Ok(tokio::task::spawn_blocking(move || refined(&loaded, &ship, gathered)).await??.1)

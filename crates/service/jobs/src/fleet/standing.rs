@@ -1,4 +1,4 @@
-//! How far a bulk refinement is.
+//! Status of a bulk refinement.
 
 use std::collections::BTreeMap;
 
@@ -6,33 +6,33 @@ use serde::Serialize;
 use sistership_store::{Bulk, JobState, Store, StoreError};
 use utoipa::ToSchema;
 
-/// How far a bulk refinement is.
+/// Status of a bulk refinement.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(as = BulkStanding)]
 pub struct Standing {
     /// `queued`, `running`, `succeeded`, `failed` (in part: retry) or `cancelled`.
     pub state: &'static str,
-    /// How many ships it has.
+    /// Number of its ships.
     pub ships: i64,
-    /// How many of them are done.
+    /// Number of ships that are done.
     pub done: i64,
-    /// From 0 to 1.
+    /// Share that is done, 0 to 1.
     pub progress: f64,
-    /// How many ships have become what: `champion`, `candidate`, `unchanged`, `refused`.
+    /// Number of ships by outcome: `champion`, `candidate`, `unchanged`, `refused`.
     pub outcomes: BTreeMap<String, i64>,
-    /// How many chunks stand where.
+    /// Number of jobs by state.
     pub chunks: BTreeMap<&'static str, i64>,
-    /// Ships a second so far.
+    /// Mean rate so far, ships per second.
     pub ships_per_s: Option<f64>,
-    /// Time left at that pace, s.
+    /// Time left at that rate, s.
     pub left_s: Option<f64>,
 }
 
 impl Standing {
-    /// Of a refinement now.
+    /// Reads the present status of a bulk refinement.
     ///
     /// # Errors
-    /// The database.
+    /// Returns an error if the database does not answer.
     pub async fn of(store: &Store, bulk: &Bulk) -> Result<Self, StoreError> {
         let (chunks, counts) =
             (store.bulks().chunks(&bulk.id).await?, store.bulks().counts(&bulk.id).await?);
@@ -49,6 +49,8 @@ impl Standing {
         let ships_per_s = seconds
             .filter(|seconds| *seconds > 0.0 && done > 0)
             .map(|seconds| done as f64 / seconds);
+        // Chunks differ in state; the most urgent one names the whole: work in progress before
+        // failures.
         let state = match () {
             () if in_state(JobState::Running) || (in_state(JobState::Queued) && done > 0) => {
                 "running"

@@ -1,35 +1,35 @@
-//! Why a prediction cannot be made.
+//! Errors of predictions.
 
 use crate::budget::Shortage;
 
-/// Why a prediction cannot be made.
+/// Error of a prediction.
 #[derive(Debug, thiserror::Error)]
 pub enum PredictError {
-    /// A field of the request is not what it should be.
+    /// A field of the request is not valid.
     #[error("{field}: {message}")]
     Field {
         /// Its place in the request.
         field: String,
-        /// What is wrong with it.
+        /// Message that says what is wrong with it.
         message: String,
     },
-    /// There is no memory for its answer, now or ever.
+    /// There is not enough memory for the answer, now or ever.
     #[error(transparent)]
     Memory(#[from] Shortage),
-    /// Somebody has no session of this id, or has none any longer.
+    /// The caller has no session with this id, or it has ended.
     #[error("there is no session `{0}` of yours; one that is not asked for ten minutes ends")]
     NoSession(String),
-    /// There are as many sessions as there may be.
+    /// The limit of sessions is reached.
     #[error(
         "{whose} {most} sessions, and may not have more; end one, or wait until an idle one ends"
     )]
     ManySessions {
-        /// Whose they are.
+        /// Owner of the sessions.
         whose: &'static str,
-        /// How many there are.
+        /// Largest number of sessions.
         most: usize,
     },
-    /// Another request has the ship.
+    /// Another request uses the session.
     #[error("another request sails this session at the moment; wait for its answer")]
     SessionBusy,
     /// The answer cannot be written.
@@ -38,11 +38,11 @@ pub enum PredictError {
 }
 
 impl PredictError {
-    /// Of a field of the request.
+    /// Creates the error of a field of the request.
     pub(crate) fn invalid(field: &str, message: impl Into<String>) -> Self {
         Self::Field { field: field.to_owned(), message: message.into() }
     }
 }
 
-/// What a prediction gives.
+/// Result of a prediction.
 pub type Result<T> = std::result::Result<T, PredictError>;

@@ -1,6 +1,6 @@
-//! Over a horizon from now on: what the foundation draws under orders to come, what a learned
-//! branch makes of it, and the band of the posterior (Kanazawa 2023, sec. 3.1, with the branch in
-//! every step where the paper asks one network once).
+//! Prediction over a horizon from now on: the simulation of the foundation model under given
+//! orders, that with the learned correction, and the band of the posterior (Kanazawa 2023, sec.
+//! 3.1; the correction is evaluated at every step, where the paper evaluates one network once).
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -12,35 +12,35 @@ use crate::predictions::error::{PredictError, Result};
 use crate::predictions::inputs::InitialState;
 use crate::predictions::session::{CurrentRequest, Session, SessionRequest, WindRequest};
 
-/// A horizon, and the orders within it.
+/// Horizon, with the orders within it.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonRequest {
-    /// Where the ship is, and how it moves over the ground; straight ahead to the north at the
-    /// model's approach speed where absent.
+    /// Position and motion over the ground; by default straight ahead to the north at the model's
+    /// approach speed.
     start: Option<InitialState>,
-    /// Its rudder angle now, positive to starboard.
+    /// Rudder angle now, positive to starboard.
     #[serde(default)]
     delta_rad: f64,
-    /// Orders to come, in time; the rudder as it is and the revolutions of the speed now until the
-    /// first.
+    /// Orders to come, in order of time. Until the first, the rudder stays and the revolutions are
+    /// those of the present speed.
     #[serde(default)]
     #[schema(max_items = 10_000)]
     orders: Vec<TimedOrders>,
-    /// How far ahead, s.
+    /// Length of the horizon, s.
     #[schema(inline)]
     duration_s: Positive,
-    /// Time between samples; 0.5 s where absent.
+    /// Time between samples, s; default 0.5.
     #[schema(inline)]
     dt_s: Option<StepLength>,
     /// A steady current.
     current: Option<CurrentRequest>,
     /// A steady wind.
     wind: Option<WindRequest>,
-    /// Models drawn from the posterior of a refined one, for the band; none where absent.
+    /// Number of models drawn from the posterior of a refined model, for the band; by default none.
     #[schema(inline)]
     draws: Option<DrawCount>,
-    /// What the draws follow from; 1 where absent.
+    /// Seed of the draws; default 1.
     seed: Option<u64>,
 }
 
@@ -48,21 +48,21 @@ pub struct HorizonRequest {
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimedOrders {
-    /// Since now.
+    /// Time from now, s.
     t_s: f64,
-    /// The rudder angle that the steering gear follows; as before where absent.
+    /// Ordered rudder angle, which the steering gear follows; by default unchanged.
     delta_rad: Option<f64>,
-    /// Propeller revolutions; as before where absent.
+    /// Propeller revolutions; by default unchanged.
     n_rps: Option<f64>,
 }
 
-/// Time between samples where nobody says it, s.
+/// Default time between samples, s.
 const DT_S: f64 = 0.5;
-/// Most samples of a horizon.
+/// Largest number of samples of a horizon.
 const SAMPLES: usize = 10_000;
 
 impl HorizonRequest {
-    /// Sails over the horizon; `most` bounds the work.
+    /// Simulates the horizon in at most `most` steps of all models together.
     pub(crate) fn sail(
         &self,
         (name, depth_m): (&ModelName, Option<Positive>),
@@ -79,7 +79,7 @@ impl HorizonRequest {
             None => answer["trajectory"].clone(),
             Some(_) => {
                 let alone = Model { branch: None, ..model.clone() };
-                // Its band is not asked for.
+                // The foundation is drawn as a line without band.
                 let asked = SessionRequest { draws: None, ..asked };
                 let mut foundation = Session::new(&asked, &alone, law).map_err(within)?;
                 self.sailed(&mut foundation, steps)["trajectory"].take()
@@ -93,7 +93,7 @@ impl HorizonRequest {
         self.dt_s.map_or(DT_S, StepLength::get)
     }
 
-    /// The steps of the horizon, once its orders are in time.
+    /// Checks that the orders are in order of time, and returns the number of steps.
     fn steps(&self) -> Result<usize> {
         if let Some(at) = self.orders.windows(2).position(|pair| pair[1].t_s <= pair[0].t_s) {
             let message = "must be later than that of the orders before";
@@ -124,16 +124,18 @@ impl HorizonRequest {
         }
     }
 
-    /// Each step under the orders that were given last at its start.
+    /// Simulates the steps, each under the latest orders at its start.
     fn sailed(&self, session: &mut Session, steps: usize) -> Value {
         let dt_s = self.dt_s();
         let mut samples = vec![session.sample()];
         let mut coming = self.orders.iter().peekable();
         for step in 0..steps {
+            // The small fraction of a step makes orders at a sample time robust to rounding.
             let now_s = (step as f64 + 1e-9) * dt_s;
             while let Some(one) = coming.next_if(|one| one.t_s <= now_s) {
                 session.order(one.delta_rad, one.n_rps);
             }
+            // The track ends where the motion leaves the physical range; the answer has the reason.
             let Some(sample) = session.step(dt_s) else { break };
             samples.push(sample);
         }
@@ -141,7 +143,7 @@ impl HorizonRequest {
     }
 }
 
-/// A fault of a field within `horizon`, but for those that stand beside it.
+/// Prefixes a field with `horizon.`, except for the fields that are not part of the horizon.
 fn within(error: PredictError) -> PredictError {
     match error {
         PredictError::Field { field, message } if field != "model" => {

@@ -1,4 +1,4 @@
-//! Recorded rudder and revolutions, followed from a given start.
+//! Prediction under recorded rudder angles and revolutions, from a given start.
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -21,14 +21,14 @@ pub struct InputsRequest {
     /// Rudder angle at each time, positive to starboard.
     #[schema(min_items = 2)]
     delta_rad: Vec<f64>,
-    /// Propeller revolutions at each time; those of steady running at the first speed where absent.
+    /// Propeller revolutions at each time; by default those of steady running at the first speed.
     #[schema(min_items = 2)]
     n_rps: Option<Vec<f64>>,
     /// The state at the first time.
     start: InitialState,
 }
 
-/// A state; what is not given is 0.
+/// State of motion; a value that is not given is 0.
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialState {
@@ -50,7 +50,7 @@ pub struct InitialState {
 }
 
 impl InitialState {
-    /// As a state vector, with the rudder amidships.
+    /// Returns the state vector, with the rudder amidships.
     pub(super) fn state(&self) -> StateVector {
         let mut state = StateVector::zeros();
         for ((_, value), (_, place)) in self.channels().into_iter().zip(RECORDED) {
@@ -59,7 +59,7 @@ impl InitialState {
         state
     }
 
-    /// In the order of [`RECORDED`].
+    /// Values by channel, in the order of [`RECORDED`].
     fn channels(&self) -> [(Channel, f64); 8] {
         [
             (Channel::U, self.u_m_s),
@@ -78,7 +78,10 @@ impl InputsRequest {
     pub(super) fn follow(&self, ship: &mut Ship, most: usize) -> Result<Value> {
         let trial = self.trial(ship)?;
         let settings = ReplaySettings::default();
+        // Each recorded time ends a step, so the number of steps is at most that of both grids
+        // together.
         bounded("inputs.t_s", trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
+        // The physical range is relative to the speed at the start.
         ship.set_envelope_speed(self.start.u_m_s.hypot(self.start.v_m_s));
         let run = replay(ship, &trial, &settings)
             .map_err(|error| PredictError::invalid("inputs", error.to_string()))?;
@@ -89,9 +92,10 @@ impl InputsRequest {
         Ok(with_share(answer, ship, &run.track))
     }
 
-    /// The inputs as a trial that starts where the request says.
+    /// Returns the inputs as a trial that starts at the requested state.
     fn trial(&self, ship: &Ship) -> Result<Trial> {
         let count = self.t_s.len();
+        // Only the first value of the constant motion channels is read: it starts the simulation.
         let steady = || vec![ship.revolutions_at(self.start.u_m_s.hypot(self.start.v_m_s)); count];
         let n = self.n_rps.clone().unwrap_or_else(steady);
         for (field, values) in [("inputs.delta_rad", &self.delta_rad), ("inputs.n_rps", &n)] {
@@ -125,7 +129,7 @@ fn check_times(trial: &Trial) -> Result<()> {
             trial.t_s[at]
         ));
     }
-    // Over a gap nothing is known of the inputs, and a simulation would start anew behind it.
+    // The inputs are unknown over a gap, and a simulation would restart after it.
     match trial.segments().get(1) {
         Some(second) => refuse(format!(
             "has a gap before {} s; resample the inputs evenly",

@@ -1,4 +1,4 @@
-//! Standard manoeuvres.
+//! Predictions of standard manoeuvres.
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -24,23 +24,23 @@ pub struct ManoeuvreRequest {
     /// Turning circles, zigzags and the IMO criteria.
     #[serde(default)]
     all: bool,
-    /// Approach speed; the model's own where absent.
+    /// Approach speed; by default the model's own.
     #[schema(inline)]
     speed_m_s: Option<Positive>,
-    /// Propeller revolutions; those of the approach speed where absent.
+    /// Propeller revolutions; by default those of the approach speed.
     n_rps: Option<f64>,
     /// With `all`: confidence bands by models drawn from the posterior of a refined one.
     bands: Option<BandsRequest>,
 }
 
-/// How a posterior is sampled.
+/// Sampling of the posterior.
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BandsRequest {
-    /// Models drawn; 100 where absent.
+    /// Number of models drawn; default 100.
     #[schema(inline)]
     samples: Option<SampleCount>,
-    /// What the draws follow from; 1 where absent.
+    /// Seed of the draws; default 1.
     seed: Option<u64>,
 }
 
@@ -48,7 +48,7 @@ pub struct BandsRequest {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZigzagRequest {
-    /// Rudder angle, positive where the first execution is to starboard.
+    /// Rudder angle, positive if the first execution is to starboard.
     #[schema(inline)]
     rudder_deg: Angle,
     /// Change of heading at which the rudder is reversed.
@@ -59,6 +59,7 @@ pub struct ZigzagRequest {
 impl ManoeuvreRequest {
     pub(super) fn sail(&self, ship: &mut Ship, whose: Whose<'_>, most: usize) -> Result<Value> {
         let settings = self.settings(ship, most)?;
+        // Bands are those of the figures of the standard set.
         if self.bands.is_some() && !self.all {
             return Err(PredictError::invalid(
                 "manoeuvre.bands",
@@ -81,6 +82,7 @@ impl ManoeuvreRequest {
                     "outside": ship.leaves(&sailed.track) });
                 Ok(with_share(answer, ship, &sailed.track))
             }
+            // A failed manoeuvre of the set is a reason in its answer, not an error of the request.
             (None, None, true) => {
                 let mut sailed = serde_json::to_value(standard(ship, &settings))?;
                 if let Some(request) = self.bands {
@@ -95,8 +97,8 @@ impl ManoeuvreRequest {
         }
     }
 
-    /// The settings; they are refused where the run, of 60 lengths at most, would be out of all
-    /// proportion.
+    /// Returns the settings. A run is refused if its steps, for 60 ship lengths of travel, exceed
+    /// `most`.
     fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
         let speed = positive(
             "manoeuvre.speed_m_s",
@@ -105,9 +107,11 @@ impl ManoeuvreRequest {
         if self.n_rps.is_some_and(|n| !n.is_finite()) {
             return Err(PredictError::invalid("manoeuvre.n_rps", "must be a number"));
         }
+        // The step resolves the time of one ship length in at least 50 steps.
         let length_s = ship.lpp_m() / speed;
         let step_s = STEP_S.min(0.02 * length_s);
         bounded("manoeuvre.speed_m_s", 60.0 * length_s / step_s, most)?;
+        // The physical range is relative to the approach speed.
         ship.set_envelope_speed(speed);
         let (speed_m_s, n_rps, step_s) =
             (self.speed_m_s.map(Positive::get), self.n_rps, Some(step_s));
@@ -115,7 +119,7 @@ impl ManoeuvreRequest {
     }
 }
 
-/// The model that sails, for drawing others like it.
+/// The simulated model, from whose posterior others are drawn.
 #[derive(Clone, Copy)]
 pub(super) struct Whose<'a> {
     pub model: &'a Model,
@@ -137,6 +141,8 @@ impl BandsRequest {
                 format!("the model has no posterior to draw from; {why}"),
             )
         };
+        // Only figures are needed of the draws, whose switching times are found within a step: the
+        // default step is enough.
         let coarse = ManoeuvreSettings { step_s: None, ..*settings };
         bands(whose.model, whose.law, &coarse, whose.depth_m, sampling).ok_or_else(none)
     }

@@ -1,4 +1,5 @@
-//! Predictions: a model sails a manoeuvre, follows recorded inputs, or is under way as orders come.
+//! Predictions: simulation of a manoeuvre, of recorded inputs, over a horizon, or stepwise in a
+//! session.
 
 mod error;
 mod horizon;
@@ -24,28 +25,28 @@ use manoeuvre::Whose;
 use outside_trials::with_outside_trials;
 use sistership_request_types::{ModelName, Positive};
 
-/// What is to be simulated: a manoeuvre, recorded inputs, or orders to come.
+/// Request for a simulation: a manoeuvre, recorded inputs, or orders to come.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PredictionRequest {
     /// `ship` (its champion), `ship/number` or `ship/alias`.
     #[schema(inline)]
     pub model: ModelName,
-    /// Water depth for laws that know it, m; deep where absent.
+    /// Water depth for laws with a depth, m; deep water by default.
     #[schema(inline)]
     pub depth_m: Option<Positive>,
-    /// A standard manoeuvre; or give `inputs` or `horizon`.
+    /// A standard manoeuvre; alternative to `inputs` and `horizon`.
     pub manoeuvre: Option<ManoeuvreRequest>,
-    /// Recorded inputs; or give `manoeuvre` or `horizon`.
+    /// Recorded inputs; alternative to `manoeuvre` and `horizon`.
     pub inputs: Option<InputsRequest>,
-    /// A time from now on, with the orders to come; or give `manoeuvre` or `inputs`.
+    /// A time from now on with orders; alternative to `manoeuvre` and `inputs`.
     pub horizon: Option<HorizonRequest>,
 }
 
-/// Simulates; no track has more than `most` samples.
+/// Simulates a request; no track has more than `most` samples.
 ///
 /// # Errors
-/// Names the field of the request that is at fault, or the memory that is lacking.
+/// Returns an error that names the invalid field of the request, or the missing memory.
 pub fn predict(
     request: &PredictionRequest,
     model: &Model,
@@ -54,10 +55,12 @@ pub fn predict(
 ) -> Result<Value> {
     let mut ship =
         Ship::new(model, law).map_err(|error| PredictError::invalid("model", error.to_string()))?;
+    // A law without a depth ignores it; `uncovered` reports a depth outside the trials.
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());
     }
     let depth_m = request.depth_m.map(Positive::get);
+    // Computed for the request as a whole; the horizon has wind and current of its own.
     let uncovered = Environment { depth_m, ..Environment::default() }.uncovered(model);
     match (&request.manoeuvre, &request.inputs, &request.horizon) {
         (Some(manoeuvre), None, None) => {

@@ -1,9 +1,9 @@
-//! Wind, current and depth of a request of which the model's trials tell nothing.
+//! Wind, current and depth of a request that the model's trials do not cover.
 
 use serde_json::{Value, json};
 use sistership_model::environment::UncoveredInput;
 
-/// An answer that names them, where there are any.
+/// Adds them to an answer, if there are any.
 pub(crate) fn with_outside_trials(mut answer: Value, uncovered: &[UncoveredInput]) -> Value {
     if !uncovered.is_empty() {
         answer["outside_trials"] = json!(uncovered);

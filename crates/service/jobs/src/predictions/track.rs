@@ -1,4 +1,4 @@
-//! A simulated track: how long it may be, and its columns.
+//! Simulated tracks: their length limit and their columns.
 
 use serde_json::{Value, json};
 use sistership_simulation::state::at;
@@ -7,10 +7,10 @@ use sistership_simulation::{Ship, Trajectory};
 use crate::budget::take_now;
 use crate::predictions::error::{PredictError, Result};
 
-/// Longest step, s.
+/// Longest step of the integration, s.
 pub(super) const STEP_S: f64 = 0.1;
 
-/// A number above zero.
+/// Checks that a number is positive and finite.
 pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
     match value > 0.0 && value.is_finite() {
         true => Ok(value),
@@ -18,11 +18,11 @@ pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON
-/// values of 32 bytes, and their text of some 20 bytes each.
+/// Memory of a sample of a track until it is answered, bytes: 15 numbers simulated, 11 as JSON
+/// values of 32 bytes, and their text of about 20 bytes each.
 const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
 
-/// Takes the memory of a simulation; refuses a simulation of more steps than are allowed.
+/// Reserves the memory of a simulation; refuses more steps than are allowed.
 pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
     match steps <= most as f64 {
         true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
@@ -36,7 +36,7 @@ pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
     }
 }
 
-/// Places in the state vector by canonical column.
+/// Canonical columns with their index in the state vector.
 pub(super) const COLUMNS: [(&str, usize); 9] = [
     ("x_m", at::X),
     ("y_m", at::Y),
@@ -49,15 +49,16 @@ pub(super) const COLUMNS: [(&str, usize); 9] = [
     ("delta_rad", at::DELTA),
 ];
 
-/// An answer with what a learned branch counted for along the track, where the ship has one.
+/// Adds the share of the learned correction along the track to an answer, if the ship has one.
 pub(super) fn with_share(mut answer: Value, ship: &Ship, track: &Trajectory) -> Value {
     if let Some(share) = ship.branch_share(track) {
+        // Omitted without a learned correction.
         answer["branch_share"] = json!(share);
     }
     answer
 }
 
-/// A track by column.
+/// Returns a track column by column.
 pub(super) fn columns(track: &Trajectory) -> Value {
     let mut columns = json!({ "t_s": track.t_s, "n_rps": track.n_rps });
     for (name, index) in COLUMNS {

@@ -1,5 +1,5 @@
-//! What is known of a ship: its particulars, the vectors by which ships are similar, the metrics of
-//! its champion, and how that stands.
+//! Searchable facts of a ship: its particulars, its characteristic vectors, the metrics of its
+//! champion and the validity of that.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,22 +24,23 @@ use crate::version::VersionDocument;
 /// Vectors as they are stored: components by name, by definition.
 type Vectors = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// A ship as it was read, from which its facts follow.
+/// Ship as it was read, from which its facts are computed.
 struct Read {
     waiting: Waiting,
     category: String,
     vessel: Option<Vessel>,
     champion: Option<VersionDocument>,
-    /// How it stands.
+    /// Facts about the validity of its champion.
     standing: Vec<(String, f64)>,
 }
 
-/// The facts of ships, which are computed on all cores: manoeuvres may have to be sailed for them.
+/// Computes the facts of ships on all cores: manoeuvres may have to be simulated for them.
 pub(super) async fn of_ships(
     archive: &Archive,
     laws: &Arc<Zoo>,
     waiting: Vec<Waiting>,
 ) -> Result<Vec<ShipFacts>, StoreError> {
+    // Reading is asynchronous and in order; only the computation is parallel.
     let mut ships = Vec::with_capacity(waiting.len());
     for ship in waiting {
         ships.push(read(archive, laws, ship).await?);
@@ -51,8 +52,8 @@ pub(super) async fn of_ships(
     Ok(known.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
-/// Reads a ship; nothing where it is deleted. What does not read is told and left out: it must not
-/// keep others waiting.
+/// Reads a ship; without content if it was deleted. A ship that cannot be parsed is logged and has
+/// no facts: it must not block the others.
 async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, StoreError> {
     let nothing = |waiting: Waiting, category: String| Read {
         waiting,
@@ -61,6 +62,7 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
         champion: None,
         standing: Vec::new(),
     };
+    // A deleted ship gets an entry without facts.
     let ship = match archive.store.ships().get(&waiting.ship).await {
         Err(StoreError::NotFound { .. }) => return Ok(nothing(waiting, String::new())),
         other => other?,
@@ -73,6 +75,7 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
             return Ok(nothing(waiting, ship.category));
         }
     };
+    // Publication comes first: it may make the champion that the next line reads.
     published(archive, laws, &vessel, &ship).await?;
     let champion = champion(archive, &ship.name).await?;
     let standing = standing::facts(archive, &ship.name, champion.as_ref()).await?;
@@ -94,7 +97,8 @@ impl Read {
     }
 }
 
-/// Makes the versions that its document publishes, where whoever wrote it was stopped before that.
+/// Creates the versions that the ship's document publishes, in case the process that stored it was
+/// stopped before that.
 async fn published(
     archive: &Archive,
     laws: &Zoo,
@@ -116,11 +120,12 @@ async fn champion(archive: &Archive, ship: &str) -> Result<Option<VersionDocumen
     let version = archive.store.versions().get(ship, alias.version_number).await?;
     Ok(whole(archive, &version)
         .await
+        // A damaged champion costs its metrics, not the entry of the ship.
         .inspect_err(|error: &DeriveError| tracing::error!(%error, "a champion has no metrics"))
         .ok())
 }
 
-/// A version's document, whose model sails.
+/// Returns a version's document with the weights of its learned correction attached.
 async fn whole(archive: &Archive, version: &Version) -> Result<VersionDocument, DeriveError> {
     let mut document = document(version)?;
     archive.attach(&mut document.model).await?;
@@ -144,8 +149,8 @@ fn vectors(vessel: &Vessel) -> String {
         .unwrap_or_else(|_| "{}".to_owned())
 }
 
-/// The vector of one definition among those that are stored. The others are passed over: ships are
-/// compared by thousands.
+/// Parses the vector of one definition and skips the others, because thousands of ships are
+/// compared.
 pub(super) fn vector(stored: &str, definition: &str) -> Option<BTreeMap<String, f64>> {
     Only(definition).deserialize(&mut serde_json::Deserializer::from_str(stored)).ok()?
 }
@@ -170,6 +175,7 @@ impl<'de> Visitor<'de> for Only<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut found = None;
         while let Some(name) = map.next_key::<String>()? {
+            // Values of other definitions are skipped without allocation.
             match name == self.0 {
                 true => found = Some(map.next_value()?),
                 false => drop(map.next_value::<IgnoredAny>()?),

@@ -1,4 +1,4 @@
-//! Keeping up what ships are found by.
+//! Update of the search index of ships.
 
 use std::sync::Arc;
 
@@ -9,25 +9,25 @@ use super::facts;
 use crate::archive::Archive;
 use crate::catalogue::Catalogue;
 
-/// Ships whose facts are written at once.
+/// Number of ships whose facts are written at once.
 const AT_ONCE: i64 = 50;
-/// How often ships that keep changing are tried; then it is the next time's turn.
+/// Number of passes over ships that change meanwhile; the rest waits for the next update.
 const PASSES: usize = 3;
 
-/// Writes the facts of every ship that has changed, for a program that searches without a server.
+/// Updates the facts of every ship that has changed, for a program that searches without a server.
 ///
 /// # Errors
-/// The database does not answer.
+/// Returns an error if the database does not answer.
 pub async fn catch_up(archive: &Archive) -> Result<(), StoreError> {
     let laws = Catalogue::default().laws(&archive.store).await?;
     write_facts(archive, &laws).await
 }
 
-/// Writes the facts of every ship that has changed, again where one has changed meanwhile: the
-/// first time that its models are published makes it a champion.
+/// Updates the facts of every ship that has changed, again for one that changes meanwhile: the
+/// first publication of its models creates a champion.
 ///
 /// # Errors
-/// The database does not answer.
+/// Returns an error if the database does not answer.
 pub async fn write_facts(archive: &Archive, laws: &Arc<Zoo>) -> Result<(), StoreError> {
     for _ in 0..PASSES {
         if pass(archive, laws).await? == 0 {
@@ -37,7 +37,7 @@ pub async fn write_facts(archive: &Archive, laws: &Arc<Zoo>) -> Result<(), Store
     Ok(())
 }
 
-/// Goes through the ships that wait once, and returns how many it has left waiting.
+/// Processes the waiting ships once; returns the number that still wait.
 async fn pass(archive: &Archive, laws: &Arc<Zoo>) -> Result<usize, StoreError> {
     let (mut after, mut left) = (String::new(), 0);
     loop {
@@ -45,6 +45,7 @@ async fn pass(archive: &Archive, laws: &Arc<Zoo>) -> Result<usize, StoreError> {
         let Some(last) = waiting.last() else { return Ok(left) };
         after.clone_from(&last.ship);
         let known = facts::of_ships(archive, laws, waiting).await?;
+        // A ship that changed after it was read is not written and waits for the next pass.
         left += known.len() - archive.store.search_index().write(&known).await?;
     }
 }

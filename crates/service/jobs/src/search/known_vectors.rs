@@ -1,5 +1,5 @@
-//! Characteristic vectors in memory: ships are compared by thousands, and reading as many rows
-//! takes longer than all the rest of a page.
+//! Cache of characteristic vectors: thousands of ships are compared, and reading their rows would
+//! take most of the time of a request.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -9,24 +9,24 @@ use sistership_store::{ObjectsError, ShipSearch, ShipVectors, Store, StoreError,
 
 use super::facts;
 
-/// Ships of a category by name, with what of them is correlated.
+/// Ships of a category by name, with their normalised components.
 pub(super) type Vectors = Arc<Vec<(String, NormalisedComponents)>>;
-/// A category and the name of a definition.
+/// Category and name of a definition.
 type Key = (String, &'static str);
 
-/// The vectors that were read, each as long as no vector of its category changes.
+/// Cached vectors, each valid as long as no vector of its category changes.
 #[derive(Debug, Default)]
 pub struct KnownVectors(RwLock<BTreeMap<Key, (VectorsState, Vectors)>>);
 
 impl KnownVectors {
-    /// The vectors of a category, read anew only where one of them has changed.
+    /// Returns the vectors of a category; reads them only if one of them has changed.
     pub(super) async fn of(
         &self,
         store: &Store,
         category: &str,
         definition: Definition,
     ) -> Result<Vectors, StoreError> {
-        // Before the vectors: what changes in between is seen the next time.
+        // The state is read before the vectors: a change in between is noticed the next time.
         let state = store.ships().vectors_state(category).await?;
         let key = (category.to_owned(), definition.name());
         if let Some(known) = self.known(&key, &state) {
@@ -34,6 +34,7 @@ impl KnownVectors {
         }
         let search = ShipSearch { category: Some(category.to_owned()), ..ShipSearch::default() };
         let rows = store.ships().vectors(&search).await?;
+        // Parsing thousands of rows would block the threads that serve.
         let read = tokio::task::spawn_blocking(move || read(&rows, definition));
         let vectors = Arc::new(read.await.map_err(ObjectsError::from)?);
         let mut all = self.0.write().unwrap_or_else(PoisonError::into_inner);
@@ -41,10 +42,10 @@ impl KnownVectors {
         Ok(vectors)
     }
 
-    /// Reads those of every category that have changed, so that nobody who searches waits for it.
+    /// Reads the vectors of every category that has changed, so that no search has to wait for it.
     ///
     /// # Errors
-    /// The database does not answer.
+    /// Returns an error if the database does not answer.
     pub async fn catch_up(&self, store: &Store) -> Result<(), StoreError> {
         for category in store.ships().vector_categories().await? {
             for definition in Definition::ALL {

@@ -1,4 +1,4 @@
-//! Metrics of a ship's champion: those of the standard manoeuvres, the greater of both sides.
+//! Metrics of a ship's champion: figures of the standard manoeuvres, the greater one of both sides.
 
 use serde_json::Value;
 use sistership_model::Zoo;
@@ -27,7 +27,7 @@ const ZIGZAGS: [(&str, f64, Zigzag); 6] = [
 ];
 const INITIAL: &str = "initial_turning_m";
 
-/// The names of all metrics.
+/// Returns the names of all metrics.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     TURNS
         .iter()
@@ -36,10 +36,12 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
         .chain([INITIAL])
 }
 
-/// The metrics of a version: from its report where that has them, else sailed now. What it does
-/// not reach is left out.
+/// Returns the metrics of a version, from its report if that has them, else by simulation. A figure
+/// that a manoeuvre does not reach is left out.
 pub(super) fn metrics(version: &VersionDocument, laws: &Zoo) -> Vec<(&'static str, f64)> {
     reported(&version.report)
+        // A published model has no report; its manoeuvres are simulated once, when the index is
+        // updated.
         .or_else(|| sailed(version, laws))
         .map_or_else(Vec::new, |all| of(&all))
 }
@@ -56,6 +58,7 @@ fn sailed(version: &VersionDocument, laws: &Zoo) -> Option<StandardManoeuvres> {
 fn of(all: &StandardManoeuvres) -> Vec<(&'static str, f64)> {
     let turns = TURNS.iter().map(|(name, of)| (*name, greatest(all.turns.iter().map(of))));
     let zigzag = |angle: f64, of: Zigzag| {
+        // The angle is exact: it is one of the standard set.
         greatest(all.zigzags.iter().filter(|zigzag| zigzag.switch_deg == angle).map(of))
     };
     let zigzags = ZIGZAGS.iter().map(|(name, angle, of)| (*name, zigzag(*angle, *of)));
@@ -65,7 +68,7 @@ fn of(all: &StandardManoeuvres) -> Vec<(&'static str, f64)> {
         .collect()
 }
 
-/// The greatest of several, unknown as soon as one is unknown.
+/// Returns the largest value; `None` if one of them is unknown.
 fn greatest(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Option<Vec<f64>> = values.collect();
     values?.into_iter().reduce(f64::max)

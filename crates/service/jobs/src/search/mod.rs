@@ -1,4 +1,5 @@
-//! Finding ships: by category, tag, particulars, metrics of the champion, and similarity to a ship.
+//! Search for ships: by category, tag, particulars, metrics of the champion, and similarity to a
+//! ship.
 
 mod facts;
 mod index;
@@ -19,11 +20,11 @@ use sistership_store::{List, ShipKey};
 use crate::archive::Archive;
 use crate::error::DeriveError;
 
-/// The ships that a search finds. With `similar_to` their `value` is the correlation of the
+/// Returns the ships that match a search. With `similar_to` their `value` is the correlation of the
 /// vectors.
 ///
 /// # Errors
-/// There is no such ship to be similar to, or the store does not answer.
+/// Returns an error if the ship of `similar_to` does not exist, or if the store does not answer.
 pub async fn ships(
     archive: &Archive,
     known: &KnownVectors,

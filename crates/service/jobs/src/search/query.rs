@@ -1,4 +1,4 @@
-//! What is asked of ships, and how it is written.
+//! Search criteria for ships, and their text form.
 
 use std::sync::LazyLock;
 
@@ -9,52 +9,52 @@ use sistership_store::{FactRange, ShipSearch};
 
 use super::metrics::names;
 
-/// What is asked of ships; everything must hold.
+/// Search criteria for ships; all must be satisfied.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Search {
-    /// Category, tag and ranges; the first range orders what is found.
+    /// Category, tag and ranges; the first range orders the result.
     pub ships: ShipSearch,
-    /// Similarity to this ship orders what is found, and only ships of its category are.
+    /// Ship whose similarity orders the result, which has only ships of its category.
     pub similar_to: Option<String>,
     /// The definition of the vector by which ships are similar.
     pub vector: Option<Definition>,
 }
 
-/// A fault of a range: what would be right.
+/// Message about an invalid range, with the correct form.
 pub type RangeFault = String;
 
-/// Reads `lpp_m:100..200`, in SI; either end may be left out.
+/// Parses `lpp_m:100..200`, in SI; either end may be left out.
 ///
 /// # Errors
-/// Says what would be right, with the names that there are.
+/// Returns the correct form, with the known names.
 pub fn particular(text: &str) -> Result<FactRange, RangeFault> {
     range(text, "particular", &particulars::names().collect::<Vec<_>>())
 }
 
-/// Reads `turn_35.tactical_diameter_m:..900`.
+/// Parses `turn_35.tactical_diameter_m:..900`.
 ///
 /// # Errors
-/// As [`particular`].
+/// Same as [`particular`].
 pub fn metric(text: &str) -> Result<FactRange, RangeFault> {
     range(text, "metric", &names().collect::<Vec<_>>())
 }
 
-/// The names of particulars by which ships are found.
+/// Returns the names of particulars of a search.
 pub fn particulars() -> impl Iterator<Item = &'static str> {
     particulars::names()
 }
 
-/// The names of metrics by which ships are found.
+/// Returns the names of metrics of a search.
 pub fn metrics() -> impl Iterator<Item = &'static str> {
     names()
 }
 
-/// An end of a range.
+/// Regular expression of an end of a range.
 const END: &str = r"[+-]?[0-9]{1,15}(\.[0-9]{1,15})?(e[+-]?[0-9]{1,2})?";
 static ENDS: LazyLock<Option<Regex>> =
     LazyLock::new(|| Regex::new(&format!(r"^({END})?\.\.({END})?$")).ok());
 
-/// What a range of one of these names looks like, as a regular expression.
+/// Returns the regular expression of a range of one of these names.
 pub fn pattern(names: impl Iterator<Item = &'static str>) -> String {
     let names = names.collect::<Vec<_>>().join("|").replace('.', "\\.");
     format!(r"^({names}):({END})?\.\.({END})?$")
@@ -73,12 +73,14 @@ fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault
     }
     let (min, max) = ends
         .split_once("..")
+        // The same expression as in the API description, so that both accept the same text.
         .filter(|_| ENDS.as_ref().is_some_and(|form| form.is_match(ends)))
         .ok_or_else(form)?;
     let end = |text: &str, open: f64| match text {
         "" => Ok(open),
         number => number.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(form),
     };
+    // An open end is the largest finite number, because JSON and SQL have no infinity.
     let (min, max) = (end(min, f64::MIN)?, end(max, f64::MAX)?);
     match min <= max {
         true => Ok(FactRange { fact: fact(kind, name), min, max }),
@@ -86,7 +88,7 @@ fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault
     }
 }
 
-/// The name under which the store keeps a particular or a metric.
+/// Returns the name of a particular or a metric in the store.
 pub(super) fn fact(kind: &str, name: &str) -> String {
     format!("{kind} {name}")
 }

@@ -1,5 +1,4 @@
-//! Ships by their similarity to a ship: the correlation of characteristic vectors, within a
-//! category.
+//! Similarity search: the correlation of characteristic vectors, within a category.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -15,7 +14,7 @@ use super::query::Search;
 use crate::archive::{Archive, vessel};
 use crate::error::DeriveError;
 
-/// Ships that a search finds, the most similar first, without the ship itself.
+/// Returns the ships that match a search, most similar first, without the ship itself.
 pub(super) async fn ships(
     archive: &Archive,
     known: &KnownVectors,
@@ -27,11 +26,13 @@ pub(super) async fn ships(
     let ship = archive.store.ships().get(ship).await?;
     let target = vessel(&ship.name, &ship.document)?;
     let definition = search.vector.unwrap_or_else(|| definition_for(&target));
+    // Fast path: without further criteria the cached vectors of the category are enough.
     if search.ships.tag.is_none() && search.ships.ranges.is_empty() {
         let category = search.ships.category.as_ref().unwrap_or(&target.file.category);
         let vectors = known.of(&archive.store, category, definition).await?;
         return Ok(of_category(archive, &vectors, &target, definition, page).await?);
     }
+    // With tag or ranges the database selects, and the rows bring their vectors.
     let mut found = ranked(archive, &search.ships, &target, definition).await?;
     if let Some(after) = &page.after {
         let after = (after.0, after.1.as_str());
@@ -40,7 +41,7 @@ pub(super) async fn ships(
     Ok(page.of(found, key))
 }
 
-/// A page of all ships of a category, the most similar first.
+/// Returns a page of all ships of a category, most similar first.
 async fn of_category(
     archive: &Archive,
     vectors: &[(String, NormalisedComponents)],
@@ -56,6 +57,7 @@ async fn of_category(
     }
     let wanted = usize::try_from(page.limit).unwrap_or(0);
     let List { items, next } = page.of(keys, |key| (key.0, key.1.to_owned()));
+    // Only the rows of this page are read; the ranking itself needs names and vectors.
     let names: Vec<String> = items.iter().take(wanted).map(|key| key.1.to_owned()).collect();
     let mut heads: BTreeMap<String, FoundShip> = BTreeMap::new();
     for head in archive.store.ships().named(&names).await? {
@@ -67,7 +69,7 @@ async fn of_category(
     Ok(List { items: items.into_iter().filter_map(found).collect(), next })
 }
 
-/// Correlation and name of each, the most similar first, without the ship itself.
+/// Returns correlation and name of each ship, most similar first, without the ship itself.
 fn keys<'a>(
     all: &'a [(String, NormalisedComponents)],
     name: &str,
@@ -81,7 +83,7 @@ fn keys<'a>(
     found
 }
 
-/// The ships of a ship's category that are most similar to it, at most `count`, in no order.
+/// Returns the ships of a category that are most similar to a target, at most `count`, in no order.
 pub async fn nearest(
     archive: &Archive,
     known: &KnownVectors,
@@ -94,7 +96,7 @@ pub async fn nearest(
     archive.store.ships().named(&first(&vectors, target.name(), &components, count)).await
 }
 
-/// The names of the most similar, without the ship itself.
+/// Returns the names of the most similar ships, without the ship itself.
 fn first(
     all: &[(String, NormalisedComponents)],
     name: &str,
@@ -111,6 +113,7 @@ async fn ranked(
     target: &Vessel,
     definition: Definition,
 ) -> Result<Vec<FoundShip>, StoreError> {
+    // Vectors of different categories are not comparable.
     let category = search.category.clone().or_else(|| Some(target.file.category.clone()));
     let all = archive.store.ships().vectors(&ShipSearch { category, ..search.clone() }).await?;
     let name = target.name().to_owned();
@@ -119,7 +122,7 @@ async fn ranked(
     Ok(ranking.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
-/// Those that share enough components with the target to be compared.
+/// Ranks the ships that share enough components with the target to be compared.
 fn rank(all: Vec<ShipVectors>, name: &str, target: &CharacteristicVector) -> Vec<FoundShip> {
     let (definition, components) = (target.definition, target.components());
     let correlated = |ship: ShipVectors| {
@@ -138,12 +141,12 @@ fn key(ship: &FoundShip) -> ShipKey {
     (ship.value, ship.name.clone())
 }
 
-/// The key, borrowed: there are as many comparisons as ships, times a dozen.
+/// Borrowed key: sorting compares it many times for each ship.
 fn place(ship: &FoundShip) -> (Option<f64>, &str) {
     (ship.value, &ship.name)
 }
 
-/// Falling by value, then rising by name.
+/// Order by decreasing value, then by name.
 fn order(a: (Option<f64>, &str), b: (Option<f64>, &str)) -> Ordering {
     let value = |value: Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
     value(b.0).total_cmp(&value(a.0)).then_with(|| a.1.cmp(b.1))

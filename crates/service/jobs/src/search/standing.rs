@@ -1,4 +1,4 @@
-//! Which ships somebody should look at first, as facts by which they are listed.
+//! Priority of ships for attention, as facts by which they are listed.
 
 use serde_json::Value;
 use sistership_store::{FactRange, StoreError};
@@ -8,36 +8,35 @@ use crate::condition::{Condition, Standing};
 use crate::fleet::left_of_newest;
 use crate::version::VersionDocument;
 
-/// Orders ships, the one that most needs somebody first: its class, and within it the larger error
-/// first.
+/// Fact that orders ships by urgency: by class, and within a class by decreasing error.
 pub const ORDER: &str = "standing order";
-/// The error of a ship's champion on manoeuvres left out, see [`error`].
+/// Fact with the error of a ship's champion on held-out manoeuvres.
 pub const ERROR: &str = "standing error";
 
-/// What a champion leaves of the newest trials of its ship, the oldest of them first: facts whose
-/// names begin so, in their order.
+/// Prefix of the facts with the unexplained force of a champion on the newest trials of its ship,
+/// oldest first.
 pub const LEFT: &str = "standing left of trial ";
-/// Of so many trials, at most.
+/// Largest number of these trials.
 const TRIALS: usize = 24;
 
-/// How a ship stands, the worst first.
+/// Urgency class of a ship, most urgent first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Class {
-    /// A diagnosis says that its champion lacks something.
+    /// A diagnosis found that something is missing from its champion.
     DoesNotHold,
-    /// It has a champion that no diagnosis speaks of.
+    /// Its champion was never diagnosed.
     Unknown,
     /// It has no model yet.
     NoModel,
-    /// The residual of its champion is what the noise predicts.
+    /// The residual of its champion is explained by the measurement noise.
     Holds,
 }
 
 impl Class {
-    /// Every class, the worst first.
+    /// Every class, most urgent first.
     pub const ALL: [Self; 4] = [Self::DoesNotHold, Self::Unknown, Self::NoModel, Self::Holds];
 
-    /// Of a ship in this condition.
+    /// Returns the class of a ship in this condition.
     pub fn of(condition: &Condition) -> Self {
         match (condition.model, condition.version) {
             (Standing::DoesNotHold, _) => Self::DoesNotHold,
@@ -47,7 +46,7 @@ impl Class {
         }
     }
 
-    /// As addresses have it.
+    /// Returns its name in URLs.
     pub fn name(self) -> &'static str {
         match self {
             Self::DoesNotHold => "does-not-hold",
@@ -57,39 +56,40 @@ impl Class {
         }
     }
 
-    /// The class of this name.
+    /// Returns the class with this name.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|class| class.name() == name)
     }
 
-    /// The range that finds the ships of this class, in their order.
+    /// Returns the range of the ships of this class, in their order.
     pub fn range(self) -> FactRange {
         let first = f64::from(self as u8);
         FactRange { fact: ORDER.to_owned(), min: first, max: first + WIDTH }
     }
 
-    /// The range that finds the ships of every class, in their order.
+    /// Returns the range of the ships of all classes, in their order.
     pub fn every() -> FactRange {
         FactRange { fact: ORDER.to_owned(), min: 0.0, max: Self::ALL.len() as f64 }
     }
 }
 
-/// How much of the distance between two classes the errors take.
+/// Part of the distance between two classes that the errors use.
 const WIDTH: f64 = 0.999;
 
 fn order(class: Class, error: Option<f64>) -> f64 {
+    // The offset falls with the error: within a class the largest error comes first.
     f64::from(class as u8) + WIDTH / (1.0 + error.unwrap_or(0.0).max(0.0))
 }
 
-/// The error of a refined model on manoeuvres left out, as its report has it: the mean squared
-/// error of what was simulated, by the variance of what was measured.
+/// Returns the error of a refined model on held-out manoeuvres from its report: the mean squared
+/// error of the simulation divided by the variance of the measurement.
 pub fn error(version: &VersionDocument) -> Option<f64> {
     let options = version.report["options"].as_array()?;
     let chosen = options.iter().find(|step| step["chosen"] == Value::Bool(true))?;
     chosen["error"].as_f64().filter(|error| error.is_finite())
 }
 
-/// The facts of a ship.
+/// Computes the facts of a ship.
 pub(super) async fn facts(
     archive: &Archive,
     ship: &str,
@@ -107,7 +107,7 @@ pub(super) async fn facts(
     Ok(facts.chain(left).collect())
 }
 
-/// What cannot be told of trials is told to whoever runs the server, and left out.
+/// Returns the unexplained forces on the newest trials; an error is logged and gives none.
 async fn left(archive: &Archive, champion: &VersionDocument) -> Vec<f64> {
     let left = left_of_newest(archive, champion, TRIALS).await;
     left.unwrap_or_else(|error| {

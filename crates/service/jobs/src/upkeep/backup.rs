@@ -1,4 +1,4 @@
-//! A copy of an archive, and an archive made of it again.
+//! Backup and restoration of an archive.
 
 use std::path::Path;
 
@@ -6,25 +6,26 @@ use sistership_store::{BackupManifest, Objects, ObjectsPlace, Result, Store};
 
 use crate::archive::Archive;
 
-/// Copies an archive into a folder while others write, see [`Store::backup`].
+/// Copies an archive into a folder while other processes write.
 ///
 /// # Errors
-/// The folder is not empty, or the database, the object store or the folder cannot be used.
+/// Returns an error if the folder is not empty, or if the database, the object store or the folder
+/// cannot be used.
 pub async fn backup(archive: &Archive, folder: &Path) -> Result<BackupManifest> {
     archive.store.backup(&archive.objects, folder).await
 }
 
-/// Makes an archive of a backup, in an empty place, see [`Store::restore`].
+/// Restores an archive from a backup, in an empty place.
 ///
 /// # Errors
-/// The place is not empty, the backup is damaged or of another kind of database, or something
-/// cannot be written.
+/// Returns an error if the place is not empty, if the backup is damaged or of another kind of
+/// database, or if something cannot be written.
 pub async fn restore(
     folder: &Path,
     database_url: &str,
     samples: &ObjectsPlace,
 ) -> Result<BackupManifest> {
-    // Before the data folder is made: a backup that does not read leaves nothing behind.
+    // Before the data folder is created: a backup that cannot be read leaves nothing behind.
     BackupManifest::read(folder)?;
     Store::restore(folder, database_url, &Objects::at(samples)?).await
 }

@@ -1,4 +1,4 @@
-//! Documents: their hashes, and what they name.
+//! Check of documents: their hashes, and the rows and objects that they name.
 
 use serde_json::Value;
 use sistership_model::version::sha256;
@@ -13,6 +13,7 @@ use crate::version::VersionDocument;
 pub(super) async fn laws(archive: &Archive, findings: &mut Findings) -> Result<()> {
     let mut page = Page::first(ROWS);
     loop {
+        // Page by page: an archive may not fit into memory.
         let laws = archive.store.laws().list(&page).await?;
         for law in laws.items {
             findings.checked.laws += 1;
@@ -53,6 +54,7 @@ pub(super) async fn versions(archive: &Archive, findings: &mut Findings) -> Resu
 async fn version(archive: &Archive, version: &Version, findings: &mut Findings) -> Result<()> {
     let place = format!("version {}/{}", version.head.model, version.head.number);
     hash("version-hash", place.clone(), &version.document, &version.head.sha256, findings);
+    // A damaged document is a finding; the check continues with the next version.
     match document(version) {
         Ok(document) => recipe(archive, version, &document, &place, findings).await,
         Err(error) => {
@@ -62,8 +64,8 @@ async fn version(archive: &Archive, version: &Version, findings: &mut Findings) 
     }
 }
 
-/// Everything that a recipe names must be there with the hash that it names, but for trials, whose
-/// objects are looked at where all objects are.
+/// Checks that everything that a recipe names exists with the hash that it names. The bytes of
+/// trials are checked with the objects.
 async fn recipe(
     archive: &Archive,
     version: &Version,
@@ -72,6 +74,7 @@ async fn recipe(
     findings: &mut Findings,
 ) -> Result<()> {
     let recipe = &document.recipe;
+    // The row could point to the document of another ship.
     if document.ship != version.head.model {
         findings.add(
             "version-document",
@@ -98,6 +101,8 @@ async fn recipe(
         told("version-prior", place, archive.prior(prior).await.map(drop), findings)?;
     }
     weights(archive, document, place, findings).await?;
+    // Only the presence: reading the samples of every version would repeat the check of the
+    // objects.
     for trial in recipe.trials() {
         if !there(&archive.objects, &trial.sha256).await? {
             let message =
@@ -108,14 +113,15 @@ async fn recipe(
     Ok(())
 }
 
-/// The weights of a learned branch must be there, and the version's row must refer to them, or they
-/// would be removed as garbage.
+/// Checks that the weights of a learned correction exist and that the version's row refers to them;
+/// otherwise they would be removed as garbage.
 async fn weights(
     archive: &Archive,
     document: &VersionDocument,
     place: &str,
     findings: &mut Findings,
 ) -> Result<()> {
+    // The row has the key, too, because garbage collection asks the database and not the documents.
     let Some(branch) = &document.model.branch else { return Ok(()) };
     let key = &branch.weights_sha256;
     let mut add = |message: String| findings.add("version-weights", place.to_owned(), message);
@@ -140,8 +146,9 @@ pub(super) async fn jobs(archive: &Archive, findings: &mut Findings) -> Result<(
     }
 }
 
-/// What a job's result names.
+/// Checks the version and the report that a job's result names.
 async fn job(archive: &Archive, job: &Job, findings: &mut Findings) -> Result<()> {
+    // Jobs that are queued, running or failed have no result.
     let Some(result) = &job.result else { return Ok(()) };
     let place = format!("job {}", job.id);
     let Ok(result) = serde_json::from_str::<Value>(result) else {
@@ -187,7 +194,7 @@ pub(super) async fn diagnoses(archive: &Archive, findings: &mut Findings) -> Res
     }
 }
 
-/// The trials of a diagnosis, deleted or not.
+/// Checks that the trials of a diagnosis exist or existed.
 async fn diagnosed(
     archive: &Archive,
     trials: &[String],
@@ -195,6 +202,7 @@ async fn diagnosed(
     findings: &mut Findings,
 ) -> Result<()> {
     for trial in trials {
+        // Deleted trials keep their row as a tombstone.
         if !archive.store.trials().was(trial).await? {
             findings.add(
                 "diagnosis-trials",
@@ -223,7 +231,7 @@ fn hash(
     }
 }
 
-/// Notes what is wrong with what was looked for.
+/// Records a failed lookup as a finding; returns the error if the store itself did not answer.
 fn told(
     check: &'static str,
     place: &str,

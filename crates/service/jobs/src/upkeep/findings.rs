@@ -1,4 +1,4 @@
-//! What a check of an archive looked at and found.
+//! Findings of a check of an archive.
 
 use serde::Serialize;
 use sistership_store::Fault;
@@ -6,13 +6,13 @@ use sistership_store::Fault;
 /// Objects that nothing refers to.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Unreferred {
-    /// How many.
+    /// Number of objects.
     pub objects: usize,
-    /// Their size.
+    /// Total size, bytes.
     pub bytes: u64,
 }
 
-/// What was looked at.
+/// Numbers of items that were checked.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Checked {
     /// Laws, by their hash.
@@ -23,7 +23,7 @@ pub struct Checked {
     pub versions: usize,
     /// Trials, by their objects.
     pub trials: usize,
-    /// Jobs, by what came of them.
+    /// Jobs, by their results.
     pub jobs: usize,
     /// Diagnoses, by their trials.
     pub diagnoses: usize,
@@ -33,19 +33,18 @@ pub struct Checked {
     pub audit: usize,
 }
 
-/// What was found.
+/// Findings of a check.
 #[derive(Debug, Default, Clone, PartialEq, Eq, Serialize)]
 pub struct Findings {
-    /// Whether there are no faults.
+    /// True if there are no faults.
     pub clean: bool,
     /// The faults.
     pub faults: Vec<Fault>,
-    /// What was looked at.
+    /// Numbers of items that were checked.
     pub checked: Checked,
     /// Objects that no trial and no version refers to. They are no fault: `gc` removes them.
     pub unreferred: Unreferred,
-    /// Puts that are under way or never ended. They are no fault either: `gc` removes them once
-    /// they are old.
+    /// Uploads that are in progress or were interrupted. They are no fault: `gc` removes old ones.
     pub unfinished: Unreferred,
 }
 

@@ -1,4 +1,4 @@
-//! Every hash, and every reference between rows, documents and objects.
+//! Check of all hashes, and of all references between rows, documents and objects.
 
 use sistership_store::Result;
 
@@ -6,10 +6,11 @@ use super::findings::Findings;
 use super::{documents, objects};
 use crate::archive::Archive;
 
-/// Checks all of an archive. It changes nothing, and others may write meanwhile.
+/// Checks a whole archive. It changes nothing, and other processes may write at the same time.
 ///
 /// # Errors
-/// The database or the object store does not answer; what they hold is told as faults.
+/// Returns an error if the database or the object store does not answer; faults of their content
+/// are findings.
 pub async fn fsck(archive: &Archive) -> Result<Findings> {
     let mut findings =
         Findings { faults: archive.store.row_faults().await?, ..Findings::default() };

@@ -1,4 +1,4 @@
-//! Removing objects that nobody needs.
+//! Garbage collection of objects.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -10,31 +10,32 @@ use sistership_store::{ObjectHead, ObjectName, Page, Result};
 use super::reading::ROWS;
 use crate::archive::{Archive, document};
 
-/// Keys looked at in one transaction, which keeps uploads waiting.
+/// Number of keys in one transaction, during which uploads wait.
 const AT_ONCE: usize = 100;
-/// What was last written longer ago than this is not being put any more: an hour.
+/// Time after which an upload that has not been written to counts as interrupted: one hour.
 const LONGEST_PUT_US: i64 = 3_600_000_000;
 
-/// What was removed, or would have been.
+/// Objects that were removed, or would be.
 #[derive(Debug, Default, Clone, PartialEq, Eq, Serialize)]
 pub struct Collected {
-    /// Whether everything was left in its place.
+    /// True if nothing was removed.
     pub dry_run: bool,
     /// The keys.
     pub removed: Vec<String>,
-    /// Files of puts that never ended.
+    /// Files of interrupted uploads.
     pub unfinished: Vec<String>,
-    /// The size of both.
+    /// Total size of both, bytes.
     pub bytes: u64,
-    /// Objects that were looked at.
+    /// Number of objects that were examined.
     pub objects: usize,
 }
 
-/// Removes the objects that no trial and no version refers to and that were put longer than `grace`
-/// ago. Others may write meanwhile.
+/// Removes the objects that no trial and no version refers to and that were stored longer than
+/// `grace` ago. Other processes may write at the same time.
 ///
 /// # Errors
-/// The database or the object store does not answer; what has been removed by then is gone.
+/// Returns an error if the database or the object store does not answer; objects removed before
+/// that stay removed.
 pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Collected> {
     let named = named(archive).await?;
     let before_us =
@@ -44,10 +45,13 @@ pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Col
     let mut all = archive.objects.list();
     while let Some(head) = all.try_next().await? {
         collected.objects += 1;
+        // Only candidates are collected, not the whole list of objects.
         old.extend(candidate(head, before_us, &named));
     }
     for some in old.chunks(AT_ONCE) {
         let keys: Vec<String> = some.iter().map(|(key, _)| key.clone()).collect();
+        // References are checked again in the transaction that removes: a trial may have been added
+        // since the objects were listed.
         let removed = match dry_run {
             true => archive.store.unreferred(&keys).await?,
             false => archive.store.remove_unreferred(&archive.objects, &keys).await?,
@@ -63,8 +67,9 @@ pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Col
     Ok(collected)
 }
 
-/// Removes what puts have left that never ended. No row can refer to it.
+/// Removes the files of interrupted uploads. No row can refer to them.
 async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected) -> Result<()> {
+    // Even with a grace of zero an upload in progress is kept.
     let before_us = before_us.min(archive.store.now_us() - LONGEST_PUT_US);
     for staged in
         archive.objects.staged().await?.into_iter().filter(|staged| staged.modified_us < before_us)
@@ -78,8 +83,8 @@ async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected
     Ok(())
 }
 
-/// Key and size of an object that is old enough and that no version names. What is not named by a
-/// hash is not ours.
+/// Returns key and size of an object that is old enough and that no version names. A file that is
+/// not named by a hash was not written by the store.
 fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Option<(String, u64)> {
     match head.name {
         ObjectName::Key(key) if head.modified_us < before_us && !named.contains(&key) => {
@@ -89,14 +94,14 @@ fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Optio
     }
 }
 
-/// The samples and weights that versions name. Trials have rows for samples; where such a row is
-/// lost, its samples must not go as well.
+/// Returns the keys of samples and weights that versions name. Trials have rows for samples; if
+/// such a row is lost, its samples must not be removed.
 async fn named(archive: &Archive) -> Result<HashSet<String>> {
     let (mut named, mut page) = (HashSet::new(), Page::first(ROWS));
     loop {
         let versions = archive.store.versions().all(&page).await?;
         for version in &versions.items {
-            // What a damaged document named cannot be known; `fsck` tells of it.
+            // The references of a damaged document are unknown; `fsck` reports it.
             let Ok(document) = document(version) else { continue };
             named.extend(document.recipe.trials().iter().map(|trial| trial.sha256.clone()));
             named.extend(document.model.branch.map(|branch| branch.weights_sha256));

@@ -1,4 +1,4 @@
-//! Looking after an archive: whether all of it is there and unharmed, and what of it nobody needs.
+//! Maintenance of an archive: integrity check, garbage collection, backup.
 
 mod backup;
 mod documents;

@@ -1,4 +1,4 @@
-//! Objects: the bytes of each, and the trials and versions that refer to them.
+//! Check of objects: the bytes of each, and the trials and versions that refer to them.
 
 use std::collections::HashMap;
 
@@ -9,8 +9,8 @@ use super::findings::{Findings, Unreferred};
 use super::reading::{ROWS, store_fault, there};
 use crate::archive::Archive;
 
-/// Reads every object, then looks for the object of every trial. Objects come before rows, so that
-/// a trial which is put in meanwhile has its object, though perhaps not among those read.
+/// Reads every object, then checks the object of every trial. Objects come before rows: a trial
+/// that is added meanwhile has its object, though perhaps not among those that were read.
 pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<()> {
     let mut objects = HashMap::new();
     let mut all = archive.objects.list();
@@ -29,7 +29,7 @@ pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<
     Ok(())
 }
 
-/// The key of an object, after a look at its bytes; none where it has none.
+/// Checks the bytes of an object; returns its key, `None` if its name is no key.
 async fn object(
     archive: &Archive,
     head: &ObjectHead,
@@ -45,8 +45,8 @@ async fn object(
             Ok(None)
         }
         ObjectName::Key(key) => {
-            // One that is gone by now was removed as garbage; where a trial needs it, that is told
-            // with the trial.
+            // An object that is gone by now was removed as garbage; if a trial needs it, that is
+            // reported with the trial.
             match archive.objects.get(key).await {
                 Ok(_) | Err(sistership_store::StoreError::NotFound { .. }) => {}
                 Err(error) => {
@@ -58,8 +58,8 @@ async fn object(
     }
 }
 
-/// Takes the weights of learned branches out of `objects`; where they are missing, that is told
-/// with the version.
+/// Removes the weights of learned corrections from `objects`; missing ones are reported with their
+/// version.
 async fn weights(archive: &Archive, objects: &mut HashMap<String, u64>) -> Result<()> {
     let mut page = Page::first(ROWS);
     loop {
@@ -72,7 +72,7 @@ async fn weights(archive: &Archive, objects: &mut HashMap<String, u64>) -> Resul
     }
 }
 
-/// Takes the objects that trials refer to out of `objects`.
+/// Removes the objects of trials from `objects`, and reports missing ones.
 async fn trials(
     archive: &Archive,
     objects: &mut HashMap<String, u64>,
@@ -83,6 +83,8 @@ async fn trials(
         let trials = archive.store.trials().all(&page).await?;
         for trial in trials.items {
             findings.checked.trials += 1;
+            // Asked again: the object may have been stored after the list was read, or two trials
+            // share it.
             if objects.remove(&trial.object_key).is_none()
                 && !there(&archive.objects, &trial.object_key).await?
             {

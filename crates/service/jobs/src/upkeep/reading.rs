@@ -1,22 +1,22 @@
-//! Looking for something: whether it is there, and what of it is a fault and not an error.
+//! Lookups of the checks: presence of objects, and the distinction of faults and errors.
 
 use sistership_store::{Objects, StoreError};
 
 use crate::error::DeriveError;
 
-/// Rows read at a time: documents may be long.
+/// Number of rows read at a time: documents may be long.
 pub(super) const ROWS: i64 = 100;
 
-/// Whether there is an object of this key; of what is no key there is none.
+/// Returns true if there is an object with this key; false for an invalid key.
 pub(super) async fn there(objects: &Objects, key: &str) -> Result<bool, StoreError> {
     match objects.exists(key).await {
+        // A damaged document may name anything as a key.
         Err(StoreError::Invalid { .. }) => Ok(false),
         other => other,
     }
 }
 
-/// What is wrong with something that was looked for, as words; where the store itself did not
-/// answer, that is the error.
+/// Returns the fault of a failed lookup in words, or the error if the store itself did not answer.
 pub(super) fn fault(error: DeriveError) -> Result<String, StoreError> {
     match error {
         DeriveError::Store(error) => store_fault(error),
@@ -24,7 +24,7 @@ pub(super) fn fault(error: DeriveError) -> Result<String, StoreError> {
     }
 }
 
-/// The same of an error of the store itself.
+/// Returns the fault of an error of the store in words, or the error if it did not answer.
 pub(super) fn store_fault(error: StoreError) -> Result<String, StoreError> {
     match error {
         StoreError::NotFound { .. } | StoreError::Invalid { .. } => Ok(error.to_string()),

@@ -1,17 +1,18 @@
-//! Where a webhook may be: a server that sends requests where it is told to must not be made to ask
-//! its own network (server-side request forgery; OWASP 2021, A10).
+//! Check of the addresses of webhooks: a server that sends requests to given addresses must not be
+//! made to send them into its own network (server-side request forgery; OWASP 2021, A10).
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
 use reqwest::Url;
 
-/// Reads the address of a webhook: https, or http as well where private networks are allowed;
-/// without a name and password.
+/// Parses the URL of a webhook: https, or also http if private networks are allowed; without name
+/// and password.
 ///
 /// # Errors
-/// Says what is wrong with it.
+/// Returns a message that says what is wrong with it.
 pub fn check_url(text: &str, private: bool) -> Result<Url, String> {
     let url = Url::parse(text).map_err(|error| format!("is no address of the web: {error}"))?;
+    // Plain http is for receivers in the same network only.
     let schemes: &[&str] = if private { &["https", "http"] } else { &["https"] };
     if !schemes.contains(&url.scheme()) {
         return Err(format!("must begin with {}://", schemes.join(":// or ")));
@@ -22,6 +23,7 @@ pub fn check_url(text: &str, private: bool) -> Result<Url, String> {
     if url.host_str().is_none_or(str::is_empty) {
         return Err("names no host".to_owned());
     }
+    // A host name is checked later, by the addresses that it resolves to at each delivery.
     match host_address(&url) {
         Some(address) if !private && !is_public(address) => {
             Err(format!("{address} is not a public address"))
@@ -34,8 +36,8 @@ fn host_address(url: &Url) -> Option<IpAddr> {
     url.host_str()?.trim_matches(['[', ']']).parse().ok()
 }
 
-/// Whether an address is one of the public network, by the registries of special addresses (RFC
-/// 6890 and IANA's lists for IPv4 and IPv6).
+/// Returns true if an address is public by the registries of special addresses (RFC 6890 and IANA's
+/// lists for IPv4 and IPv6).
 pub(super) fn is_public(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(address) => is_public_v4(address),
@@ -57,7 +59,8 @@ fn is_public_v4(address: Ipv4Addr) -> bool {
     !special
 }
 
-/// Global unicast is 2000::/3; what carries an IPv4 address within is as public as that.
+/// Returns true for global unicast, 2000::/3, without special ranges. An address that embeds an
+/// IPv4 address is public if that is.
 fn is_public_v6(address: Ipv6Addr) -> bool {
     let segments = address.segments();
     if let Some(inside) = embedded(address) {
@@ -69,7 +72,8 @@ fn is_public_v6(address: Ipv6Addr) -> bool {
     segments[0] & 0xe000 == 0x2000 && !documentation && !protocols
 }
 
-/// IPv4 within IPv6: mapped (RFC 4291), translated (RFC 6052), 6to4 (RFC 3056).
+/// Returns the IPv4 address embedded in an IPv6 address: mapped (RFC 4291), translated (RFC 6052),
+/// 6to4 (RFC 3056).
 fn embedded(address: Ipv6Addr) -> Option<Ipv4Addr> {
     let s = address.segments();
     let v4 = |high: u16, low: u16| Ipv4Addr::from((u32::from(high) << 16) | u32::from(low));

@@ -1,5 +1,5 @@
-//! Telling webhooks what has happened: each delivery is sent, signed, until it arrives, less and
-//! less often. It knows no route.
+//! Delivery of events to webhooks: each delivery is signed and sent until it arrives, at growing
+//! intervals. It is independent of the routes of the API.
 
 mod addresses;
 mod sent;
@@ -11,35 +11,37 @@ use sistership_store::{Delivery, Store, Webhook};
 
 pub use addresses::check_url;
 
-/// How webhooks are told.
+/// Settings of the deliveries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Telling {
-    /// Whether receivers may be within private networks, and speak plain http.
+    /// True if receivers may be in private networks and use plain http.
     pub private: bool,
-    /// How often it is looked whether something is due.
+    /// Interval at which the store is polled for due deliveries.
     pub poll: Duration,
 }
 
-/// Deliveries that are sent side by side.
+/// Number of deliveries that are sent concurrently.
 const TOGETHER: usize = 8;
-/// For how long one that was taken is not taken by another process: longer than it is waited for.
+/// Lease of a delivery: no other process sends it in this time, which is longer than an attempt may
+/// take.
 const TAKEN: Duration = Duration::from_secs(120);
-/// The first pause after an attempt that failed; each further one is twice as long.
+/// Delay after the first failed attempt; it doubles after each further one.
 const FIRST: Duration = Duration::from_secs(10);
-/// The longest pause.
+/// Largest delay.
 const LONGEST: Duration = Duration::from_secs(6 * 3600);
-/// Attempts before a delivery is given up: the pauses between them are 10 s to 6 h, a day and more
-/// in all. It can be asked for again.
+/// Number of attempts before a delivery is abandoned: the delays between them are 10 s to 6 h, more
+/// than a day in all. It can be requested again.
 const ATTEMPTS: i64 = 16;
-/// A pause after the database has failed.
+/// Delay after a failure of the database.
 const BREATH: Duration = Duration::from_secs(5);
 
-/// Sends what is due, for ever. Whoever drops this breaks attempts off: they are due again when
-/// their time is over.
+/// Sends due deliveries forever. If the future is dropped, attempts are aborted; they are due again
+/// after their lease.
 pub async fn keep(store: Store, telling: Telling) {
     loop {
         let mut pause = telling.poll;
         match once(&store, telling).await {
+            // A full batch means that more may be due: continue without delay.
             Ok(TOGETHER) => continue,
             Ok(_) => {}
             Err(error) => {
@@ -51,16 +53,18 @@ pub async fn keep(store: Store, telling: Telling) {
     }
 }
 
-/// Sends some of what is due, and returns how many.
+/// Sends one batch of due deliveries, and returns its size.
 async fn once(store: &Store, telling: Telling) -> sistership_store::Result<usize> {
     let mut taken = Vec::new();
     while taken.len() < TOGETHER {
+        // Taking a delivery also counts the attempt and sets the time at which it is due again.
         match store.webhooks().take(store.now_us() + micros(TAKEN)).await? {
             Some(one) => taken.push(one),
             None => break,
         }
     }
     let told = taken.iter().map(|(delivery, webhook)| tell(store, telling, delivery, webhook));
+    // All attempts finish before an error of the database is returned.
     join_all(told).await.into_iter().collect::<sistership_store::Result<Vec<()>>>()?;
     Ok(taken.len())
 }
@@ -81,8 +85,9 @@ async fn tell(
     }
 }
 
-/// How long to wait after so many attempts; none once it is given up.
+/// Returns the delay after this number of attempts; `None` if the delivery is abandoned.
 fn pause(attempts: i64) -> Option<Duration> {
+    // The delay doubles with each attempt up to the largest one; an overflow counts as the largest.
     let doubled = u32::try_from(attempts - 1).ok().and_then(|n| 2_u32.checked_pow(n));
     let pause = doubled.and_then(|factor| FIRST.checked_mul(factor)).unwrap_or(LONGEST);
     (attempts < ATTEMPTS).then_some(pause.min(LONGEST))

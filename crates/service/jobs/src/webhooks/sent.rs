@@ -1,4 +1,4 @@
-//! One attempt at a delivery.
+//! Single attempt of a delivery.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -9,19 +9,21 @@ use sistership_store::{Delivery, Webhook, provide_cryptography};
 
 use super::addresses::{check_url, is_public};
 
-/// How long a receiver may take in all.
+/// Timeout of an attempt.
 const PATIENCE: Duration = Duration::from_secs(15);
 
-/// Sends a delivery once; says what was answered, or why it has not arrived.
+/// Sends a delivery once; returns the status of the answer, or the reason of the failure.
 pub(super) async fn send(
     delivery: &Delivery,
     webhook: &Webhook,
     now_us: i64,
     private: bool,
 ) -> Result<String, String> {
+    // Checked again: the setting may have changed since the webhook was created.
     let url = check_url(&webhook.url, private)?;
     let client = client(&url, &addresses(&url, private).await?)?;
     let at_s = now_us / 1_000_000;
+    // The time is part of the signed text, so that a receiver can refuse a replay.
     let signed = sign(&webhook.secret, format!("{at_s}.{}", delivery.body).as_bytes());
     let request = client
         .post(url)
@@ -31,27 +33,28 @@ pub(super) async fn send(
         .header("Sistership-Signature", format!("t={at_s},v1={signed}"))
         .body(delivery.body.clone());
     let answer = request.send().await.map_err(|error| words(&error))?;
-    // What a receiver says beside its status is not read: it could be anything.
+    // The body of the answer is not read: it could be of any size and content.
     match answer.status() {
         status if status.is_success() => Ok(status.as_u16().to_string()),
         status => Err(format!("answered {}", status.as_u16())),
     }
 }
 
-/// The addresses of a receiver: all of them, if each may be spoken to.
+/// Resolves the addresses of a receiver, if all of them are allowed.
 async fn addresses(url: &Url, private: bool) -> Result<Vec<SocketAddr>, String> {
     let host = url.host_str().unwrap_or_default().trim_matches(['[', ']']);
     let port = url.port_or_known_default().unwrap_or(443);
     let found = tokio::net::lookup_host((host, port)).await;
     let found: Vec<SocketAddr> = found.map_err(|_| format!("{host} has no address"))?.collect();
+    // One private address is enough to refuse: the client could choose it.
     match found.iter().find(|address| !private && !is_public(address.ip())) {
         Some(address) => Err(format!("{host} is {}, which is not public", address.ip())),
         None => Ok(found),
     }
 }
 
-/// Speaks to the addresses that were looked at, whatever the name has become since; follows nobody
-/// elsewhere, and goes through no proxy.
+/// Creates a client that connects only to the addresses that were checked, whatever the name
+/// resolves to later; it follows no redirect and uses no proxy.
 fn client(url: &Url, addresses: &[SocketAddr]) -> Result<Client, String> {
     provide_cryptography();
     let host = url.host_str().unwrap_or_default();
@@ -64,7 +67,7 @@ fn client(url: &Url, addresses: &[SocketAddr]) -> Result<Client, String> {
     client.build().map_err(|error| words(&error))
 }
 
-/// Why, without the address: it may hold a secret.
+/// Describes an error without the URL, which may contain a secret.
 fn words(error: &reqwest::Error) -> String {
     let kind = if error.is_timeout() {
         "no answer in time"

@@ -1,4 +1,4 @@
-//! Two to five versions side by side: coefficients, standard manoeuvres, criteria, tracks.
+//! Comparison of two to five versions: coefficients, standard manoeuvres, criteria, tracks.
 
 mod sailed;
 mod tables;
@@ -16,10 +16,10 @@ use crate::picture::svg;
 use crate::plot::{channels, ground, legend};
 use crate::shell::Shell;
 
-/// The most versions that are compared at once.
+/// Largest number of versions in a comparison.
 const MOST: usize = 5;
 
-/// What the page is made of.
+/// Inputs of the page.
 pub struct Gathered {
     shell: Shell,
     versions: Vec<NamedVersion>,
@@ -54,10 +54,11 @@ struct Compared<'a> {
 /// Reads the versions that the query names.
 ///
 /// # Errors
-/// The store does not answer. A name that stands for nothing is said on the page.
+/// Returns an error if the store fails. An unknown name is reported on the page.
 pub async fn gather(archive: &Archive, shell: Shell, query: &Fields) -> Result<Gathered> {
     let asked: Vec<String> = query.all("v").map(str::to_owned).collect();
     let (mut versions, mut wrong) = (Vec::new(), None);
+    // Only the first unknown name is reported.
     for name in asked.iter().take(MOST) {
         match NamedVersion::find(archive, "v", name).await {
             Ok(version) => versions.push(version),
@@ -66,15 +67,16 @@ pub async fn gather(archive: &Archive, shell: Shell, query: &Fields) -> Result<G
         }
     }
     let many = asked.len() > MOST;
+    // Names beyond the limit are dropped with a message.
     let wrong = wrong.or_else(|| many.then(|| format!("at most {MOST} are compared at once")));
     Ok(Gathered { shell: shell.at("/compare"), versions, wrong, asked })
 }
 
 impl Gathered {
-    /// The page; the standard manoeuvres of each are sailed for it.
+    /// Returns the page; the standard manoeuvres of each version are simulated for it.
     ///
     /// # Errors
-    /// The page cannot be written.
+    /// Returns an error if the page cannot be rendered.
     pub fn html(&self) -> Result<String> {
         let mut sailed: Vec<Sailed> = Vec::new();
         for (place, version) in self.versions.iter().enumerate() {
@@ -82,6 +84,7 @@ impl Gathered {
         }
         let turns: Vec<_> = sailed.iter().filter_map(|one| one.turn.clone()).collect();
         let zigzags: Vec<_> = sailed.iter().filter_map(|one| one.zigzag.clone()).collect();
+        // The longest hull, so that the outlines of all versions fit into the chart.
         let longest =
             self.versions.iter().filter_map(|one| Hull::of(&one.document.model.particulars));
         let hull = longest.max_by(|a, b| a.lpp_m.total_cmp(&b.lpp_m)).filter(|_| self.one_ship());
@@ -104,12 +107,12 @@ impl Gathered {
         Ok(page.render()?)
     }
 
-    /// Whether all are of one ship, whose outline is then drawn.
+    /// Returns true if all versions are of one ship, whose outline is then drawn.
     fn one_ship(&self) -> bool {
         self.versions.windows(2).all(|pair| pair[0].head.model == pair[1].head.model)
     }
 
-    /// What was asked, with room for more.
+    /// Names of the query, filled up with empty fields of the form.
     fn shown_again(&self) -> Vec<&str> {
         let asked = self.asked.iter().map(String::as_str);
         asked.chain(std::iter::repeat("")).take(MOST).collect()

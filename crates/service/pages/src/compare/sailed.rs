@@ -1,4 +1,4 @@
-//! What is simulated of each version that is compared.
+//! Simulated manoeuvres of each version of a comparison.
 
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{
@@ -8,7 +8,7 @@ use sistership_simulation::manoeuvre::{
 use crate::named::NamedVersion;
 use crate::plot::{LINES, Track};
 
-/// The standard manoeuvres of a version.
+/// Standard manoeuvres of a version.
 pub(super) struct Sailed {
     pub figures: Option<StandardManoeuvres>,
     pub turn: Option<Track>,
@@ -17,7 +17,8 @@ pub(super) struct Sailed {
 }
 
 impl Sailed {
-    /// Of the version at a place of the comparison.
+    /// Simulates a version; its position in the comparison decides the line style. A model that
+    /// cannot be simulated gives a note only.
     pub fn of(version: &NamedVersion, place: usize) -> Self {
         let label = version.label();
         match Ship::new(&version.document.model, &version.law) {
@@ -38,6 +39,8 @@ impl Sailed {
         let notes = figures.failures.iter().map(|failure| format!("{label}: {failure}")).collect();
         let track = |track| Track::simulated(style, label, &track, ship.has_roll());
         Self {
+            // The tracks are those of single manoeuvres; a manoeuvre that fails is absent, and its
+            // failure is among the notes.
             turn: turn(ship, 35.0, &settings).ok().map(|turn| track(turn.track)),
             zigzag: zigzag(ship, 20.0, 20.0, &settings).ok().map(|zigzag| track(zigzag.track)),
             figures: Some(figures),

@@ -1,4 +1,4 @@
-//! The tables of a comparison: a row for each name, a cell for each version.
+//! Tables of a comparison: one row for each name, one cell for each version.
 
 use sistership_report::numbers::{fixed, significant};
 use sistership_simulation::manoeuvre::Figure;
@@ -6,14 +6,14 @@ use sistership_simulation::manoeuvre::Figure;
 use super::sailed::Sailed;
 use crate::named::NamedVersion;
 
-/// A row: name, unit, and for each version its value with what stands beside it.
+/// A row: name, unit, and the cell of each version.
 pub(super) struct ValueRow {
     pub name: String,
     pub unit: String,
     pub cells: Vec<Cell>,
 }
 
-/// A value, and how it differs from the first version's.
+/// A value, and its difference from that of the first version.
 #[derive(Default)]
 pub(super) struct Cell {
     pub value: String,
@@ -21,7 +21,7 @@ pub(super) struct Cell {
     pub class: &'static str,
 }
 
-/// Coefficients by name, those of all laws one after the other.
+/// Returns the coefficients by name, in the order of the versions' laws.
 pub(super) fn coefficients(versions: &[NamedVersion]) -> Vec<ValueRow> {
     let mut names: Vec<String> = Vec::new();
     for version in versions {
@@ -33,15 +33,18 @@ pub(super) fn coefficients(versions: &[NamedVersion]) -> Vec<ValueRow> {
     };
     let row = |name: String| {
         let values: Vec<Option<f64>> = versions.iter().map(|version| of(version, &name)).collect();
+        // A coefficient that the law has but no model uses gets no row.
         let known = values.iter().any(Option::is_some);
         known.then(|| ValueRow { cells: cells(&values, 5), unit: String::new(), name })
     };
     names.into_iter().filter_map(row).collect()
 }
 
-/// The figures of the standard manoeuvres.
+/// Returns the figures of the standard manoeuvres.
 pub(super) fn figures(sailed: &[Sailed]) -> Vec<ValueRow> {
     let all: Vec<Vec<Figure>> = sailed.iter().map(plain).collect();
+    // All versions have the same figures in the same order; a version that could not be simulated
+    // has none.
     let Some(first) = all.iter().find(|figures| !figures.is_empty()) else { return Vec::new() };
     let row = |figure: &Figure| {
         let own = |figures: &Vec<Figure>| {
@@ -58,7 +61,7 @@ fn plain(sailed: &Sailed) -> Vec<Figure> {
     all.filter(|figure| figure.pass.is_none() && !figure.name.starts_with("IMO")).collect()
 }
 
-/// The criteria of IMO MSC.137(76), with value and verdict.
+/// Returns the criteria of IMO MSC.137(76), with value and verdict.
 pub(super) fn criteria(sailed: &[Sailed]) -> Vec<ValueRow> {
     let Some(first) = sailed.iter().find_map(|one| one.figures.as_ref()) else {
         return Vec::new();
@@ -90,6 +93,7 @@ fn cells(values: &[Option<f64>], digits: usize) -> Vec<Cell> {
     let first = values.first().copied().flatten();
     let cell = |(place, value): (usize, &Option<f64>)| {
         let Some(value) = value else { return Cell::default() };
+        // Changes are relative to the first version, whose value must not be zero.
         let change = first.filter(|first| place > 0 && *first != 0.0);
         let change = change.map(|first| 100.0 * (value - first) / first.abs());
         let beside = change.map_or_else(String::new, |change| {

@@ -1,4 +1,4 @@
-//! The fleet: its ships, the one first that most needs somebody.
+//! The fleet: a list of the ships, the one that most needs attention first.
 
 mod query;
 
@@ -18,9 +18,9 @@ use crate::picture::svg;
 use crate::shell::Shell;
 use crate::sparkline::sparkline;
 
-/// Ships on one page.
+/// Number of ships on one page.
 const SHIPS: i64 = 50;
-/// Families that a row names.
+/// Number of families named in a row.
 const FAMILIES: usize = 4;
 
 #[derive(Template)]
@@ -50,10 +50,10 @@ struct ShipRow {
     value: String,
 }
 
-/// The ships that a query finds.
+/// Returns the ships that a query finds.
 ///
 /// # Errors
-/// A field of the query is wrong, or the store does not answer.
+/// Returns an error if a field of the query is wrong or the store fails.
 pub async fn page(
     archive: &Archive,
     known: &KnownVectors,
@@ -63,6 +63,7 @@ pub async fn page(
     let query = FleetQuery::read(fields)?;
     let found = found(archive, known, &query, query.search()?).await?;
     let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
+    // Read for all rows together: a few statements instead of several for each ship.
     let names: Vec<String> = found.items.iter().map(|ship| ship.name.clone()).collect();
     let mut standings = archive.store.standings(&names, ERROR, LEFT).await?;
     let diagnosed = standings.values().flat_map(|standing| trials_of(&standing.diagnoses));
@@ -100,7 +101,9 @@ fn row(ship: FoundShip, standing: ShipStanding, deleted: &[String], sort: Sort) 
     let weighed = |champion| Condition::weighed(&champion, &diagnoses, deleted);
     let condition = champion.map(weighed).unwrap_or_default();
     let class = Class::of(&condition);
+    // A value is shown only if it sorts the ships.
     let value = ship.value.filter(|_| matches!(sort, Sort::Value | Sort::Similar));
+    // Sparklines of the list mark no trials.
     let trend = sparkline(series.into_iter().map(|left| (left, false)));
     Ok(ShipRow {
         name: ship.name,
@@ -117,7 +120,7 @@ fn row(ship: FoundShip, standing: ShipStanding, deleted: &[String], sort: Sort) 
     })
 }
 
-/// The effects that a champion lacks, else that it has drifted.
+/// Returns the effects that a champion lacks, or that it has drifted.
 fn why(condition: &Condition) -> String {
     match condition.verdict.as_deref() {
         Some("drift") => "drift".to_owned(),
@@ -125,7 +128,7 @@ fn why(condition: &Condition) -> String {
     }
 }
 
-/// A class in words.
+/// Returns a class of condition in words.
 pub(crate) fn says(class: Class) -> &'static str {
     match class {
         Class::DoesNotHold => "does not hold",

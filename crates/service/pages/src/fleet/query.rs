@@ -1,4 +1,4 @@
-//! What is asked of the fleet.
+//! The query of the fleet page.
 
 use sistership_jobs::search::standing::Class;
 use sistership_jobs::search::{self, Search};
@@ -8,7 +8,7 @@ use crate::cursor::key;
 use crate::error::{PageError, Result};
 use crate::form::Fields;
 
-/// Fields of the form that say which ships are shown.
+/// Fields of the form that select ships.
 const FIELDS: [&str; 10] = [
     "standing",
     "category",
@@ -22,20 +22,20 @@ const FIELDS: [&str; 10] = [
     "similar_to",
 ];
 
-/// What puts the ships in order.
+/// Order of the ships.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sort {
-    /// The one first that most needs somebody.
+    /// The ship that most needs attention first.
     Worst,
-    /// By name.
+    /// Alphabetical by name.
     Name,
-    /// By the particular or metric that is asked for.
+    /// Increasing in the particular or metric of the query.
     Value,
     /// The most similar first.
     Similar,
 }
 
-/// What is asked, as it was written.
+/// The query as it was written.
 #[derive(Debug, Clone)]
 pub(super) struct FleetQuery {
     pub sort: Sort,
@@ -57,19 +57,25 @@ impl FleetQuery {
         Ok(Self { sort, fields: fields.clone() })
     }
 
-    /// The text of a field, for the form that is shown again.
+    /// Text of a field, for the form that is shown again.
     pub fn shown(&self, name: &str) -> &str {
         self.fields.text(name).unwrap_or_default()
     }
 
-    /// Whether the form asks for more than the order.
+    /// Returns true if the form has more than the order.
     pub fn is_open(&self) -> bool {
         FIELDS.iter().any(|name| self.fields.text(name).is_some())
     }
 
+    /// Returns the search of the store.
+    ///
+    /// # Errors
+    /// Returns an error if a field is wrong, or if the order does not suit the ranges.
     pub fn search(&self) -> Result<Search> {
         let class = self.class()?;
         let own = self.ranges()?;
+        // The store sorts by the first range: for the worst first that is the condition, otherwise
+        // the condition comes last.
         let first = match self.sort {
             Sort::Worst => Some(class.map_or_else(Class::every, Class::range)),
             _ => None,
@@ -104,7 +110,7 @@ impl FleetQuery {
         self.fields.text("standing").map(read).transpose()
     }
 
-    /// The ranges of particular and metric.
+    /// Returns the ranges of particular and metric.
     fn ranges(&self) -> Result<Vec<FactRange>> {
         let mut ranges = Vec::new();
         for (kind, read) in [
@@ -119,7 +125,7 @@ impl FleetQuery {
         Ok(ranges)
     }
 
-    /// Where the page begins.
+    /// Returns the key after which the page begins.
     pub fn after(&self) -> Result<Option<ShipKey>> {
         if let Some(name) = self.fields.text("from").filter(|_| self.sort == Sort::Name) {
             return Ok(Some((None, before(name))));
@@ -127,7 +133,7 @@ impl FleetQuery {
         key(self.fields.text("after"))
     }
 
-    /// The heading of the column that says by what ships are in order, where that is no column yet.
+    /// Heading of the column with the value that sorts the ships, if no other column has it.
     pub fn value_name(&self) -> Option<String> {
         match self.sort {
             Sort::Similar => Some("Correlation".to_owned()),
@@ -138,7 +144,7 @@ impl FleetQuery {
         }
     }
 
-    /// The address of the next page.
+    /// Address of the next page.
     pub fn address(&self, after: &str) -> String {
         let own = FIELDS.into_iter().chain(["sort"]);
         let pairs =
@@ -147,7 +153,7 @@ impl FleetQuery {
         format!("/?{}", pairs.join("&"))
     }
 
-    /// The sort as the form has it.
+    /// Name of the order in the form.
     pub fn sort_name(&self) -> &'static str {
         match self.sort {
             Sort::Worst => "worst",
@@ -157,11 +163,12 @@ impl FleetQuery {
     }
 }
 
-/// The last text before all that begin with this one.
+/// Returns a text that sorts before all names with this prefix, and after all smaller ones.
 fn before(name: &str) -> String {
     let mut text = name.to_owned();
     match text.pop() {
-        // Names are of ASCII letters, digits, dots and dashes: nothing lies between.
+        // Names consist of ASCII letters, digits, dots and dashes, which all sort before `~`: no
+        // name lies between.
         Some(last) if last > ' ' => {
             text.push(char::from_u32(last as u32 - 1).unwrap_or(' '));
             text + "~"
@@ -170,7 +177,7 @@ fn before(name: &str) -> String {
     }
 }
 
-/// A text within an address (RFC 3986).
+/// Percent-encodes a text for an address (RFC 3986).
 fn quoted(text: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
     let each = text.bytes().map(|byte| match plain(byte) {

@@ -1,4 +1,4 @@
-//! One's own account.
+//! The page of the user's own account.
 
 use askama::Template;
 use sistership_store::Identity;
@@ -16,19 +16,19 @@ struct AccountPage<'a> {
     notice: Option<&'a str>,
 }
 
-/// As whom providers know somebody.
+/// Identities of a user at OpenID providers.
 #[derive(Debug, Clone, Default)]
 pub struct Known<'a> {
-    /// As these.
+    /// The identities.
     pub identities: Vec<Identity>,
-    /// The provider that an account can be linked with, if there is one.
+    /// Provider with which the account can be linked, if there is one.
     pub provider: Option<&'a str>,
 }
 
-/// The page; `notice` is what has just been done.
+/// Returns the page; `notice` reports an action that was just completed.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn account(
     shell: Shell,
     name: &str,

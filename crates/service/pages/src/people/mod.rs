@@ -1,4 +1,4 @@
-//! Who may do what: signing in, one's own account, users and keys.
+//! Pages of access: signing in, the user's own account, users and keys.
 
 mod account;
 mod roles;

@@ -2,7 +2,7 @@
 
 use sistership_store::GrantRow;
 
-/// Roles as a person writes them.
+/// Formats roles in the notation of the form, `role` or `role@kind:name`.
 pub(super) fn words(roles: &[GrantRow]) -> String {
     let word = |row: &GrantRow| match row.scope_kind.as_str() {
         "server" => row.role.clone(),

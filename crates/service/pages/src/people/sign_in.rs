@@ -1,4 +1,4 @@
-//! The page to sign in at.
+//! The sign-in page.
 
 use askama::Template;
 
@@ -14,20 +14,20 @@ struct SignInPage<'a> {
     provider: Option<Offered<'a>>,
 }
 
-/// Somewhere else to sign in.
+/// A provider at which people may sign in.
 #[derive(Debug, Clone, Copy)]
 pub struct Offered<'a> {
-    /// What people call it.
+    /// Display name.
     pub title: &'a str,
-    /// What leads there.
+    /// Address of its sign-in.
     pub place: &'a str,
 }
 
-/// The page; `next` is where to go then, `why_not` what was wrong with the last attempt, `provider`
-/// who vouches for people, too.
+/// Returns the page; `next` is the page to go to afterwards, `why_not` the error of the last
+/// attempt, `provider` an OpenID provider at which people may sign in as well.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn sign_in(
     shell: Shell,
     next: &str,
@@ -44,11 +44,11 @@ struct LeavePage<'a> {
     provider: Offered<'a>,
 }
 
-/// The page from which a person goes to the provider that their account is to be linked with. A
-/// form cannot lead there by itself: the policy of pages sends forms to this server only.
+/// Returns the page with the link to the provider with which the account will be linked. A form
+/// cannot lead there by itself: the policy of the pages restricts forms to this server.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn leave(shell: Shell, provider: Offered<'_>) -> Result<String> {
     Ok(LeavePage { shell: shell.at("/account"), provider }.render()?)
 }

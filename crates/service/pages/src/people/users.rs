@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::form::Fields;
 use crate::shell::Shell;
 
-/// Users, and keys, on one page.
+/// Number of users, and of keys, on one page.
 const ROWS: i64 = 50;
 
 #[derive(Template)]
@@ -29,7 +29,7 @@ struct UserRow {
     name: String,
     title: String,
     roles: String,
-    /// As whom providers know this one.
+    /// Identities of the user at OpenID providers.
     identities: Vec<Identity>,
     enabled: bool,
     created: String,
@@ -46,10 +46,10 @@ struct KeyLine {
     valid: bool,
 }
 
-/// The page of users by name, and of keys.
+/// Returns the page of users by name, and of keys.
 ///
 /// # Errors
-/// A field is wrong, or the store does not answer.
+/// Returns an error if a field is wrong or the store fails.
 pub async fn users(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
     let store = &archive.store;
     let page = Page { after: key(query.text("after"))?, limit: ROWS };
@@ -63,6 +63,7 @@ pub async fn users(archive: &Archive, shell: Shell, query: &Fields) -> Result<St
         let (User { name, title, .. }, roles) = (user, words(&roles));
         users.push(UserRow { name, title, roles, identities, enabled, created });
     }
+    // Users and keys have separate cursors on one page.
     let mut keys = Vec::new();
     let page = Page { after: key(query.text("keys_after"))?, limit: ROWS };
     let list = store.service_keys().list(&page).await?;
@@ -89,6 +90,7 @@ impl KeyLine {
             last_used_us,
             ..
         } = row;
+        // A revoked key has ended, whatever its date.
         let ends = match (revoked_us, expires_us) {
             (Some(revoked), _) => format!("revoked {}", date(revoked)),
             (None, Some(ends)) => date(ends),
@@ -108,10 +110,10 @@ struct NewKeyPage<'a> {
     key: &'a str,
 }
 
-/// The page that shows a new key, the only one that ever does.
+/// Returns the page with a new key, the only page that ever shows it.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn new_key(shell: Shell, title: &str, key: &str) -> Result<String> {
     Ok(NewKeyPage { shell: shell.at("/users"), title, key }.render()?)
 }

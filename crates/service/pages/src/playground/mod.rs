@@ -1,4 +1,4 @@
-//! The playground: a model sails what a form asks, computed by the server.
+//! The playground: a manoeuvre of a model, given in a form and simulated by the server.
 
 mod orders;
 mod sailed;
@@ -19,7 +19,7 @@ use crate::picture::svg;
 use crate::plot::{LINES, Track, channels, ground};
 use crate::shell::Shell;
 
-/// What the page is made of.
+/// Inputs of the page.
 pub struct Gathered {
     shell: Shell,
     fields: Fields,
@@ -45,13 +45,13 @@ struct PlaygroundPage<'a> {
 }
 
 impl PlaygroundPage<'_> {
-    /// Whether the manoeuvre is of this name.
+    /// Returns true if the manoeuvre has this name.
     fn is_kind(&self, name: &str) -> bool {
         self.orders.kind.name() == name
     }
 }
 
-/// What was sailed, drawn.
+/// Plots and figures of a simulation.
 struct Drawn {
     track: Option<String>,
     series: Option<String>,
@@ -64,7 +64,7 @@ struct Drawn {
 /// Reads the version that the form names.
 ///
 /// # Errors
-/// The store does not answer. A name that stands for nothing is said on the page.
+/// Returns an error if the store fails. An unknown name is reported on the page.
 pub async fn gather(archive: &Archive, shell: Shell, fields: Fields) -> Result<Gathered> {
     let (mut version, mut wrong) = (None, None);
     if let Some(name) = fields.text("model") {
@@ -78,12 +78,14 @@ pub async fn gather(archive: &Archive, shell: Shell, fields: Fields) -> Result<G
 }
 
 impl Gathered {
-    /// The page; what it asks is sailed for it. No run has more than `most` steps.
+    /// Returns the page, for which the manoeuvre of the form is simulated in at most `most` steps.
     ///
     /// # Errors
-    /// The page cannot be written.
+    /// Returns an error if the page cannot be rendered.
     pub fn html(&self, most: usize) -> Result<String> {
         let mut wrong = self.wrong.clone();
+        // The page shows the first error only, and the form with the default values of the parts
+        // that are wrong.
         let mut refused = |error: PageError| wrong = wrong.take().or(Some(error.to_string()));
         let orders = Orders::read(&self.fields).unwrap_or_else(|error| {
             refused(error);
@@ -139,9 +141,11 @@ fn drawn(
     most: usize,
 ) -> Result<Drawn> {
     let mut model = version.document.model.clone();
+    // Current and wind are effects, as in a diagnosed model.
     model.effects.extend(around.effects()?);
     let mut ship = Ship::new(&model, &version.law)
         .map_err(|error| PageError::invalid("model", error.to_string()))?;
+    // The depth is an input of some laws only.
     let knows_depth = ship.law_inputs().any(|(name, _)| name == "depth");
     let mut notes = Vec::new();
     match (around.depth_m, knows_depth) {
@@ -169,7 +173,7 @@ fn drawn(
 }
 
 impl Surroundings {
-    /// Current and wind as the library has them.
+    /// Returns current and wind as effects of the library.
     fn effects(&self) -> Result<Vec<AppliedEffect>> {
         let named = [("current", self.current()), ("wind", self.wind())];
         let some = named.into_iter().filter_map(|(name, of)| Some((name, of?)));

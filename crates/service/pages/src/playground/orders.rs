@@ -1,16 +1,16 @@
-//! What is to be sailed, and in what surroundings.
+//! Orders of the manoeuvre, and its surroundings.
 
 use crate::error::{PageError, Result};
 use crate::form::Fields;
 
-/// The longest run, s.
+/// Longest simulation, s.
 const LONGEST_S: f64 = 20_000.0;
-/// The greatest rudder angle, deg.
+/// Largest rudder angle, deg.
 const HARD_OVER: f64 = 45.0;
-/// Lines of a script.
+/// Largest number of lines of a script.
 const LINES: usize = 500;
 
-/// What kind of manoeuvre.
+/// Kind of manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Kind {
     /// A turning circle.
@@ -18,12 +18,12 @@ pub(super) enum Kind {
     Turn,
     /// A zigzag.
     Zigzag,
-    /// Rudder and revolutions by time.
+    /// A script of rudder and revolutions over time.
     Script,
 }
 
 impl Kind {
-    /// As the form has it.
+    /// Name in the form.
     pub fn name(self) -> &'static str {
         match self {
             Self::Turn => "turn",
@@ -33,7 +33,7 @@ impl Kind {
     }
 }
 
-/// What is to be sailed.
+/// Orders of a manoeuvre.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Orders {
     pub kind: Kind,
@@ -60,7 +60,7 @@ impl Default for Orders {
     }
 }
 
-/// One line of a script: time, s; rudder, rad; revolutions, 1/s, where given.
+/// One line of a script: time, s; rudder, rad; revolutions, 1/s, if given.
 pub(super) type Line = (f64, f64, Option<f64>);
 
 impl Orders {
@@ -75,6 +75,7 @@ impl Orders {
                 return Err(PageError::invalid("kind", message));
             }
         };
+        // Written so that NaN is refused as well.
         let positive = |name: &str, most: f64| match fields.number(name)? {
             Some(number) if !(number > 0.0 && number <= most) => {
                 Err(PageError::invalid(name, format!("must be above 0 and at most {most}")))
@@ -92,8 +93,12 @@ impl Orders {
         })
     }
 
-    /// The lines of the script, in time.
+    /// Parses the lines of the script, in the order of time.
+    ///
+    /// # Errors
+    /// Returns an error that names the wrong line, or the limit that the script exceeds.
     pub fn lines(&self) -> Result<Vec<Line>> {
+        // Empty lines are allowed, but counted: an error names the line of the text.
         let written = self.script.lines().map(str::trim).enumerate();
         let written = written.filter(|(_, line)| !line.is_empty());
         let lines = written.map(|(at, text)| line(at + 1, text)).collect::<Result<Vec<_>>>()?;
@@ -115,6 +120,7 @@ impl Orders {
 fn line(number: usize, text: &str) -> Result<Line> {
     let cells: Vec<Option<f64>> = text
         .split([' ', '\t', ';'])
+        // Separators are spaces, tabs and semicolons, since a comma may be decimal.
         .filter(|cell| !cell.is_empty())
         .map(|cell| cell.replace(',', ".").parse().ok().filter(|value: &f64| value.is_finite()))
         .collect();
@@ -165,13 +171,14 @@ impl Surroundings {
         split(self.current_m_s, self.current_to_deg)
     }
 
-    /// Speed of the wind from north and from east, m/s.
+    /// Components of the wind speed from north and from east, m/s.
     pub fn wind(&self) -> Option<(f64, f64)> {
         split(self.wind_m_s, self.wind_from_deg)
     }
 }
 
 fn split(speed: f64, direction_deg: f64) -> Option<(f64, f64)> {
+    // A speed of zero means that the effect is absent.
     let (sin, cos) = direction_deg.to_radians().sin_cos();
     (speed > 0.0).then_some((speed * cos, speed * sin))
 }

@@ -1,4 +1,4 @@
-//! What was asked, sailed.
+//! Simulation of the manoeuvre of the playground.
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_report::numbers::significant;
@@ -10,22 +10,26 @@ use sistership_simulation::{Ship, Trajectory};
 use super::orders::{Kind, Line, Orders};
 use crate::error::{PageError, Result};
 
-/// The longest step, s.
+/// Longest time step, s.
 const STEP_S: f64 = 0.1;
 
-/// Name, value and unit.
+/// Name, value and unit of each figure.
 pub(super) type Figures = Vec<(&'static str, String, &'static str)>;
 
-/// A run with what it comes to.
+/// A simulation with its figures.
 pub(super) struct Run {
     pub track: Trajectory,
     pub figures: Figures,
     pub notes: Vec<String>,
 }
 
-/// Sails what is asked, in `most` steps at most.
+/// Simulates the orders in at most `most` steps.
+///
+/// # Errors
+/// Returns an error if it would take more steps, or if the motion leaves the physical range.
 pub(super) fn sailed(ship: &mut Ship, orders: &Orders, most: usize) -> Result<Run> {
     let speed = orders.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+    // The range of speeds in which the simulation counts as physical follows the approach speed.
     ship.set_envelope_speed(speed);
     let (track, figures) = match orders.kind {
         Kind::Script => (scripted(ship, orders, speed, most)?, Vec::new()),
@@ -50,6 +54,7 @@ fn standard(
     speed: f64,
     most: usize,
 ) -> Result<(Trajectory, Figures)> {
+    // The step and the default duration follow the time in which the ship passes its own length.
     let length_s = ship.lpp_m() / speed;
     let step_s = STEP_S.min(0.02 * length_s);
     bounded(orders.duration_s.unwrap_or(60.0 * length_s) / step_s, most)?;
@@ -119,8 +124,8 @@ fn known(figures: &[(&'static str, Option<f64>, &'static str)]) -> Figures {
     figures.iter().map(|&(name, value, unit)| (name, text(value), unit)).collect()
 }
 
-/// The script is followed as recorded inputs are: the rudder lies where the script says, straight
-/// lines between its times.
+/// Simulates a script like recorded inputs: the rudder angle is that of the script, linear between
+/// its times.
 fn scripted(ship: &Ship, orders: &Orders, speed: f64, most: usize) -> Result<Trajectory> {
     let lines = orders.lines()?;
     let settings = ReplaySettings::default();
@@ -131,15 +136,18 @@ fn scripted(ship: &Ship, orders: &Orders, speed: f64, most: usize) -> Result<Tra
     Ok(run.track)
 }
 
-/// Samples of the script, evenly spaced, as a trial that starts straight ahead at a speed.
+/// Returns the script as a trial with evenly spaced samples that starts straight ahead at a speed,
+/// m/s.
 fn trial(ship: &Ship, lines: &[Line], orders: &Orders, speed: f64) -> Trial {
     let (first, last) = (lines[0].0, lines[lines.len() - 1].0);
+    // About one sample a second, at most 4000.
     let count = ((last - first).ceil() as usize).clamp(2, 4000);
     let t_s: Vec<f64> =
         (0..=count).map(|k| first + (last - first) * k as f64 / count as f64).collect();
     let steady = orders.n_rpm.map_or(ship.revolutions_at(speed), |rpm| rpm / 60.0);
     let delta = t_s.iter().map(|t| between(lines, *t, |line| line.1)).collect();
     let n = t_s.iter().map(|t| between(lines, *t, |line| line.2.unwrap_or(steady))).collect();
+    // Only the first state matters: the replay starts from it and reads inputs alone afterwards.
     let mut trial = Trial { name: "script".into(), ..Trial::default() };
     for channel in [
         Channel::U,
@@ -159,7 +167,8 @@ fn trial(ship: &Ship, lines: &[Line], orders: &Orders, speed: f64) -> Trial {
     trial
 }
 
-/// On straight lines between the lines of a script.
+/// Interpolates linearly between the lines of a script; constant before the first and after the
+/// last.
 fn between(lines: &[Line], t: f64, of: impl Fn(&Line) -> f64) -> f64 {
     let after = lines.partition_point(|line| line.0 <= t);
     match (after.checked_sub(1).map(|before| &lines[before]), lines.get(after)) {

@@ -1,4 +1,4 @@
-//! Channels over time, panel under panel.
+//! Channels over time, one panel below the other.
 
 use sistership_model::trial::Channel;
 use sistership_report::plots::axes::{Scale, columns, extent, padded, rows};
@@ -12,7 +12,7 @@ const TITLE: f64 = 20.0;
 const HEIGHT: f64 = 72.0;
 const BOTTOM: f64 = 34.0;
 
-/// What a panel shows: channel, name, unit, and the factor from SI.
+/// Contents of a panel: channel, name, unit, and the factor from SI.
 type Panel = (Channel, &'static str, &'static str, f64);
 
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
@@ -30,13 +30,14 @@ const PANELS: [Panel; 10] = [
     (Channel::Depth, "water depth", "m", 1.0),
 ];
 
-/// One panel for each channel that some track has; `label` says what is shown.
+/// Returns one panel for each channel that some track has; `label` describes the plot.
 pub(crate) fn channels(tracks: &[Track], label: &str) -> Plot {
     let panels: Vec<Panel> =
         PANELS.into_iter().filter(|(channel, ..)| shown(tracks, *channel)).collect();
     let (low, high) =
         extent(tracks.iter().flat_map(|track| track.t_s.iter().copied())).unwrap_or((0.0, 1.0));
     let length = WIDTH - LEFT - RIGHT;
+    // A track of a single sample still needs a range above zero.
     let time = Scale { low, high: high.max(low + 1e-9), length, reversed: false };
     let mut shapes = Vec::new();
     for (index, one) in panels.iter().enumerate() {
@@ -49,14 +50,15 @@ pub(crate) fn channels(tracks: &[Track], label: &str) -> Plot {
     Plot { width: WIDTH, height, label: label.to_owned(), shapes }
 }
 
-/// Revolutions that nobody gave are all zero.
+/// Returns true if some track has the channel. Revolutions that were not recorded are all zero.
 fn shown(tracks: &[Track], channel: Channel) -> bool {
     let there =
         |values: &Vec<f64>| channel != Channel::N || values.iter().any(|value| *value != 0.0);
     tracks.iter().any(|track| track.channels.get(&channel).is_some_and(there))
 }
 
-/// What stays the same gets room, too: its last digits mean nothing.
+/// Widens the range of an almost constant channel to 2 % of its value, as the last digits mean
+/// nothing.
 fn widened((low, high): (f64, f64)) -> (f64, f64) {
     let room = 0.5 * (0.02 * low.abs().max(high.abs()) - (high - low)).max(0.0);
     (low - room, high + room)

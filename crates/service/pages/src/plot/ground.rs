@@ -6,7 +6,7 @@ use sistership_report::plots::{GroundChart, Hull, Plot, Shape, WIDTH, mark_inter
 use super::track::Track;
 use sistership_model::trial::Channel;
 
-/// The tracks; none where no track has positions. `label` says what is shown.
+/// Returns the tracks; `None` if no track has positions. `label` describes the plot.
 pub(crate) fn ground(tracks: &[Track], hull: Option<Hull>, label: &str) -> Option<Plot> {
     let placed: Vec<(&Track, Vec<(f64, f64)>)> =
         tracks.iter().filter_map(|track| Some((track, track.places()?))).collect();
@@ -16,6 +16,8 @@ pub(crate) fn ground(tracks: &[Track], hull: Option<Hull>, label: &str) -> Optio
     let chart = GroundChart::of(range(|place| place.0)?, range(|place| place.1)?, hull);
     let mut inside: Vec<Shape> =
         placed.iter().map(|(track, places)| curve(&chart, track, places)).collect();
+    // The same interval for all tracks, so that outlines of the same number belong to the same
+    // instant.
     let interval = mark_interval_s(0.5 * duration_s(&placed));
     inside.extend(
         placed.iter().flat_map(|(track, places)| marks(&chart, track, places, hull, interval)),
@@ -36,7 +38,7 @@ fn curve(chart: &GroundChart, track: &Track, places: &[(f64, f64)]) -> Shape {
     Shape::Path { d: path(&points, |from, to| track.jumps(from, to)), class: track.style.line }
 }
 
-/// Outlines where heading and ship are known, else dots.
+/// Returns outlines where heading and hull are known, otherwise dots.
 fn marks(
     chart: &GroundChart,
     track: &Track,
@@ -46,6 +48,8 @@ fn marks(
 ) -> Vec<Shape> {
     let heading = track.channels.get(&Channel::Psi);
     let number = |sample: usize| ((track.t_s[sample] - track.t_s[0]) / interval + 1e-9).floor();
+    // The small offset keeps a sample at a whole multiple of the interval from falling short of it
+    // by rounding.
     let due = |sample: &usize| *sample == 0 || number(*sample) > number(*sample - 1);
     let mark = |sample: usize| {
         let outline =

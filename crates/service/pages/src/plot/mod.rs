@@ -1,4 +1,4 @@
-//! Tracks over the ground and channels over time, of what was measured and what was simulated.
+//! Plots of measured and simulated tracks: over the ground, and channels over time.
 
 mod channels;
 mod ground;

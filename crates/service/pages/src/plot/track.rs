@@ -1,4 +1,4 @@
-//! What is drawn: channels over time under one style.
+//! Data of a plot: channels over time with a style.
 
 use std::collections::BTreeMap;
 
@@ -6,21 +6,21 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Trajectory;
 use sistership_simulation::state::{RECORDED, at};
 
-/// The style of a line, of the outlines and of the dots on it.
+/// Style of a line, of the outlines and of the dots on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Style {
-    /// As the legend has it.
+    /// Name in the legend.
     pub name: &'static str,
     pub line: &'static str,
     pub hull: &'static str,
     pub dot: &'static str,
 }
 
-/// What was measured.
+/// Style of measured tracks.
 pub(crate) const MEASURED: Style =
     Style { name: "measured", line: "line measured", hull: "hull measured", dot: "dot measured" };
 
-/// What was simulated, one after the other.
+/// Styles of simulated tracks, in sequence.
 pub(crate) const LINES: [Style; 5] = [
     Style { name: "a", line: "line a", hull: "hull a", dot: "dot a" },
     Style { name: "b", line: "line b", hull: "hull b", dot: "dot b" },
@@ -36,12 +36,12 @@ pub(crate) struct Track {
     pub name: String,
     pub t_s: Vec<f64>,
     pub channels: BTreeMap<Channel, Vec<f64>>,
-    /// The places of samples before which the record has a gap.
+    /// Indices of the samples before which the record has a gap.
     pub gaps: Vec<usize>,
 }
 
 impl Track {
-    /// What was measured.
+    /// Returns the track of a measured trial.
     pub fn measured(trial: &Trial) -> Self {
         Self {
             style: MEASURED,
@@ -52,13 +52,14 @@ impl Track {
         }
     }
 
-    /// What was simulated.
+    /// Returns the track of a simulation; without roll the roll angle is omitted.
     pub fn simulated(
         style: Style,
         name: impl Into<String>,
         track: &Trajectory,
         rolls: bool,
     ) -> Self {
+        // The rudder angle is a state of the simulation; revolutions are inputs.
         let state = RECORDED.into_iter().chain([(Channel::Delta, at::DELTA)]);
         let state = state.filter(|(channel, _)| rolls || *channel != Channel::Phi);
         let mut channels: BTreeMap<Channel, Vec<f64>> =
@@ -67,19 +68,19 @@ impl Track {
         Self { style, name: name.into(), t_s: track.t_s.clone(), channels, gaps: Vec::new() }
     }
 
-    /// Places `(north, east)`; none where a position is missing.
+    /// Positions `(north, east)`, m; `None` if a channel of them is missing.
     pub fn places(&self) -> Option<Vec<(f64, f64)>> {
         let (north, east) = (self.channels.get(&Channel::X)?, self.channels.get(&Channel::Y)?);
         Some(north.iter().copied().zip(east.iter().copied()).collect())
     }
 
-    /// Whether a gap lies between two samples.
+    /// Returns true if a gap lies between two samples.
     pub fn jumps(&self, from: usize, to: usize) -> bool {
         self.gaps.iter().any(|gap| from < *gap && *gap <= to)
     }
 }
 
-/// Class and name of each line.
+/// Returns the class and the name of each line.
 pub(crate) fn legend(tracks: &[Track]) -> Vec<(&'static str, String)> {
     tracks.iter().map(|track| (track.style.name, track.name.clone())).collect()
 }

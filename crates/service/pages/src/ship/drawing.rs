@@ -1,7 +1,7 @@
-//! A drawing of a ship to scale, from its particulars: waterplane from above, and from the side.
+//! A drawing of a ship to scale, from its particulars: waterplane from above, and side view.
 //!
-//! What particulars do not say is a plain shape: the form of the hull between bow and stern is not
-//! the ship's own.
+//! Parts that the particulars do not describe have a plain shape: the form of the hull between bow
+//! and stern is not the ship's own.
 
 use sistership_model::particulars::Particulars;
 use sistership_report::numbers::stated;
@@ -11,23 +11,24 @@ use crate::picture::{line, polygon, text};
 
 const WIDTH: f64 = 640.0;
 const MARGIN: f64 = 26.0;
-/// Between the drawings.
+/// Distance between the two views.
 const GAP: f64 = 46.0;
 
-/// Where the metres of the ship are on the drawing.
+/// Mapping of the ship's metres to the drawing.
 struct Frame {
     per_metre: f64,
     lpp_m: f64,
 }
 
 impl Frame {
-    /// From the aft perpendicular at the left: the place of a point forward of midship.
+    /// Returns the x coordinate of a point forward of midship; the aft perpendicular is at the
+    /// left.
     fn x(&self, forward_m: f64) -> f64 {
         MARGIN + (0.5 * self.lpp_m + forward_m) * self.per_metre
     }
 }
 
-/// The drawing; none where length or beam are unknown.
+/// Returns the drawing; `None` if length or beam are unknown.
 pub(super) fn drawing(particulars: &Particulars, title: &str) -> Option<Plot> {
     let hull = Hull::of(particulars)?;
     let known = |name: &str| particulars.get(name).map(|quantity| quantity.value);
@@ -36,6 +37,7 @@ pub(super) fn drawing(particulars: &Particulars, title: &str) -> Option<Plot> {
     let mut shapes = from_above(&frame, hull, middle, known("x_g_m"));
     let mut bottom = middle + 0.5 * hull.beam_m * frame.per_metre + 20.0;
     if let Some(draught) = known("draught_m") {
+        // Without a moulded depth the side view shows a freeboard of half the draught.
         let depth = known("depth_moulded_m").unwrap_or(1.5 * draught).max(draught);
         let water = bottom + GAP + (depth - draught) * frame.per_metre;
         shapes.extend(from_the_side(&frame, &known, draught, depth, water));
@@ -118,7 +120,7 @@ fn from_the_side(
     shapes
 }
 
-/// Its height as stated, else by area and aspect ratio.
+/// Returns the rudder as a rectangle: its height as stated, otherwise from area and aspect ratio.
 fn rudder(
     frame: &Frame,
     known: &dyn Fn(&str) -> Option<f64>,
@@ -127,6 +129,7 @@ fn rudder(
 ) -> Option<Shape> {
     let area = known("rudder_area_m2")?;
     let ratio = known("rudder_aspect_ratio").unwrap_or(1.5);
+    // Not much higher than the draught, whatever the particulars say.
     let height = known("rudder_height_m").unwrap_or((area * ratio).sqrt()).min(1.2 * draught);
     let scale = frame.per_metre;
     let at = (frame.x(-0.5 * frame.lpp_m) - 0.5 * area / height * scale, keel - height * scale);
@@ -144,7 +147,7 @@ fn aft_words(known: &dyn Fn(&str) -> Option<f64>) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// A bar of a round length.
+/// Returns a bar of a round length.
 fn scale_bar(frame: &Frame, y: f64) -> [Shape; 4] {
     let length = sistership_report::plots::axes::nice_step(0.12 * frame.lpp_m);
     let (from, to) = (MARGIN, MARGIN + length * frame.per_metre);

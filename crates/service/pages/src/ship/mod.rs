@@ -1,4 +1,4 @@
-//! A ship: what it is, whether its model holds, its versions, trials and jobs, and what to do.
+//! The page of a ship: particulars, health of its model, versions, trials, jobs, and actions.
 
 mod drawing;
 mod versions;
@@ -24,12 +24,12 @@ use crate::picture::svg;
 use crate::rows::{JobRow, TrialRow};
 use crate::shell::Shell;
 
-/// Lines of each list.
+/// Number of lines of each list.
 const LINES: i64 = 50;
-/// Similar ships that are shown.
+/// Number of similar ships on the page.
 pub const SIMILAR: usize = 5;
 
-/// What the page is made of.
+/// Inputs of the page.
 pub struct Gathered {
     shell: Shell,
     ship: Ship,
@@ -64,13 +64,13 @@ struct ShipPage<'a> {
 }
 
 impl ShipPage<'_> {
-    /// Whether a version is the champion, the version in use.
+    /// Returns true if a version is the champion, the version in use.
     fn is_champion(&self, number: &i64) -> bool {
         self.of.condition.version == Some(*number)
     }
 }
 
-/// A note as it is shown: when, by whom, and what.
+/// A note: time, author and text.
 struct NoteRow {
     made: String,
     actor: String,
@@ -103,7 +103,7 @@ impl EvidenceRow {
     }
 }
 
-/// Since which trial a condition is so.
+/// Formats the trial since which a condition holds.
 fn since(since: &SinceTrial) -> String {
     format!("{}, uploaded {}", since.name, date(since.at_us))
 }
@@ -116,7 +116,7 @@ struct SimilarRow {
     reasons: Vec<String>,
 }
 
-/// The methods of a refinement, by their names in requests.
+/// Methods of a refinement, by their names in requests.
 const METHODS: [(&str, &str); 5] = [
     ("", "try all and take the best"),
     ("weak", "weak: rows integrated over windows"),
@@ -125,13 +125,14 @@ const METHODS: [(&str, &str); 5] = [
     ("cma-es", "cma-es: search among simulations"),
 ];
 
-/// Reads what the page shows.
+/// Reads the inputs of the page.
 ///
 /// # Errors
-/// There is no such ship, or the store does not answer.
+/// Returns an error if there is no such ship or the store fails.
 pub async fn gather(archive: &Archive, shell: Shell, name: &str) -> Result<Gathered> {
     let store = &archive.store;
     let ship = store.ships().get(name).await?;
+    // Only the first entries of each list are shown.
     let aliases = store.aliases().list(name, &Page::first(LINES)).await?.items;
     let trials = store.trials().list(name, &Page::first(LINES)).await?;
     let filter = JobFilter { ship: Some(name.to_owned()), state: None };
@@ -157,33 +158,35 @@ pub async fn gather(archive: &Archive, shell: Shell, name: &str) -> Result<Gathe
     })
 }
 
-/// The version that was champion before the present one.
+/// Returns the version that was champion before the present one.
 async fn before(archive: &Archive, aliases: &[Alias], ship: &str) -> Result<Option<i64>> {
+    // Without champion the alias has no history.
     if !aliases.iter().any(|alias| alias.alias == CHAMPION) {
         return Ok(None);
     }
+    // The latest move names the version before it.
     let history = archive.store.aliases().history(ship, CHAMPION, &Page::first(1)).await?;
     Ok(history.items.first().and_then(|change| change.from_number))
 }
 
 impl Gathered {
-    /// The ship, among which others are similar.
+    /// The ship, to which others are compared.
     pub fn vessel(&self) -> &Vessel {
         &self.vessel
     }
 
-    /// The ships of a zoo that are most similar, and whether each may be the source.
+    /// Returns the ships of a zoo that are most similar, with their eligibility as source models.
     ///
     /// # Errors
-    /// The store does not answer.
+    /// Returns an error if the store fails.
     pub async fn similar(&self, archive: &Archive, zoo: Arc<Zoo>) -> Result<Vec<RankedSource>> {
         Ok(most_similar_ships(archive, zoo, self.vessel.clone(), SIMILAR).await?)
     }
 
-    /// The page with the ships that are most similar.
+    /// Returns the page, with the ships that are most similar.
     ///
     /// # Errors
-    /// The page cannot be written.
+    /// Returns an error if the page cannot be rendered.
     pub fn html(&self, similar: Vec<RankedSource>) -> Result<String> {
         let particulars = &self.vessel.particulars;
         let drawing = drawing::drawing(particulars, &self.ship.title);
@@ -208,7 +211,7 @@ impl Gathered {
     }
 }
 
-/// The address of a comparison of the two newest versions.
+/// Returns the address of a comparison of the two newest versions.
 fn compare(ship: &str, versions: &[VersionRow]) -> String {
     let each = versions.iter().take(2).map(|version| format!("v={ship}/{}", version.number));
     format!("/compare?{}", each.collect::<Vec<_>>().join("&"))

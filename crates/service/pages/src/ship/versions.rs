@@ -1,4 +1,4 @@
-//! The versions of a ship's model as its page lists them.
+//! The list of versions on the page of a ship.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use sistership_store::{Alias, Page, Store, StoreError, VersionHead};
 use crate::date::date;
 use crate::error::Result;
 
-/// Versions on the page; errors are read from their documents.
+/// Number of versions on the page; their errors are read from their documents.
 const VERSIONS: i64 = 12;
 
 pub(super) struct VersionRow {
     pub number: i64,
     pub aliases: Vec<String>,
-    /// The version it was made from, and where that is.
+    /// Label and address of the version it was made from.
     pub parent: Option<(String, String)>,
     pub law: String,
     pub method: String,
@@ -26,7 +26,7 @@ pub(super) struct VersionRow {
     pub report: Option<String>,
 }
 
-/// What is read of a document; the rest is passed over.
+/// The part of a document that is read.
 #[derive(Deserialize)]
 struct Reported {
     report: Option<Options>,
@@ -45,7 +45,7 @@ struct Step {
     error: Option<f64>,
 }
 
-/// The newest versions, and whether there are more.
+/// Returns the newest versions, and whether there are more.
 pub(super) async fn versions(
     archive: &Archive,
     ship: &str,
@@ -56,6 +56,7 @@ pub(super) async fn versions(
     let mut labels: BTreeMap<String, (String, String)> = own.collect();
     let mut rows = Vec::new();
     for head in &list.items {
+        // A parent that is not among the listed versions is read once.
         if let Some(parent) = head.parent.as_ref().filter(|parent| !labels.contains_key(*parent)) {
             let found = archive.store.versions().by_id(parent).await?.head;
             labels.insert(parent.clone(), label(&found));
@@ -92,7 +93,7 @@ async fn row(
     })
 }
 
-/// The error on manoeuvres left out, where the version was refined.
+/// Returns the error on held-out manoeuvres of a refined version.
 async fn error(store: &Store, head: &VersionHead) -> Result<Option<f64>, StoreError> {
     if head.method.starts_with("published") {
         return Ok(None);

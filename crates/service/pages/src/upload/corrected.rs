@@ -1,4 +1,4 @@
-//! A manifest as a person has corrected it in the form.
+//! A manifest with the corrections of the form.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,11 @@ use super::proposed::{DERIVED, Proposed, TARGETS};
 use crate::error::{PageError, Result};
 use crate::form::Fields;
 
-/// The manifest with what the form says of columns, signs, manoeuvres and depths.
+/// Returns the manifest with the form's columns, signs, manoeuvres and depths.
 ///
 /// # Errors
-/// A field is wrong: a channel is unknown or given twice, a unit is missing, a depth is no number.
+/// Returns an error if a channel is unknown or given twice, a unit is missing, or a depth is no
+/// number.
 pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
     let mut manifest = of.manifest.clone();
     let mut by_file: BTreeMap<&str, IndexMap<String, ColumnMapping>> = BTreeMap::new();
@@ -23,7 +24,7 @@ pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
         match mapped(fields, key, &guess.column)? {
             None => ignored.push(guess.column.clone()),
             Some((channel, mut mapping)) => {
-                // The rudder's sign is a field of its own.
+                // The sign of the rudder is a field of its own.
                 mapping.reversed = guess.reversed && !channel.starts_with("delta");
                 if let Some(first) = columns.insert(channel.clone(), mapping) {
                     let message = format!("`{}` is taken for {channel} already", first.column);
@@ -38,9 +39,11 @@ pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
             sensor.columns = columns.into_iter().collect();
         }
     }
+    // The remaining entry is that of the first trial file, whose columns the other trials share.
     if let Some(columns) = by_file.into_values().next() {
         manifest.manifest.columns = columns;
     }
+    // Two files may have ignored columns of the same name.
     ignored.sort_unstable();
     ignored.dedup();
     manifest.declarations.ignore = ignored;
@@ -49,7 +52,7 @@ pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
     Ok(manifest)
 }
 
-/// Channel and unit of a column; none where it is left out.
+/// Returns channel and unit of a column; `None` if it is not used.
 fn mapped(fields: &Fields, key: usize, column: &str) -> Result<Option<(String, ColumnMapping)>> {
     let field = format!("channel.{key}");
     let Some(channel) = fields.text(&field) else { return Ok(None) };

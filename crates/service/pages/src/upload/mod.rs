@@ -1,5 +1,5 @@
-//! Trials on their way in: files are chosen, what each column is taken for is shown with what was
-//! read, corrected, and only then kept.
+//! Upload of trials: files are chosen, the proposed mapping of their columns is shown with the
+//! parsed data, corrected, and only then stored.
 
 mod corrected;
 mod preview;
@@ -17,7 +17,7 @@ use self::proposed::{DERIVED, TARGETS, columns_of};
 use crate::error::Result;
 use crate::shell::Shell;
 
-/// Units in use.
+/// Units offered by the form.
 const UNITS: [&str; 17] = [
     "s", "ms", "min", "auto", "hh:mm:ss", "m", "km", "m/s", "kn", "km/h", "rad", "deg", "rad/s",
     "deg/s", "deg/min", "rps", "rpm",
@@ -30,10 +30,10 @@ struct UploadPage<'a> {
     ship: &'a str,
 }
 
-/// The page on which files are chosen.
+/// Returns the page on which files are chosen.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn choose(shell: &Shell, ship: &str) -> Result<String> {
     Ok(UploadPage { shell, ship }.render()?)
 }
@@ -64,10 +64,10 @@ struct ColumnRow<'a> {
     unit: &'a str,
 }
 
-/// The page on which the mapping is read over.
+/// Returns the page on which the mapping is reviewed.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<String> {
     let conventions = &of.manifest.manifest.conventions;
     let derive = &of.manifest.declarations.derive;
@@ -78,6 +78,7 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
         units: UNITS,
         columns: rows(of),
         previews,
+        // Only an upload without errors may be stored.
         accepted: previews.iter().all(Preview::is_accepted),
         port: conventions.rudder_positive == RudderSign::PortTurn,
         water: conventions.velocity == VelocityFrame::Water,
@@ -89,8 +90,8 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
     Ok(page.render()?)
 }
 
-/// The guesses whose columns the manifest maps: those of the first file, which the other trials
-/// share, and those of further sensors. A sentence of NMEA 0183 needs no mapping.
+/// Returns the guesses whose columns the manifest maps: those of the first file, which the other
+/// trials share, and those of further sensors. A sentence of NMEA 0183 needs no mapping.
 fn rows(of: &Proposed) -> Vec<ColumnRow<'_>> {
     let own = of.guesses.iter().enumerate().filter(|(_, guess)| of.is_mapped(&guess.file));
     own.map(|(key, guess)| {

@@ -1,4 +1,4 @@
-//! What was read of a file, before it is kept.
+//! Preview of the data of a file, before it is stored.
 
 use sistership_model::trial::{Finding, Trial};
 use sistership_trials::Refusal;
@@ -6,7 +6,7 @@ use sistership_trials::Refusal;
 use crate::picture::svg;
 use crate::plot::{Track, channels, ground};
 
-/// What was read of a file.
+/// Data of a file, or its errors.
 #[derive(Debug)]
 pub struct Preview {
     pub(super) file: String,
@@ -19,7 +19,7 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Of a trial that was read, or of what was refused.
+    /// Returns the preview of a trial, or of a refusal.
     pub fn of(read: Result<Trial, Refusal>) -> Self {
         match read {
             Ok(trial) => Self::accepted(&trial),
@@ -35,7 +35,7 @@ impl Preview {
         }
     }
 
-    /// Leaves out the plots: a page has room for those of a few files.
+    /// Removes the plots: a page has room for those of a few files.
     pub fn without_plots(self) -> Self {
         Self { track: None, series: None, ..self }
     }
@@ -55,7 +55,7 @@ impl Preview {
         }
     }
 
-    /// Whether the file can be kept.
+    /// Returns true if the file can be stored.
     pub fn is_accepted(&self) -> bool {
         self.errors.is_empty()
     }

@@ -1,9 +1,9 @@
-//! An upload as it is proposed to be read.
+//! The proposed reading of an upload.
 
 use sistership_model::manifest::ColumnMapping;
 use sistership_trials::{Derivable, Guess, ManifestFile};
 
-/// Names of what a column may be, as manifests have them.
+/// Channels that a column may be mapped to, as manifests name them.
 pub(super) const TARGETS: [&str; 28] = [
     "t",
     "x",
@@ -43,19 +43,19 @@ pub(super) const DERIVED: [(&str, Derivable); 3] =
 pub struct Proposed {
     /// The ship.
     pub ship: String,
-    /// Where its files are looked at.
+    /// Id of the upload in addresses.
     pub id: String,
-    /// What each column was taken for at first, and why.
+    /// First guess for each column, with its reason.
     pub guesses: Vec<Guess>,
-    /// How the files are read now.
+    /// Manifest by which the files are read now.
     pub manifest: ManifestFile,
-    /// Whether the champion is to be diagnosed on what is kept.
+    /// True if the champion is to be diagnosed on the stored trials.
     pub diagnose: bool,
 }
 
 impl Proposed {
-    /// Whether the manifest maps the columns of a file: of the first, which the other trials share,
-    /// and of further sensors.
+    /// Returns true if the manifest maps the columns of a file: of the first trial, which the other
+    /// trials share, or of a further sensor.
     pub(super) fn is_mapped(&self, file: &str) -> bool {
         let first = self.manifest.manifest.trials.first();
         let sensors = self.manifest.sensors.iter().flatten();
@@ -64,11 +64,12 @@ impl Proposed {
     }
 }
 
-/// The columns of a file as they are mapped now.
+/// Returns the columns of a file as they are mapped now.
 pub(super) fn columns_of<'a>(
     manifest: &'a ManifestFile,
     file: &str,
 ) -> Vec<(&'a String, &'a ColumnMapping)> {
+    // A file of a further sensor has its own mapping; all others share that of the manifest.
     let sensor = manifest.sensors.iter().flatten().find(|sensor| sensor.file == file);
     match sensor {
         Some(sensor) => sensor.columns.iter().collect(),

@@ -1,22 +1,23 @@
-//! The coefficients of a version as its page lists them.
+//! The list of coefficients on the page of a version.
 
 use sistership_model::{Law, Model};
 use sistership_report::numbers::{fixed, significant};
 
-/// A coefficient with its error.
+/// A coefficient with its standard error.
 pub(super) struct CoefficientRow {
     pub name: String,
     pub value: String,
     pub error: String,
-    /// The error by the size of the value.
+    /// Ratio of the error to the size of the value.
     pub share: String,
     pub source: String,
 }
 
-/// In the order of the law.
+/// Returns the coefficients in the order of the law.
 pub(super) fn rows(model: &Model, law: &Law) -> Vec<CoefficientRow> {
     let ordered = law.coefficient_names();
     let place = |name: &String| ordered.iter().position(|known| known == name);
+    // Coefficients that the law does not have come last, by name.
     let mut names: Vec<&String> = model.coefficients.keys().collect();
     names.sort_by_key(|name| (place(name).unwrap_or(usize::MAX), *name));
     names.into_iter().filter_map(|name| row(model, name)).collect()
@@ -24,6 +25,8 @@ pub(super) fn rows(model: &Model, law: &Law) -> Vec<CoefficientRow> {
 
 fn row(model: &Model, name: &str) -> Option<CoefficientRow> {
     let quantity = model.coefficients.get(name)?;
+    // The posterior has the standard deviations of a refined model; published models may state a
+    // standard error.
     let posterior =
         model.posterior.as_ref().and_then(|known| known.deviations().get(name).copied());
     let error = posterior.or(quantity.standard_error);

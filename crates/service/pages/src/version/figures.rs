@@ -1,10 +1,10 @@
-//! What a version says of the standard manoeuvres, with bands where its report has them.
+//! Figures of the standard manoeuvres of a version, with uncertainty bands if its report has them.
 
 use serde_json::Value;
 use sistership_report::numbers::{fixed, known, significant};
 use sistership_simulation::manoeuvre::{Figure, StandardManoeuvres};
 
-/// A band wider than this share of the figure is called wide.
+/// A band wider than this share of the figure is marked as wide.
 const WIDE: f64 = 0.5;
 
 /// A figure of a manoeuvre.
@@ -26,17 +26,18 @@ pub(super) struct CriterionRow {
     pub limit: String,
     pub verdict: &'static str,
     pub class: &'static str,
-    /// The share of models drawn from the posterior that meet it.
+    /// Share of the models drawn from the posterior that meet it.
     pub share: String,
 }
 
-/// Figures and criteria.
+/// Returns figures and criteria.
 pub(super) fn rows(
     sailed: &StandardManoeuvres,
     report: &Value,
 ) -> (Vec<FigureRow>, Vec<CriterionRow>) {
     let bands = &report["manoeuvres"]["bands"]["figures"];
     let figures = sailed.figures();
+    // Figures with a verdict are in the table of criteria.
     let plain = figures.iter().filter(|figure| figure.pass.is_none());
     let plain = plain.filter(|figure| !figure.name.starts_with("IMO"));
     let criteria = sailed.imo.iter().map(|criterion| {
@@ -67,6 +68,7 @@ fn known_value(value: Option<f64>) -> String {
 fn row(figure: &Figure, bands: &Value) -> FigureRow {
     let band = band_of(&figure.name, bands)
         .and_then(|band| Some((band["low"].as_f64()?, band["high"].as_f64()?)));
+    // A band is judged by its width relative to the value.
     let wide =
         |(low, high): (f64, f64)| figure.value.is_some_and(|value| high - low > WIDE * value.abs());
     FigureRow {
@@ -80,7 +82,7 @@ fn row(figure: &Figure, bands: &Value) -> FigureRow {
     }
 }
 
-/// The band of a figure, by its name.
+/// Returns the band of a figure, by its name.
 fn band_of<'a>(name: &str, bands: &'a Value) -> Option<&'a Value> {
     bands.as_array()?.iter().find(|band| band["figure"] == name)
 }

@@ -1,4 +1,4 @@
-//! Where a version comes from and what came of it, as a picture.
+//! Lineage of a version as a picture: its ancestors and descendants.
 
 use sistership_jobs::Archive;
 use sistership_jobs::version::VersionDocument;
@@ -8,15 +8,15 @@ use sistership_store::{Page, VersionHead};
 use crate::error::Result;
 use crate::picture::{line, text};
 
-/// Ancestors that are shown.
+/// Number of ancestors in the picture.
 const ANCESTORS: usize = 4;
-/// Descendants that are shown.
+/// Number of descendants in the picture.
 const DESCENDANTS: i64 = 5;
 const NODE: (f64, f64) = (150.0, 48.0);
 const ACROSS: f64 = 36.0;
 const DOWN: f64 = 14.0;
 
-/// A version in the picture and in the list beside it.
+/// A version in the picture and in the list.
 pub(super) struct Node {
     pub label: String,
     pub at: String,
@@ -28,13 +28,17 @@ pub(super) struct Lineage {
     pub ancestors: Vec<Node>,
     pub own: Node,
     pub descendants: Vec<Node>,
-    /// Names of the trials that it was made of.
+    /// Names of the trials it was fitted to.
     pub trials: Vec<String>,
-    /// Names of the effects that it carries.
+    /// Names of its effects.
     pub effects: Vec<String>,
 }
 
 impl Lineage {
+    /// Reads ancestors and descendants of a version.
+    ///
+    /// # Errors
+    /// Returns an error if the store fails.
     pub async fn of(
         archive: &Archive,
         head: &VersionHead,
@@ -42,6 +46,7 @@ impl Lineage {
     ) -> Result<Self> {
         let versions = archive.store.versions();
         let (mut ancestors, mut parent) = (Vec::new(), head.parent.clone());
+        // Each parent is one look-up; the chain is cut off after a few.
         while let Some(id) = parent.filter(|_| ancestors.len() < ANCESTORS) {
             let found = versions.by_id(&id).await?.head;
             ancestors.insert(0, Node::of(&found));
@@ -57,10 +62,12 @@ impl Lineage {
         })
     }
 
-    /// The picture: time goes to the right.
+    /// Draws the picture; time goes to the right.
     pub fn drawn(&self) -> Plot {
+        // At least two rows, so that the texts below the node have room.
         let rows = self.descendants.len().max(2);
         let step = NODE.1 + DOWN;
+        // The version is in the middle of the height that its descendants need.
         let middle = 10.0 + 0.5 * (rows as f64 * step - DOWN) - 0.5 * NODE.1;
         let x = |column: usize| 6.0 + column as f64 * (NODE.0 + ACROSS);
         let mut shapes = Vec::new();
@@ -87,7 +94,7 @@ impl Lineage {
         }
     }
 
-    /// What else went into it, below its node.
+    /// Returns texts on trials and effects, below the node of the version.
     fn beside(&self, at: (f64, f64)) -> Vec<Shape> {
         let trials = match self.trials.len() {
             0 => None,
@@ -126,7 +133,7 @@ impl Node {
     }
 }
 
-/// What has room in a node.
+/// Shortens a text to the width of a node.
 fn cut(words: &str) -> String {
     const LETTERS: usize = 25;
     match words.chars().count() <= LETTERS {

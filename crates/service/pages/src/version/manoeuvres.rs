@@ -1,6 +1,6 @@
-//! The standard manoeuvres of a version, as its page shows them.
+//! The standard manoeuvres on the page of a version.
 //!
-//! A version never changes, so that what it says of them does not either: sailing takes most of the
+//! A version never changes, and neither do its manoeuvres: their simulation takes most of the
 //! page's time, and is done once.
 
 use std::sync::Arc;
@@ -20,21 +20,21 @@ use crate::error::Result;
 use crate::picture::svg;
 use crate::plot::{LINES, Track, channels, ground, legend};
 
-/// What all of them may take, bytes.
+/// Memory of the cache, bytes.
 const MOST: u64 = 32 << 20;
-/// About as many versions as that is.
+/// Estimated number of versions in the cache.
 const COUNT: usize = 500;
-/// What is drawn, by its place among the standard manoeuvres.
+/// Manoeuvres in the plots, by their index among the standard manoeuvres.
 const DRAWN: [(usize, &str); 3] =
     [(0, "turn, 35 deg to starboard"), (1, "turn, 35 deg to port"), (4, "zigzag 20/20")];
-/// The one that is drawn over time.
+/// Manoeuvre that is plotted over time.
 const OVER_TIME: &str = DRAWN[2].1;
 
-/// Manoeuvres by the version's id; those that were not looked at for longest go first.
+/// Cache of manoeuvres by the version's id; the least recently used are removed first.
 #[derive(Debug)]
 pub struct KnownManoeuvres(Cache<String, Arc<Manoeuvres>, Size>);
 
-/// What the page shows of the manoeuvres.
+/// Manoeuvres on the page.
 #[derive(Debug)]
 pub(super) struct Manoeuvres {
     pub figures: Vec<FigureRow>,
@@ -56,6 +56,7 @@ impl Weighter<String, Arc<Manoeuvres>> for Size {
     fn weight(&self, _: &String, manoeuvres: &Arc<Manoeuvres>) -> u64 {
         let drawn = [&manoeuvres.track, &manoeuvres.series];
         let drawn: usize = drawn.into_iter().flatten().map(String::len).sum();
+        // Estimated bytes of one row.
         let row = 300;
         (drawn + row * (manoeuvres.figures.len() + manoeuvres.criteria.len() + 1)) as u64
     }
@@ -68,10 +69,10 @@ impl Default for KnownManoeuvres {
 }
 
 impl KnownManoeuvres {
-    /// Those of a version.
+    /// Returns the manoeuvres of a version, from the cache if possible.
     ///
     /// # Errors
-    /// A picture cannot be written.
+    /// Returns an error if a plot cannot be rendered.
     pub(super) fn of(
         &self,
         id: &str,
@@ -82,6 +83,7 @@ impl KnownManoeuvres {
             return Ok(known);
         }
         let manoeuvres = Arc::new(Manoeuvres::of(document, law)?);
+        // Two requests at a time may both simulate; the results are equal.
         self.0.insert(id.to_owned(), Arc::clone(&manoeuvres));
         Ok(manoeuvres)
     }
@@ -90,6 +92,7 @@ impl KnownManoeuvres {
 impl Manoeuvres {
     fn of(document: &VersionDocument, law: &Law) -> Result<Self> {
         let model = &document.model;
+        // A model that cannot be simulated still has its page, with the reason among the notes.
         let (figures, tracks) = match sailed(document, law) {
             Ok((figures, tracks)) => (figures, tracks),
             Err(error) => {
@@ -99,6 +102,7 @@ impl Manoeuvres {
         };
         let (notes, legend) = (figures.failures.clone(), legend(&tracks));
         let (figures, criteria) = figures::rows(&figures, &document.report);
+        // The zigzag is plotted over time, the circles over the ground.
         let (zigzags, circles): (Vec<Track>, Vec<Track>) =
             tracks.into_iter().partition(|track| track.name == OVER_TIME);
         let label = format!("Turning circles of {}", model.name);
@@ -121,7 +125,7 @@ impl Manoeuvres {
     }
 }
 
-/// Figures, as they were when the version was made where its report has them, and tracks.
+/// Returns the figures, from the report if it has them, and the tracks.
 fn sailed(
     document: &VersionDocument,
     law: &Law,
@@ -142,7 +146,7 @@ fn sailed(
     Ok((figures, tracks.collect()))
 }
 
-/// The figures as they were sailed when the version was made.
+/// Returns the figures of the report, which were simulated when the version was made.
 fn reported(document: &VersionDocument) -> Option<StandardManoeuvres> {
     let refined = document.report.pointer("/manoeuvres/refined")?;
     serde_json::from_value(refined.clone()).ok()

@@ -1,5 +1,4 @@
-//! A version: its coefficients, what it says of the standard manoeuvres, where it holds, and how it
-//! was made.
+//! The page of a version: its coefficients, standard manoeuvres, range of validity, and lineage.
 
 mod coefficients;
 mod figures;
@@ -27,14 +26,14 @@ use crate::shell::Shell;
 
 pub use self::manoeuvres::KnownManoeuvres;
 
-/// What the page is made of.
+/// Inputs of the page.
 pub struct Gathered {
     shell: Shell,
     version: Version,
     document: VersionDocument,
     law: Law,
     aliases: Vec<String>,
-    /// The revision of the alias `champion`, if there is one.
+    /// Revision of the alias `champion`, if there is one.
     champion: Option<i64>,
     report: Option<String>,
     lineage: Lineage,
@@ -61,15 +60,17 @@ struct EffectRow {
     parameters: Vec<(String, String, String)>,
 }
 
-/// Reads what the page shows.
+/// Reads the inputs of the page.
 ///
 /// # Errors
-/// There is no such version, or the store does not answer.
+/// Returns an error if there is no such version or the store fails.
 pub async fn gather(archive: &Archive, shell: Shell, ship: &str, number: i64) -> Result<Gathered> {
     let store = &archive.store;
     let version = store.versions().get(ship, number).await?;
     let mut parsed = document(&version)?;
+    // The weights of a learned correction are an object of their own.
     archive.attach(&mut parsed.model).await?;
+    // The law is that of the hash in the recipe.
     let law = archive.law(&parsed.model.law, parsed.recipe.law_sha256()).await?;
     let aliases = store.aliases().list(ship, &Page::first(50)).await?.items;
     let reports = store.reports().by_version(&version.head.id, &Page::first(1)).await?;
@@ -92,10 +93,10 @@ pub async fn gather(archive: &Archive, shell: Shell, ship: &str, number: i64) ->
 }
 
 impl Gathered {
-    /// The page; the standard manoeuvres are sailed for it unless they are known.
+    /// Returns the page; the standard manoeuvres are simulated for it unless they are in the cache.
     ///
     /// # Errors
-    /// The page cannot be written.
+    /// Returns an error if the page cannot be rendered.
     pub fn html(&self, known: &KnownManoeuvres) -> Result<String> {
         let model = &self.document.model;
         let page = VersionPage {
@@ -129,8 +130,9 @@ fn effects(model: &sistership_model::Model) -> Vec<EffectRow> {
     model.effects.iter().map(row).collect()
 }
 
-/// Name, least and greatest of what the trials covered.
+/// Returns name, minimum and maximum of the ranges that the trials covered.
 fn validity(model: &sistership_model::Model) -> Vec<(String, String, String)> {
     let ranges = model.validity.iter().flat_map(|region| &region.ranges);
+    // Ranges are in SI units and radians, as the model states them.
     ranges.map(|(name, [low, high])| (name.clone(), stated(*low, 4), stated(*high, 4))).collect()
 }

@@ -1,4 +1,4 @@
-//! Publications that laws and effects name.
+//! Publications that laws and effects cite.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub(super) struct Citation {
     pub note: Option<String>,
 }
 
-/// All of them.
+/// Returns all publications, by key.
 pub(super) fn citations(sources: &BTreeMap<String, Source>) -> Vec<Citation> {
     let one = |(key, source): (&String, &Source)| Citation {
         key: key.clone(),

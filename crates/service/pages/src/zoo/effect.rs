@@ -24,21 +24,21 @@ struct EffectPage {
     citations: Vec<Citation>,
 }
 
-/// One form.
+/// One form of the effect.
 struct FormRows {
     name: String,
     meaning: String,
     needs: String,
     /// Name, unit, meaning, bounds.
     parameters: Vec<(String, String, String, String)>,
-    /// What is said, and the formula.
+    /// Description and formula.
     formulas: Vec<(String, String)>,
 }
 
-/// The page of an effect of this release.
+/// Returns the page of an effect of this release.
 ///
 /// # Errors
-/// There is no such effect.
+/// Returns an error if there is no such effect.
 pub fn effect(shell: Shell, name: &str) -> Result<String> {
     let known = library()?.effects.iter().find(|effect| effect.name == name);
     let effect = known.ok_or_else(|| {

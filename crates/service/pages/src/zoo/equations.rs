@@ -1,9 +1,9 @@
-//! Formulas of a law as people read them: MathML Core (W3C), which browsers set without a script.
+//! Formulas of a law for people: MathML Core (W3C), which browsers render without a script.
 
-/// A formula as MathML, from its text in a file.
+/// Returns a formula as MathML, from its text in a file.
 ///
-/// Names become italic letters with what follows the first `_` below them, powers are raised. What
-/// stands in the file is not rearranged.
+/// Names become italic letters with the part after the first `_` as subscript; powers are raised.
+/// The order of the terms is that of the file.
 pub(super) fn mathml(formula: &str) -> String {
     let tokens = tokens(formula);
     let mut row = String::new();
@@ -21,7 +21,7 @@ pub(super) fn mathml(formula: &str) -> String {
     format!("<math><mrow>{row}</mrow></math>")
 }
 
-/// Names, numbers, and marks, of which comparisons have two letters.
+/// Splits a formula into names, numbers and marks; comparisons may have two characters.
 fn tokens(formula: &str) -> Vec<String> {
     let letters: Vec<char> = formula.chars().collect();
     let (mut tokens, mut at) = (Vec::new(), 0);
@@ -41,15 +41,16 @@ fn tokens(formula: &str) -> Vec<String> {
     tokens
 }
 
-/// What a name may hold.
+/// Returns true for characters of a name.
 fn is_name(letter: char) -> bool {
     letter.is_alphanumeric() || "_.@".contains(letter)
 }
 
-/// How many letters a number has, with its exponent.
+/// Length of a number, with its exponent, in characters.
 fn number_length(letters: &[char]) -> usize {
     let mut length = 0;
     for (at, letter) in letters.iter().enumerate() {
+        // A sign belongs to a number only after the mark of its exponent.
         let signed = "+-".contains(*letter) && at > 0 && "eE".contains(letters[at - 1]);
         if !(letter.is_ascii_digit() || ".eE".contains(*letter) || signed) {
             break;
@@ -59,7 +60,7 @@ fn number_length(letters: &[char]) -> usize {
     length
 }
 
-/// What a power may follow: a bracketed group, a name with its arguments, a number; or a mark.
+/// Parses the base of a power: a bracketed group, a name with its arguments, a number; or a mark.
 fn atom(tokens: &[String], at: &mut usize) -> String {
     let Some(token) = tokens.get(*at) else { return String::new() };
     *at += 1;
@@ -69,6 +70,8 @@ fn atom(tokens: &[String], at: &mut usize) -> String {
         ">=" => "<mo>\u{2265}</mo>".to_owned(),
         "<=" => "<mo>\u{2264}</mo>".to_owned(),
         "-" => "<mo>\u{2212}</mo>".to_owned(),
+        // The guards are tried in order: marks have no letters, numbers begin with a digit, and
+        // functions are names before a bracket.
         mark if mark.chars().all(|letter| !letter.is_alphanumeric()) => {
             format!("<mo>{}</mo>", escaped(mark))
         }
@@ -83,7 +86,7 @@ fn atom(tokens: &[String], at: &mut usize) -> String {
     }
 }
 
-/// What stands up to the closing bracket, with both brackets.
+/// Parses up to the closing bracket, and returns the group with both brackets.
 fn group(tokens: &[String], at: &mut usize) -> String {
     let mut inside = String::from("<mo>(</mo>");
     while *at < tokens.len() && tokens[*at] != ")" {
@@ -96,6 +99,7 @@ fn group(tokens: &[String], at: &mut usize) -> String {
             inside.push_str(&base);
         }
     }
+    // Past the closing bracket; an open one ends with the formula.
     *at += 1;
     inside + "<mo>)</mo>"
 }
@@ -115,7 +119,7 @@ const GREEK: [(&str, &str); 12] = [
     ("tau", "τ"),
 ];
 
-/// Particulars by the letters that stand for them, without their units.
+/// Symbols of particulars, without their units.
 const PARTICULARS: [(&str, &str); 4] = [
     ("lpp_m", "<msub><mi>L</mi><mi>pp</mi></msub>"),
     ("beam_m", "<mi>B</mi>"),
@@ -123,7 +127,8 @@ const PARTICULARS: [(&str, &str); 4] = [
     ("water_density_kg_m3", "<mi>\u{03c1}</mi>"),
 ];
 
-/// A name: its first part, with the rest below it; a particular by its letter.
+/// Returns the symbol of a name: its first part, with the rest as subscript; a particular by its
+/// letter.
 pub(super) fn symbol(name: &str) -> String {
     if let Some((_, letter)) = PARTICULARS.iter().find(|(known, _)| *known == name) {
         return (*letter).to_owned();
@@ -136,7 +141,7 @@ pub(super) fn symbol(name: &str) -> String {
     }
 }
 
-/// Greek letters in the place of their names.
+/// Replaces names of Greek letters by the letters.
 fn greek(text: &str) -> String {
     GREEK.iter().fold(text.to_owned(), |text, (name, letter)| text.replace(name, letter))
 }

@@ -27,16 +27,16 @@ struct LawPage {
 struct AxisRows {
     name: String,
     scale: Option<String>,
-    /// Coefficient and what it multiplies; only a name where its factors say that.
+    /// Coefficient and its factor; only a name if the law's factors give that.
     terms: Vec<(String, Option<String>)>,
     rest: Option<String>,
     open: bool,
 }
 
-/// The page of a law.
+/// Returns the page of a law.
 ///
 /// # Errors
-/// There is no such law, or the store does not answer.
+/// Returns an error if there is no such law or the store fails.
 pub async fn law(archive: &Archive, shell: Shell, name: &str) -> Result<String> {
     let stored = archive.store.laws().get(name).await?;
     let law: LawFile =
@@ -71,6 +71,7 @@ fn symbol_alone(name: &str) -> String {
 }
 
 fn axis_rows(name: &str, file: &AxisFile) -> AxisRows {
+    // A term is a name, whose factor its letters give, or a pair of name and formula.
     let terms = file.terms.iter().flat_map(|term| match term {
         TermFile::Name(name) => vec![(symbol_alone(name), None)],
         TermFile::Formula(pairs) => pairs

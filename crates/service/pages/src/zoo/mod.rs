@@ -30,10 +30,10 @@ struct LawRow<'a> {
     inputs: String,
 }
 
-/// The laws of the database and the effects of this release.
+/// Returns the laws of the database and the effects of this release.
 ///
 /// # Errors
-/// The page cannot be written.
+/// Returns an error if the page cannot be rendered.
 pub fn index(zoo: &Zoo, shell: Shell) -> Result<String> {
     let row = |law| {
         let law: &Law = law;

@@ -1,18 +1,19 @@
-//! What a backup consists of: a copy of the database, as files and perhaps tables.
+//! Content of a backup: a copy of the database, as files and, for PostgreSQL, tables.
 
 use serde::{Deserialize, Serialize};
 
-/// The objects that rows refer to: the samples of trials, and the weights of learned branches.
+/// Query of the keys of all objects that rows refer to: the samples of trials, and the weights of
+/// learned corrections.
 pub(crate) const KEYS: &str = "SELECT object_key FROM trials UNION \
     SELECT weights_key FROM versions WHERE weights_key IS NOT NULL ORDER BY 1";
 
-/// The kinds of databases.
+/// Kind of database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DatabaseKind {
-    /// One file.
+    /// SQLite: one file.
     Sqlite,
-    /// One file for each table.
+    /// PostgreSQL: one file for each table.
     Postgres,
 }
 
@@ -20,7 +21,7 @@ pub enum DatabaseKind {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileHead {
-    /// Its size.
+    /// Size, bytes.
     pub bytes: u64,
     /// The SHA-256 of its bytes.
     pub sha256: String,
@@ -36,7 +37,7 @@ pub struct TableHead {
     pub columns: Vec<String>,
 }
 
-/// What has been taken of a database.
+/// Copy of a database as it was at one moment.
 pub(crate) struct DatabaseCopy {
     pub kind: DatabaseKind,
     pub schema: i64,
@@ -48,7 +49,7 @@ pub(crate) struct DatabaseCopy {
 }
 
 impl DatabaseKind {
-    /// What the URL of such a database begins with.
+    /// Returns the scheme with which the URL of such a database begins.
     pub(crate) fn scheme(self) -> &'static str {
         match self {
             Self::Sqlite => "sqlite:",
@@ -56,7 +57,7 @@ impl DatabaseKind {
         }
     }
 
-    /// Whether a URL names such a database.
+    /// Returns true if a URL names a database of this kind.
     pub(crate) fn is_of(self, url: &str) -> bool {
         match self {
             Self::Sqlite => url.starts_with("sqlite:"),

@@ -10,12 +10,12 @@ use super::content::FileHead;
 use crate::error::{Result, StoreError};
 use crate::folders;
 
-/// A failure of the file system, with the file.
+/// Returns a conversion of I/O errors that adds the path.
 pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
     move |error| StoreError::File { path: path.to_path_buf(), error }
 }
 
-/// Makes the folder of a new backup.
+/// Creates the folder of a new backup, which must be empty or absent.
 pub(crate) fn claim(folder: &Path) -> Result<()> {
     folders::make(folder).map_err(at(folder))?;
     let first = fs::read_dir(folder).map_err(at(folder))?.next();
@@ -25,7 +25,7 @@ pub(crate) fn claim(folder: &Path) -> Result<()> {
     }
 }
 
-/// Size and hash of a file, read where it holds nobody up.
+/// Returns size and hash of a file, read on a thread for blocking work.
 pub(crate) async fn head(path: PathBuf) -> Result<FileHead> {
     let reading = tokio::task::spawn_blocking(move || hash(&path).map_err(at(&path)));
     reading.await.map_err(crate::objects_error::ObjectsError::from)?
@@ -33,6 +33,7 @@ pub(crate) async fn head(path: PathBuf) -> Result<FileHead> {
 
 fn hash(path: &Path) -> io::Result<FileHead> {
     let (mut file, mut hasher, mut bytes) = (File::open(path)?, Sha256::new(), 0);
+    // Read in pieces of 1 MiB: a database may be larger than the memory.
     let mut buffer = vec![0; 1 << 20];
     loop {
         match file.read(&mut buffer)? {
@@ -47,16 +48,18 @@ fn hash(path: &Path) -> io::Result<FileHead> {
     Ok(FileHead { bytes, sha256 })
 }
 
-/// Writes a file so that it is there whole or not at all, also after the power has failed.
+/// Writes a file atomically and durably: after a power failure it is complete or absent.
 pub(crate) fn write_whole(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
     let partial = path.with_added_extension("partial");
+    // Order matters: first the content is synced, then renamed, then the entry of the folder is
+    // synced.
     let done = write(&partial)
         .and_then(|()| File::open(&partial)?.sync_all())
         .and_then(|()| fs::rename(&partial, path));
     done.and_then(|()| folders::sync(path.parent().unwrap_or(Path::new("")))).map_err(at(path))
 }
 
-/// The refusal of a folder that is no backup, or a damaged one.
+/// Returns the error of a folder that is not a backup, or is a damaged one.
 pub(crate) fn not_a_backup(folder: &Path, message: impl Into<String>) -> StoreError {
     StoreError::conflict("backup", folder.display().to_string(), message)
 }

@@ -1,4 +1,4 @@
-//! What a backup says of itself.
+//! Manifest of a backup.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,27 +16,28 @@ const FILE: &str = "backup.json";
 /// The format that this program writes and reads.
 const FORMAT: &str = "sistership-backup/1";
 
-/// What a backup says of itself.
+/// Manifest of a backup.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BackupManifest {
-    /// Always `sistership-backup/1`.
+    /// Format of the backup, always `sistership-backup/1`.
     pub format: String,
-    /// What it was taken of, and can be restored to.
+    /// Kind of the database that was copied; it can be restored to this kind only.
     pub database: DatabaseKind,
-    /// The number of the last migration.
+    /// Number of the last migration of its schema.
     pub schema: i64,
-    /// When it was begun; what was acknowledged before is in it.
+    /// Time of the start, microseconds since 1970; everything acknowledged before is included.
     pub created_us: i64,
-    /// Its files, but for objects, which are named by their hashes.
+    /// Files other than objects, by path below the folder of the backup; objects are named by their
+    /// hashes.
     pub files: BTreeMap<String, FileHead>,
-    /// Its tables, of PostgreSQL.
+    /// Tables, for PostgreSQL.
     pub tables: Vec<TableHead>,
-    /// The number of its objects.
+    /// Number of objects.
     pub objects: usize,
-    /// Their size.
+    /// Total size of the objects, bytes.
     pub object_bytes: u64,
-    /// Objects that rows refer to but that were missing or damaged: their keys.
+    /// Keys of objects that rows refer to and that were missing or damaged.
     pub lost: Vec<String>,
 }
 
@@ -79,14 +80,17 @@ impl BackupManifest {
                 folder,
                 format!("is no backup, or an unfinished one: it has no {FILE}"),
             ),
+            // Only a missing manifest means that it is not a backup; other errors are reported as
+            // such.
             _ => at(&path)(error),
         })?;
         serde_json::from_slice(&text)
             .map_err(|error| not_a_backup(folder, format!("{FILE} does not read: {error}")))
     }
 
-    /// Whether this program can restore it there, and whether its files are what they were.
+    /// Checks that this program can restore the backup to `url`, and that its files are unchanged.
     pub(crate) async fn check(&self, folder: &Path, url: &str) -> Result<()> {
+        // A newer schema may have columns that this program does not know.
         if self.format != FORMAT || self.schema > migrate::newest() {
             let message = format!(
                 "was made by a newer program ({}, schema {}); restore it with that",
@@ -101,6 +105,7 @@ impl BackupManifest {
                 format!("the backup is of another kind of database; must begin with {kind}"),
             ));
         }
+        // Every file is read once before anything is restored.
         for (file, expected) in &self.files {
             if files::head(folder.join(file)).await? != *expected {
                 return Err(not_a_backup(folder, format!("its file {file} is damaged")));

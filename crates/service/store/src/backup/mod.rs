@@ -1,4 +1,4 @@
-//! A copy of a store, taken while others write, and a store made of it again.
+//! Backup of a store while others write, and restoration from it.
 //!
 //! The database is copied as it was at one moment; then the objects that its rows refer to, which
 //! were durable before those rows were written. A folder is a backup once its manifest is there,
@@ -26,9 +26,8 @@ use crate::objects::Objects;
 use crate::store::Store;
 
 impl Store {
-    /// Copies this store, with those of the objects that it refers to, into `folder`, which must be
-    /// empty or not be there. Objects that are missing or damaged are left out and told in the
-    /// manifest.
+    /// Copies this store, with the objects that it refers to, into `folder`, which must be empty or
+    /// absent. Objects that are missing or damaged are skipped and listed in the manifest.
     pub async fn backup(&self, objects: &Objects, folder: &Path) -> Result<BackupManifest> {
         files::claim(folder)?;
         let created_us = self.now_us();
@@ -36,14 +35,16 @@ impl Store {
             Writer::Sqlite(group) => sqlite::take(group.pool(), folder).await?,
             Writer::Postgres(pool) => postgres::take(&pool.lease().pool, folder).await?,
         };
+        // Objects after rows: every object of the copied rows was durable before its row was
+        // written.
         let copied = objects::copy(objects, &taken.keys, &Objects::local(folder)?).await?;
         let manifest = BackupManifest::new(folder, created_us, taken, copied).await?;
         manifest.write(folder)?;
         Ok(manifest)
     }
 
-    /// Makes a store of a backup: `url` must name a database of the same kind without tables,
-    /// `objects` must be empty.
+    /// Restores a backup: `url` must name a database of the same kind without tables, and `objects`
+    /// must be empty.
     pub async fn restore(folder: &Path, url: &str, objects: &Objects) -> Result<BackupManifest> {
         let manifest = BackupManifest::read(folder)?;
         manifest.check(folder, url).await?;
@@ -52,7 +53,7 @@ impl Store {
             DatabaseKind::Sqlite => sqlite::must_be_absent(url)?,
             DatabaseKind::Postgres => postgres::must_be_empty(url).await?,
         }
-        // Objects first: from the moment that a row is there, so is its object.
+        // Objects first: no row may refer to an object that is not there yet.
         objects::put(folder, manifest.objects, objects).await?;
         match manifest.database {
             DatabaseKind::Sqlite => sqlite::put(folder, url).await?,

@@ -1,4 +1,4 @@
-//! Objects on their way into a backup and out of it.
+//! Copies of objects into a backup and out of it.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::object_list::{AT_ONCE, ObjectName};
 use crate::objects::Objects;
 use crate::objects_error::ObjectsError;
 
-/// What has been copied.
+/// Summary of the copied objects.
 #[derive(Debug, Default)]
 pub(crate) struct CopiedObjects {
     pub objects: usize,
@@ -18,16 +18,17 @@ pub(crate) struct CopiedObjects {
     pub lost: Vec<String>,
 }
 
-/// What has become of one object.
+/// Outcome for one object.
 enum ObjectCopy {
     Whole { bytes: u64 },
     Lost { key: String },
 }
 
-/// Copies objects, each verified by its hash; goes on where one is lost.
+/// Copies objects, each verified by its hash; continues if one is missing or damaged.
 pub(crate) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Result<CopiedObjects> {
     let mut copied = CopiedObjects::default();
     let copies: Vec<_> = keys.iter().map(|key| copy_one(from, key.clone(), to)).collect();
+    // Several copies at a time; `buffered` keeps their order.
     let mut copies = stream::iter(copies).buffered(AT_ONCE);
     while let Some(copy) = copies.try_next().await? {
         match copy {
@@ -41,7 +42,7 @@ pub(crate) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Resul
     Ok(copied)
 }
 
-/// Copies an object, if it is there and whole.
+/// Copies an object if it is present and undamaged; other errors end the backup.
 async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<ObjectCopy> {
     match from.get(&key).await {
         Ok(bytes) => {
@@ -49,6 +50,7 @@ async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<ObjectCop
             to.put(bytes).await?;
             Ok(ObjectCopy::Whole { bytes: size })
         }
+        // Missing, an invalid key, or damaged: recorded and skipped.
         Err(
             StoreError::NotFound { .. }
             | StoreError::Invalid { .. }
@@ -69,12 +71,13 @@ pub(crate) async fn must_be_empty(objects: &Objects) -> Result<()> {
     }
 }
 
-/// Puts the objects of a backup where they belong. One that is missing or damaged is an error: a
-/// backup that was whole when it was made must be so now: `expected` of them.
+/// Restores the objects of a backup. A missing or damaged object is an error: all `expected`
+/// objects were complete when the backup was made.
 pub(crate) async fn put(folder: &Path, expected: usize, to: &Objects) -> Result<()> {
     let from = Objects::local(folder)?;
     let (mut count, mut all) = (0, from.list());
     while let Some(head) = all.try_next().await? {
+        // Other files in the folder are no objects of the backup.
         let ObjectName::Key(key) = head.name else { continue };
         to.put(from.get(&key).await?).await?;
         count += 1;

@@ -1,6 +1,6 @@
-//! A copy of a PostgreSQL database: every table by `COPY` within one repeatable-read transaction,
-//! which sees one moment and holds no writer up. Unlike `pg_dump` it needs no programs of the
-//! server's version on this machine.
+//! Backup of a PostgreSQL database: every table by `COPY` within one repeatable-read transaction,
+//! which sees the state of one moment and does not block writers. Unlike `pg_dump` it needs no
+//! programs of the server's version on this machine.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ use crate::error::{Result, StoreError};
 use crate::folders;
 use crate::migrate;
 
-/// Every table, each after those that it refers to.
+/// All tables, each after the tables that it refers to, so that foreign keys hold during
+/// restoration.
 pub(crate) const TABLES: &[&str] = &[
     "laws",
     "effect_libraries",
@@ -61,9 +62,11 @@ const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.
 
 pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
     folders::make(&folder.join(FOLDER)).map_err(at(folder))?;
+    // One snapshot for all tables, for the list of objects and for the number of the schema.
     let mut tx = pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await?;
     let mut tables = Vec::with_capacity(TABLES.len());
     for &name in TABLES {
+        // The columns are recorded, as their order may differ in the database that is restored.
         let columns = sqlx::query_scalar(COLUMNS).bind(name).fetch_all(&mut *tx).await?;
         let table = TableHead { name: name.to_owned(), columns };
         take_table(&mut tx, &table, &folder.join(file_of(&table))).await?;
@@ -94,6 +97,7 @@ async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Pat
 
 pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
     let mut connection = PgConnection::connect(url).await?;
+    // Any table counts, also one of another program.
     let tables =
         "SELECT COUNT(*) FROM information_schema.tables WHERE table_schema = current_schema()";
     let tables: i64 = sqlx::query_scalar(tables).fetch_one(&mut connection).await?;
@@ -108,12 +112,14 @@ pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
     }
 }
 
-/// Schema and rows in one transaction: a restoration that breaks off leaves an empty database.
+/// Restores schema and rows in one transaction: if it fails, the database stays empty.
 pub(crate) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> Result<()> {
     let mut connection = PgConnection::connect(url).await?;
     let mut tx = connection.begin().await?;
+    // The schema of the backup, not the newest one: its columns must match the files.
     migrate::postgres_up_to(manifest.schema, &mut tx).await?;
     for table in &manifest.tables {
+        // The name becomes a part of the statement below; only known names are let in.
         if !TABLES.contains(&table.name.as_str()) {
             return Err(not_a_backup(
                 folder,

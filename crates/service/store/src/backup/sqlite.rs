@@ -1,5 +1,5 @@
-//! A copy of an SQLite database by `VACUUM INTO`: one read transaction of SQLite's own, beside
-//! which writers go on; what comes out is one compact file without a log beside it.
+//! Backup of an SQLite database by `VACUUM INTO`: one read transaction of SQLite, during which
+//! writers continue; the result is one compact file without a write-ahead log.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr as _;
@@ -28,7 +28,7 @@ pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCop
     let path = folder.join(FILE);
     let into =
         path.to_str().ok_or_else(|| StoreError::invalid("folder", "its path must be UTF-8"))?;
-    // A connection of its own, so that neither readers nor the writer wait for it.
+    // A separate connection, so that neither readers nor the writer wait for the copy.
     let mut connection = pool.connect_options().as_ref().clone().connect().await?;
     sqlx::query("VACUUM INTO $1").bind(into).execute(&mut connection).await?;
     connection.close().await?;
@@ -36,8 +36,9 @@ pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCop
     look(&path).await
 }
 
-/// What the copy itself says, so that the objects are those of its moment.
+/// Reads schema and object keys from the copy itself, so that they belong to the same moment.
 async fn look(path: &Path) -> Result<DatabaseCopy> {
+    // Immutable: no lock and no log file is created next to the copy.
     let options = SqliteConnectOptions::new().filename(path).read_only(true).immutable(true);
     let mut connection = options.connect().await?;
     let keys = sqlx::query_scalar(KEYS).fetch_all(&mut connection).await?;

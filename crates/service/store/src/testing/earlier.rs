@@ -1,4 +1,4 @@
-//! Databases as an earlier migration left them, with the rows that it could have had.
+//! Databases with the schema of an earlier migration, and rows that it could have had.
 
 use std::str::FromStr as _;
 
@@ -11,13 +11,13 @@ use sqlx::{
 use super::TestDatabase;
 use crate::migrate;
 
-/// The numbers of all migrations.
+/// Returns the numbers of all migrations.
 pub fn migrations() -> Vec<i64> {
     (1..=migrate::newest()).collect()
 }
 
 impl TestDatabase {
-    /// Brings an empty database to the schema of a migration.
+    /// Migrates an empty database to the schema of a migration.
     pub async fn migrated(self, version: i64) -> Self {
         match self.url.starts_with("sqlite") {
             true => {
@@ -34,8 +34,8 @@ impl TestDatabase {
         self
     }
 
-    /// Takes the rows of another database, of its tables and columns, without triggers and foreign
-    /// keys.
+    /// Copies the rows of another database into the tables and columns that both have, without
+    /// triggers and foreign keys.
     pub async fn fill_from(&self, other: &Self) {
         match self.url.starts_with("sqlite") {
             true => self.fill_sqlite(other).await,
@@ -59,6 +59,7 @@ impl TestDatabase {
         let tables = "SELECT name FROM main.sqlite_master WHERE type = 'table' AND name NOT LIKE \
             '%sql%' AND name IN (SELECT name FROM other.sqlite_master)";
         for table in sqlx::query_scalar::<_, String>(tables).fetch_all(&mut connection).await? {
+            // Columns that only one of both schemas has are skipped.
             let columns = "SELECT group_concat(name) FROM pragma_table_info($1, 'main') \
                 WHERE name IN (SELECT name FROM pragma_table_info($1, 'other'))";
             let columns: String =
@@ -81,6 +82,7 @@ impl TestDatabase {
         for table in sqlx::query_scalar::<_, String>(tables).fetch_all(&mut to).await? {
             let rows =
                 AssertSqlSafe(format!("SELECT coalesce(json_agg(t), '[]')::text FROM {table} t"));
+            // The other database may not have the table.
             let Ok(rows) = sqlx::query_scalar::<_, String>(rows).fetch_one(&mut from).await else {
                 continue;
             };

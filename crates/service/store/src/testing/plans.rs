@@ -1,4 +1,4 @@
-//! How each database would carry out each statement: none may read a whole table.
+//! Query plans of all statements: none may read a whole table.
 
 use serde_json::Value;
 use sqlx::{AssertSqlSafe, Executor as _, PgConnection, PgPool, Row as _, SqlitePool};
@@ -8,25 +8,25 @@ use crate::error::{Result, StoreError};
 use crate::statements::{ALL, Statement};
 use crate::store::Store;
 
-/// What may read all rows, and why.
+/// Statements that may read all rows, with reasons.
 const MAY: &[(&str, &str)] = &[
     // Checks of the whole store.
     ("integrity", ""),
-    // Counts all of them, from the index by kind and state.
+    // Counts all jobs, from the index by kind and state.
     ("jobs", "COUNTS"),
     // Not a query.
     ("garbage", "LOCK"),
 ];
-/// A list that the statement has made itself.
+/// Plan step of a list that the statement has made itself.
 const FEW: &str = "SCAN few";
-/// A list that the statement was given.
+/// Plan step of a list that is an argument of the statement.
 const GIVEN: &str = "SCAN n VIRTUAL TABLE";
-/// An index of what waits or runs only, read in its order.
+/// An index of the queued and running jobs only, read in its order.
 const SHORT: &str = "jobs_to_claim";
 
 impl Store {
-    /// Every statement whose plan reads all rows of a table, with the step that does, where no such
-    /// statement is expected to.
+    /// Returns every statement whose plan reads all rows of a table unexpectedly, with the step
+    /// that does.
     pub async fn full_scans(&self) -> Result<Vec<String>> {
         let mut found = Vec::new();
         for (table, statements) in ALL {
@@ -65,7 +65,8 @@ async fn sqlite(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
         .collect())
 }
 
-/// The plan for any values, on a server that avoids reading tables whole if it can.
+/// Returns the full scans in the plan for any values, on a connection that avoids sequential scans
+/// if possible.
 async fn postgres(pool: &PgPool, sql: &str) -> sqlx::Result<Vec<String>> {
     let mut connection = pool.acquire().await?;
     let plan = explained(&mut connection, sql).await;
@@ -82,6 +83,7 @@ async fn explained(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Val
         .execute("SET enable_seqscan = off; SET plan_cache_mode = force_generic_plan")
         .await?;
     connection.execute(AssertSqlSafe(format!("PREPARE explained AS {sql}"))).await?;
+    // NULL for each placeholder: a generic plan does not depend on the values.
     let values = match (1..).take_while(|n| sql.contains(&format!("${n}"))).count() {
         0 => String::new(),
         count => format!("({})", vec!["NULL"; count].join(", ")),
@@ -93,7 +95,7 @@ async fn explained(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Val
     serde_json::from_str(&text).map_err(|error| sqlx::Error::Decode(Box::new(error)))
 }
 
-/// The steps below a plan that read all rows: a table's, or an index without a condition on it.
+/// Collects the steps of a plan that read all rows: of a table, or of an index without a condition.
 fn collect(plan: &Value, scans: &mut Vec<String>) {
     match plan {
         Value::Array(all) => all.iter().for_each(|one| collect(one, scans)),

@@ -1,5 +1,5 @@
-//! An S3-compatible server within the test's process: s3s, on a temporary folder, behind real HTTP
-//! and real signatures.
+//! An S3-compatible server within the test process: s3s on a temporary folder, with real HTTP and
+//! real signatures.
 
 use std::net::SocketAddr;
 
@@ -15,22 +15,22 @@ use tokio::task::JoinHandle;
 use crate::objects::Objects;
 use crate::objects_place::{ObjectsPlace, S3Place, bucket, builder};
 
-/// The one bucket there is.
+/// Name of the only bucket.
 const BUCKET: &str = "samples";
-/// Who is let in.
+/// Accepted access key and secret.
 const KEY: (&str, &str) = ("test", "only-for-tests");
 
-/// A server that goes when this is dropped.
+/// A server that stops when this is dropped.
 #[derive(Debug)]
 pub struct TestS3 {
     address: SocketAddr,
-    /// Where the server keeps what it is sent, `samples/...`.
+    /// Folder of the server's objects, `samples/...`.
     pub folder: TempDir,
     serving: JoinHandle<()>,
 }
 
 impl TestS3 {
-    /// A server with an empty bucket.
+    /// Starts a server with an empty bucket.
     pub async fn start() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         std::fs::create_dir(folder.path().join(BUCKET)).expect("a bucket");
@@ -42,8 +42,8 @@ impl TestS3 {
         Self { address, folder, serving: tokio::spawn(serve(listener, service.build())) }
     }
 
-    /// The settings of a store in it, as the command line takes them: the URL of the objects and
-    /// the endpoint.
+    /// Returns the options of the command line for a store below a prefix: the URL of the objects
+    /// and the endpoint.
     pub fn settings(&self, prefix: &str) -> [(&'static str, String); 2] {
         [
             ("--objects-url", format!("s3://{BUCKET}/{prefix}")),
@@ -51,17 +51,17 @@ impl TestS3 {
         ]
     }
 
-    /// What another process must find in its environment to be let in.
+    /// Returns the environment variables with which another process is accepted.
     pub fn credentials(&self) -> [(&'static str, &'static str); 2] {
         [("AWS_ACCESS_KEY_ID", KEY.0), ("AWS_SECRET_ACCESS_KEY", KEY.1)]
     }
 
-    /// A store in it, below a prefix.
+    /// Opens a store below a prefix.
     pub fn objects(&self, prefix: &str) -> Objects {
         self.objects_as(KEY.0, prefix)
     }
 
-    /// The same for whoever calls himself so.
+    /// Opens a store below a prefix with another access key.
     pub fn objects_as(&self, user: &str, prefix: &str) -> Objects {
         let [(_, url), (_, endpoint)] = self.settings(prefix);
         let ObjectsPlace::S3(place) =
@@ -73,7 +73,8 @@ impl TestS3 {
     }
 }
 
-/// The store of a place, with the credentials that the environment of a test does not have.
+/// Creates the store of a location, with the credentials that the environment of a test does not
+/// have.
 fn made(place: &S3Place, user: &str) -> std::sync::Arc<dyn object_store::ObjectStore> {
     bucket(builder(place).with_access_key_id(user).with_secret_access_key(KEY.1), place)
         .expect("a bucket")
@@ -92,7 +93,7 @@ async fn serve(listener: TcpListener, service: S3Service) {
 }
 
 async fn connection(stream: TcpStream, service: S3Service) {
-    // A client that hangs up is no matter.
+    // An error means that the client has hung up, which is no failure.
     let _ =
         Builder::new(TokioExecutor::new()).serve_connection(TokioIo::new(stream), service).await;
 }

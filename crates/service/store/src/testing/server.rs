@@ -1,7 +1,7 @@
 //! A private PostgreSQL server, one per test process.
 //!
-//! It runs below a shell that reads a pipe from the test process. When that process ends, however
-//! it ends, the pipe closes, and the shell stops the server and removes its folder.
+//! It runs below a shell that reads a pipe from the test process. However that process ends, the
+//! pipe closes, and the shell stops the server and removes its folder.
 
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, chown};
@@ -15,8 +15,8 @@ use sqlx::postgres::PgConnectOptions;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// `$1` the program, `$2` the folder. Nothing is synced to disk: the data need not outlive the
-/// process.
+/// Shell script of the keeper: `$1` is the program, `$2` the folder. Nothing is synced to disk: the
+/// data need not outlive the process.
 const KEEPER: &str = r#"
 "$1" -D "$2/data" -k "$2" -c listen_addresses= -c max_connections=300 -c shared_buffers=32MB \
     -c fsync=off -c synchronous_commit=off -c full_page_writes=off >"$2/log" 2>&1 </dev/null &
@@ -27,13 +27,13 @@ cd /
 rm -rf "$2"
 "#;
 
-/// The server, as long as the process lives: dropping its keeper's pipe stops it.
+/// The server, which lives as long as the process: dropping the keeper's pipe stops it.
 pub(super) struct Server {
     folder: PathBuf,
     _keeper: Child,
 }
 
-/// The server of this process, if this machine has PostgreSQL.
+/// Returns the server of this process, if PostgreSQL is installed.
 pub(super) fn shared() -> Option<&'static Server> {
     static SERVER: OnceLock<Option<Server>> = OnceLock::new();
     SERVER
@@ -48,7 +48,7 @@ fn without() -> Option<Server> {
     None
 }
 
-/// The folder that holds `initdb` and `postgres`, in the search path or where Debian puts it.
+/// Returns the folder of `initdb` and `postgres`, from the search path or Debian's location.
 fn programs() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let mut debian: Vec<_> =
@@ -71,23 +71,26 @@ impl Server {
             chown(&folder, Some(uid), Some(gid)).expect("the folder for another user");
         }
         initialise(programs, &folder, user);
+        // The folder is not removed by this process: the keeper does so after the server has
+        // stopped.
         let keeper = keep(programs, &folder, user);
         await_ready(&folder);
         Self { folder, _keeper: keeper }
     }
 
-    /// How to reach the server itself.
+    /// Returns the options of a connection to the server itself.
     pub(super) fn options(&self) -> PgConnectOptions {
         PgConnectOptions::new().socket(&self.folder).username("postgres").database("postgres")
     }
 
-    /// The URL of a database on it.
+    /// Returns the URL of a database on the server.
     pub(super) fn url(&self, database: &str) -> String {
         format!("postgres://postgres@localhost/{database}?host={}", self.folder.display())
     }
 }
 
-/// PostgreSQL refuses to run as root: then `postgres`, or `nobody`.
+/// Returns user and group to run as if this process is root, which PostgreSQL refuses: those of
+/// `postgres`, or of the unprivileged default user.
 fn user(own: &Path) -> Option<(u32, u32)> {
     if fs::metadata(own).expect("a folder of our own").uid() != 0 {
         return None;
@@ -97,10 +100,11 @@ fn user(own: &Path) -> Option<(u32, u32)> {
     find("postgres").or_else(|| find("nobody"))
 }
 
-/// The user and group of a line of `/etc/passwd`, if it is about `name`.
+/// Parses user and group from a line of `/etc/passwd`, if it is about `name`.
 fn ids(line: &str, name: &str) -> Option<(u32, u32)> {
     let mut fields = line.split(':');
     (fields.next()? == name).then_some(())?;
+    // Fields after the name: password, user, group.
     Some((fields.nth(1)?.parse().ok()?, fields.next()?.parse().ok()?))
 }
 
@@ -112,6 +116,8 @@ fn command(
     let mut command = Command::new(program);
     command
         .current_dir(folder)
+        // A group of its own: an interrupt of the terminal must not stop the server before the
+        // tests.
         .process_group(0)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -142,7 +148,7 @@ fn keep(programs: &Path, folder: &Path, user: Option<(u32, u32)>) -> Child {
     keeper.stdin(Stdio::piped()).spawn().expect("the keeper of a private PostgreSQL server")
 }
 
-/// The eighth line of `postmaster.pid` tells when the server takes connections.
+/// Waits until the eighth line of `postmaster.pid` says that the server accepts connections.
 fn await_ready(folder: &Path) {
     let start = Instant::now();
     let status = || fs::read_to_string(folder.join("data/postmaster.pid")).unwrap_or_default();

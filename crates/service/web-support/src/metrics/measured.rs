@@ -1,4 +1,4 @@
-//! What is asked of the archive for each scrape: jobs, their age, and the size of the object store.
+//! Metrics read from the archive at each scrape: jobs, their age, and the size of the object store.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,7 @@ use tokio::sync::Mutex;
 
 use sistership_jobs::archive::Archive;
 
-/// How long a size is good for: to know it, every object is asked for.
+/// Time for which a size is reused: measuring it lists every object.
 const FRESH: Duration = Duration::from_secs(60);
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
@@ -21,15 +21,15 @@ struct Kind {
     state: &'static str,
 }
 
-/// The number of objects and their bytes.
+/// Number of objects, and their size in bytes.
 type Size = (i64, i64);
 
-/// Remembers the size of the object store for a while.
+/// Metrics of the archive, with a cached size of the object store.
 #[derive(Debug, Default)]
 pub(super) struct Measured(Mutex<Option<(Instant, Size)>>);
 
 impl Measured {
-    /// What there is now.
+    /// Returns a registry with the present values.
     pub(super) async fn registry(&self, archive: &Archive) -> Result<Registry> {
         let counts = archive.store.jobs().counts().await?;
         let (objects, bytes) = self.size(archive).await?;
@@ -54,6 +54,7 @@ impl Measured {
     }
 
     async fn size(&self, archive: &Archive) -> Result<Size> {
+        // The lock is held while measuring, so that concurrent scrapes list the objects once.
         let mut known = self.0.lock().await;
         if let Some((_, size)) = known.filter(|(when, _)| when.elapsed() < FRESH) {
             return Ok(size);
@@ -61,6 +62,7 @@ impl Measured {
         let count = |(objects, bytes): Size, head: sistership_store::ObjectHead| async move {
             Ok((objects + 1, bytes + i64::try_from(head.bytes).unwrap_or(i64::MAX)))
         };
+        // A failed listing leaves the cached size unchanged.
         let size = archive.objects.list().try_fold((0, 0), count).await?;
         *known = Some((Instant::now(), size));
         Ok(size)
@@ -76,7 +78,7 @@ fn jobs(counts: &[JobCount]) -> Family<Kind, Gauge> {
     jobs
 }
 
-/// 0 where nothing waits.
+/// Returns the age of the oldest queued job, s; 0 if none is queued.
 fn queue_age_s(counts: &[JobCount], now_us: i64) -> f64 {
     let oldest = counts
         .iter()

@@ -1,4 +1,4 @@
-//! What the server counts of itself, for Prometheus.
+//! Metrics of the server, for Prometheus.
 
 mod measured;
 
@@ -17,9 +17,9 @@ use sistership_store::Result;
 use self::measured::Measured;
 use sistership_jobs::archive::Archive;
 
-/// The media type of what is scraped.
+/// Media type of the metrics.
 pub const MEDIA: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
-/// Upper bounds of the histogram, s: from a look-up to a derivation that takes minutes.
+/// Upper bounds of the histogram, s: from a lookup to a derivation that takes minutes.
 const SECONDS: [f64; 13] =
     [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0, 2.5, 10.0, 60.0, 600.0];
 
@@ -36,7 +36,7 @@ struct Route {
     route: String,
 }
 
-/// What the server counts of itself.
+/// Metrics of the server.
 pub struct Metrics {
     registry: Registry,
     requests: Family<Answered, Counter>,
@@ -74,10 +74,12 @@ fn histogram() -> Histogram {
 }
 
 impl Metrics {
-    /// Counts an answer. `route` is the path as the router knows it, so that ids do not make labels
-    /// without end.
+    /// Counts an answer. `route` is the path pattern of the router, so that ids do not create new
+    /// labels.
     pub fn answered(&self, method: &Method, route: &str, status: StatusCode, elapsed: Duration) {
         let method = named(method);
+        // The status is a label of the counter only; with it the histogram would have too many
+        // series.
         let labels = Answered { method, route: route.to_owned(), status: status.as_u16() };
         self.requests.get_or_create(&labels).inc();
         self.seconds
@@ -85,7 +87,7 @@ impl Metrics {
             .observe(elapsed.as_secs_f64());
     }
 
-    /// Everything there is to scrape, with what is asked of the archive now.
+    /// Returns all metrics as text, including those read from the archive.
     pub async fn scrape(&self, archive: &Archive) -> Result<String> {
         let now = self.measured.registry(archive).await?;
         let mut text = String::new();
@@ -97,7 +99,7 @@ impl Metrics {
     }
 }
 
-/// The method as a label; a caller may invent methods, but no labels.
+/// Returns the label of a method; unknown methods share one, so that a caller cannot create labels.
 fn named(method: &Method) -> &'static str {
     match *method {
         Method::GET => "GET",

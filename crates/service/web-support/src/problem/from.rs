@@ -1,4 +1,4 @@
-//! What the other crates refuse, as problems.
+//! Conversion of the errors of other crates to problems.
 
 use axum::extract::multipart::MultipartError;
 use axum::extract::path::ErrorKind;
@@ -21,6 +21,7 @@ impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         let text = error.to_string();
         match error {
+            // First, as several kinds of errors may be due to a full disk.
             full if full.is_out_of_space() => Self::no_room(text),
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
@@ -30,6 +31,7 @@ impl From<StoreError> for Problem {
                 format!("{text}; read it again and decide anew"),
             ),
             StoreError::Invalid { field, message } => Self::invalid(field, message),
+            // The reason is logged only: it may contain statements or addresses.
             StoreError::Database(_) => {
                 tracing::error!(reason = %text, "the database failed");
                 Self::new(
@@ -63,7 +65,7 @@ impl From<FileError> for Problem {
 }
 
 impl From<Vec<Refusal>> for Problem {
-    /// Trials that were refused, every fault with its file, row and column.
+    /// Reports refused trials, each fault with its file, row and column.
     fn from(refusals: Vec<Refusal>) -> Self {
         let names: Vec<&str> = refusals.iter().map(|refusal| refusal.file.as_str()).collect();
         let detail = format!(
@@ -160,13 +162,14 @@ impl From<OrderError> for Problem {
 
 impl From<QueryRejection> for Problem {
     fn from(rejection: QueryRejection) -> Self {
+        // The prefix of the library is removed; the rest names the parameter.
         let text = rejection.body_text();
         let message = text.strip_prefix("Failed to deserialize query string: ").unwrap_or(&text);
         Self::bad_request(format!("query: {message}")).with(Fault::at(parameter(message), message))
     }
 }
 
-/// The parameter that a message is about: `limit: invalid digit`, or "unknown field `limt`,
+/// Returns the parameter that a message is about: `limit: invalid digit`, or "unknown field `limt`,
 /// expected ...".
 fn parameter(message: &str) -> &str {
     let quoted = message.split('`').nth(1);
@@ -176,6 +179,7 @@ fn parameter(message: &str) -> &str {
 
 impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
+        // A path that does not match the types of a route names nothing: 404, not 400.
         let PathRejection::FailedToDeserializePathParams(failed) = &rejection else {
             return Self::not_found(format!(
                 "there is nothing under this path: {}",
@@ -258,7 +262,7 @@ mod tests {
         assert!(problem.detail.contains("no room"), "{}", problem.detail);
     }
 
-    /// What each part fails with, and what becomes of it.
+    /// Failures of each part, and the problems that they become.
     #[tokio::test]
     async fn a_part_that_fails_is_a_503_that_says_when_to_come_again() {
         let late = tokio::time::timeout(std::time::Duration::ZERO, std::future::pending::<()>());

@@ -1,4 +1,4 @@
-//! Problem details (RFC 9457): the one form of every error.
+//! Problem details (RFC 9457): the common form of all errors.
 
 mod from;
 
@@ -8,16 +8,16 @@ use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The media type of [`Problem`].
+/// Media type of [`Problem`].
 pub const MEDIA: &str = "application/problem+json";
 
-/// After how long a request may be repeated that was one too many, s.
+/// Value of `Retry-After` for a request that was refused for lack of capacity, s.
 const RETRY_AFTER_S: &str = "5";
 
-/// What an operation of the server returns.
+/// Result of an operation of the server.
 pub type Result<T, E = Problem> = std::result::Result<T, E>;
 
-/// Why a request was not carried out, and what to do about it.
+/// Reason why a request was not carried out, and how to correct it.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Problem {
     /// A URI that names the kind of problem.
@@ -25,18 +25,18 @@ pub struct Problem {
     pub kind: &'static str,
     /// The kind of problem in words.
     pub title: &'static str,
-    /// The HTTP status.
+    /// Returns the HTTP status.
     pub status: u16,
-    /// What happened this time, and what to do.
+    /// Description of this occurrence, and how to correct it.
     pub detail: String,
-    /// A URI that names this one occurrence; the server's log has the same id.
+    /// A URI that identifies this occurrence; the server's log has the same id.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instance: Option<String>,
-    /// Each fault on its own, where it can be placed; else empty.
+    /// The individual faults, if they can be located; else empty.
     pub errors: Vec<Fault>,
 }
 
-/// One fault, with its place.
+/// One fault with its location.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct Fault {
     /// The field of a document (dotted path), or the file of an upload.
@@ -45,11 +45,11 @@ pub struct Fault {
     pub row: Option<usize>,
     /// The column of a file.
     pub column: Option<String>,
-    /// What is wrong, and what would be right.
+    /// Description of the fault, and the expected value.
     pub message: String,
 }
 
-/// Status, URI and title of each kind.
+/// Status, URI and title of each kind of problem.
 const KINDS: [(u16, &str, &str); 19] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
     (401, "urn:sistership:problem:unauthorized", "A key, or a sign-in, is needed"),
@@ -77,8 +77,9 @@ const KINDS: [(u16, &str, &str); 19] = [
 ];
 
 impl Problem {
-    /// A problem of the kind that the status names.
+    /// Creates a problem of the kind that belongs to a status.
     pub fn new(status: StatusCode, detail: impl Into<String>) -> Self {
+        // Other statuses become `about:blank`, which RFC 9457 defines as without a type of its own.
         let known = KINDS.iter().find(|(known, ..)| *known == status.as_u16());
         let (_, kind, title) = known.copied().unwrap_or((
             0,
@@ -95,22 +96,22 @@ impl Problem {
         }
     }
 
-    /// A request that cannot be read.
+    /// Creates the problem of a request that cannot be read.
     pub fn bad_request(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, detail)
     }
 
-    /// There is no such thing.
+    /// Creates the problem of a missing item.
     pub fn not_found(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::NOT_FOUND, detail)
     }
 
-    /// A document of which one field is at fault.
+    /// Creates the problem of a document with one invalid field.
     pub fn invalid(field: &str, message: impl Into<String>) -> Self {
         Self::all_invalid([(field.to_owned(), message.into())])
     }
 
-    /// A document of which several fields are at fault, each with what is wrong.
+    /// Creates the problem of a document with several invalid fields, pairs of field and message.
     pub fn all_invalid(faults: impl IntoIterator<Item = (String, String)>) -> Self {
         let faults: Vec<(String, String)> = faults.into_iter().collect();
         let told = faults.iter().map(|(field, message)| format!("{field}: {message}"));
@@ -121,7 +122,7 @@ impl Problem {
             .fold(problem, |all, (field, message)| all.with(Fault::at(field, message)))
     }
 
-    /// A failure of ours: the log has the reason, the answer does not.
+    /// Creates the problem of an internal failure; the reason is logged, not answered.
     pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");
         Self::new(
@@ -130,7 +131,7 @@ impl Problem {
         )
     }
 
-    /// There is no space left where it would be kept.
+    /// Creates the problem of a full disk; the reason is logged, not answered.
     pub fn no_room(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "no room");
         let detail = "there is no room left where the server keeps this; nothing was kept. Reading \
@@ -138,14 +139,14 @@ impl Problem {
         Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
     }
 
-    /// The same with one fault more.
+    /// Adds a fault.
     #[must_use]
     pub fn with(mut self, fault: Fault) -> Self {
         self.errors.push(fault);
         self
     }
 
-    /// The same as a page for people.
+    /// Renders the problem as an HTML page.
     pub fn page(&self) -> Option<String> {
         let place = |fault: &Fault| {
             let row = fault.row.map(|row| format!("row {row}"));
@@ -157,14 +158,14 @@ impl Problem {
         sistership_pages::problem(self.title, &self.detail, &faults, instance).ok()
     }
 
-    /// The HTTP status.
+    /// HTTP status.
     pub fn status(&self) -> StatusCode {
         StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
     }
 }
 
 impl Fault {
-    /// A fault of a field.
+    /// Creates a fault of a field.
     pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
         Self { field: Some(field.into()), message: message.into(), ..Self::default() }
     }
@@ -174,17 +175,19 @@ impl IntoResponse for Problem {
     fn into_response(self) -> Response {
         let mut response = (self.status(), Json(&self)).into_response();
         response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
+        // A 401 must name the accepted schemes of authentication.
         if self.status == StatusCode::UNAUTHORIZED {
             let challenge = HeaderValue::from_static("Bearer, Basic realm=\"sistership\"");
             response.headers_mut().insert(header::WWW_AUTHENTICATE, challenge);
         }
+        // Failures that pass: the client may repeat the request after a while.
         let later = [StatusCode::TOO_MANY_REQUESTS, StatusCode::SERVICE_UNAVAILABLE];
         if later.iter().any(|status| self.status == *status) {
             response
                 .headers_mut()
                 .insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
         }
-        // Whoever knows the request's id writes it in, see `web::envelope`.
+        // A later layer that knows the id of the request adds it, see `web::envelope`.
         response.extensions_mut().insert(self);
         response
     }

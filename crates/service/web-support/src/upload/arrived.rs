@@ -6,23 +6,23 @@ use sistership_trials::{ManifestFile, Mapping, SensorFile, Source};
 
 /// One trial of an upload.
 pub struct Arrived {
-    /// What the manifest says of it.
+    /// Manifest of this trial alone.
     pub manifest: ManifestFile,
-    /// What it is called.
+    /// Name.
     pub name: String,
-    /// How its columns are read.
+    /// Mapping of its columns.
     pub mapping: Mapping,
-    /// Where its file lies.
+    /// Path of its file.
     pub path: PathBuf,
-    /// Its sensors' files.
+    /// Additional files of sensors, with their paths.
     pub sensors: Vec<(SensorFile, PathBuf)>,
 }
 
 impl Arrived {
-    /// Opens its files.
+    /// Opens the files of the trial.
     ///
     /// # Errors
-    /// One of them does not open.
+    /// Returns an error if one of them cannot be opened.
     pub fn open(&self) -> std::io::Result<Source<'static>> {
         Source::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
     }

@@ -1,4 +1,4 @@
-//! Uploads of trials as they arrive: streamed to files, with a manifest that says what these are.
+//! Uploads of trials: streamed to files, with a manifest that describes them.
 
 mod arrived;
 mod multipart;
@@ -18,7 +18,7 @@ pub use received::Upload;
 use crate::payload::{media, plain};
 use crate::problem::{Problem, Result};
 
-/// Bodies that are one file.
+/// Media types of a body that is one file.
 const FILE_MEDIA: [&str; 3] = ["text/csv", "application/vnd.apache.parquet", "application/parquet"];
 
 impl<S: Send + Sync> FromRequest<S> for Upload
@@ -44,7 +44,7 @@ where
     }
 }
 
-/// What the query of a form says; the rest is in the form.
+/// Query of an upload as a form; its other fields are in the form.
 #[derive(Debug, Deserialize)]
 struct Wish {
     diagnose: Option<bool>,

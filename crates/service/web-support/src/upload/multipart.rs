@@ -1,4 +1,4 @@
-//! A manifest and its files as the parts of a form.
+//! Uploads of a manifest and its files as the parts of a form.
 
 use axum::extract::multipart::{Field, Multipart};
 use axum::extract::{FromRequest as _, Request};
@@ -13,7 +13,7 @@ use crate::problem::{Fault, Problem, Result};
 use crate::spool::{Spooled, spool};
 use sistership_jobs::budget;
 
-/// The parts of a form as they have arrived.
+/// Received parts of a form.
 #[derive(Default)]
 struct Parts {
     manifest: Option<String>,
@@ -36,6 +36,8 @@ pub(super) async fn receive(request: Request, place: &UploadPlace) -> Result<Upl
     while let Some(field) = form.next_field().await? {
         parts.take(field, place).await?;
     }
+    // Either a manifest that names the ship, or the name of the ship and files with canonical
+    // columns.
     match (parts.manifest.take(), parts.ship.take()) {
         (Some(manifest), None) => {
             let manifest = read(&manifest).await?;
@@ -62,10 +64,10 @@ async fn read(manifest: &str) -> Result<ManifestFile> {
 }
 
 impl Upload {
-    /// Of files by their names, which a manifest lists.
+    /// Creates an upload from files by name and the manifest that lists them.
     ///
     /// # Errors
-    /// One is missing, or is not listed.
+    /// Returns an error if a file is missing, or is not listed.
     pub fn listed(manifest: ManifestFile, files: Vec<(String, Spooled)>) -> Result<Self> {
         let part = |(name, file): (String, Spooled)| Part { field: name.clone(), name, file };
         let files = files.into_iter().map(part).collect();
@@ -107,9 +109,10 @@ impl Parts {
         Ok(())
     }
 
-    /// The files that a manifest lists; each must be there, and no other.
+    /// Matches the files with the manifest; each listed file must be present, and no other.
     fn listed(mut self, manifest: ManifestFile) -> Result<Upload> {
         let (mut files, mut names, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        // Several trials may share a file; the index refers to `files` of the upload.
         let mut place = |parts: &mut Self, field: String, name: &str| -> Result<usize> {
             if let Some(known) = names.iter().position(|known| known == name) {
                 return Ok(known);
@@ -126,6 +129,7 @@ impl Parts {
             });
             places.push((main, sensors.collect::<Result<_>>()?));
         }
+        // Matched files were taken out of the list; a file that is left was not listed.
         match self.files.first() {
             Some(extra) => Err(Problem::invalid(
                 &extra.name,
@@ -135,8 +139,8 @@ impl Parts {
         }
     }
 
-    /// By its whole path; else by its name alone, where only one has it: many programs send no more
-    /// than that.
+    /// Finds a file by its whole path, else by its name alone if it is unique: many programs send
+    /// no more than the name.
     fn find(&self, path: &str) -> Option<usize> {
         let exact = self.files.iter().position(|part| part.name == path || part.field == path);
         let base = |path: &str| path.rsplit('/').next().map(str::to_owned);
@@ -178,10 +182,11 @@ fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
     }
 }
 
-/// A part that is a short text.
+/// Reads a part that is a short text.
 async fn text(mut field: Field<'_>, place: &UploadPlace) -> Result<String> {
     let mut bytes = Vec::new();
     while let Some(chunk) = field.chunk().await? {
+        // Twice the size, because the buffer grows by doubling.
         budget::take(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
         if bytes.len() > place.yaml_bytes {

@@ -1,16 +1,16 @@
-//! Where uploads lie, and how much of them is taken.
+//! Storage of uploads, and their limits.
 
 use std::sync::Arc;
 
 use crate::spool::Spool;
 
-/// Where uploads lie until they have been read, and how large they may be.
+/// Storage of uploads until they have been read, and their limits.
 #[derive(Debug, Clone)]
 pub struct UploadPlace {
-    /// Where the files lie.
+    /// Spool of the files.
     pub spool: Arc<Spool>,
-    /// Files of one upload.
+    /// Maximum number of files of one upload.
     pub files: usize,
-    /// The manifest, bytes.
+    /// Maximum size of the manifest, bytes.
     pub yaml_bytes: usize,
 }

@@ -1,4 +1,4 @@
-//! One file with canonical columns as the whole body.
+//! Uploads of one file with canonical columns as the whole body.
 
 use axum::RequestExt as _;
 use axum::extract::{Query, Request};
@@ -14,28 +14,28 @@ use crate::field::{FileName, Name, Positive, Remark};
 use crate::problem::{Problem, Result};
 use crate::spool::spool;
 
-/// The name of a trial that has none.
+/// Default name of a trial.
 const UNNAMED: &str = "trial";
 
-/// What is known of a file that comes without a manifest.
+/// Query of an upload without a manifest.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct RawQuery {
-    /// The ship; needed for a body that is one file, as the others are only read then.
+    /// The ship; required for a body that is one file, and ignored for a form.
     #[param(inline, required = false)]
     pub ship: Name,
-    /// What to call the trial; `trial` where absent.
+    /// Name of the trial [default: `trial`].
     #[param(inline)]
     pub name: Option<FileName>,
-    /// What was sailed, such as `zigzag 10/10`.
+    /// Manoeuvre of the trial, such as `zigzag 10/10`.
     #[param(inline)]
     pub manoeuvre: Option<Remark>,
     /// Water depth, m; absent for deep water.
     #[param(inline)]
     pub depth_m: Option<Positive>,
-    /// `false` where the ship's champion is not to be diagnosed on these trials; read for every
-    /// form of upload.
+    /// `false` skips the diagnosis of the ship's champion on these trials; applies to every form of
+    /// upload.
     pub diagnose: Option<bool>,
 }
 
@@ -53,7 +53,7 @@ pub(super) async fn receive(mut request: Request, place: &UploadPlace) -> Result
     Ok(Upload::of(manifest, diagnose.unwrap_or(true), files))
 }
 
-/// Too much was sent, or the caller hung up.
+/// Returns the problem of a body that is too large or broke off.
 fn interrupted(error: axum::Error) -> Problem {
     let text = error.to_string();
     match text.contains("length limit") {

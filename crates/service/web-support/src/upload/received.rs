@@ -1,4 +1,4 @@
-//! An upload that has arrived.
+//! Received uploads.
 
 use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
 use sistership_trials::ManifestFile;
@@ -7,34 +7,35 @@ use super::arrived::Arrived;
 use crate::problem::{Problem, Result};
 use crate::spool::Spooled;
 
-/// The longest name of a file.
+/// Maximum length of the name of a file, bytes.
 const NAME_BYTES: usize = 200;
 
-/// An upload that has arrived: a manifest and the files that it lists.
+/// A received upload: a manifest and the files that it lists.
 #[derive(Debug)]
 pub struct Upload {
-    /// What the files are.
+    /// Manifest of the files.
     pub manifest: ManifestFile,
-    /// Whether the ship's champion is to be diagnosed on them.
+    /// True if the ship's champion is to be diagnosed on the trials.
     pub diagnose: bool,
     pub(super) files: Vec<Spooled>,
-    /// Of each trial its file among these, and its sensors'.
+    /// Index of the file of each trial in `files`, and of the files of its sensors.
     pub(super) places: Vec<(usize, Vec<usize>)>,
 }
 
 impl Upload {
-    /// Of files each of which is a trial, in the manifest's order.
+    /// Creates an upload of files each of which is a trial, in the order of the manifest.
     pub(super) fn of(manifest: Manifest, diagnose: bool, files: Vec<Spooled>) -> Self {
+        // One file for each trial, and no sensors.
         let places = (0..files.len()).map(|file| (file, Vec::new())).collect();
         Self { manifest: manifest.into(), diagnose, files, places }
     }
 
-    /// The ship whose trials they are.
+    /// Returns the ship of the trials.
     pub fn ship(&self) -> &str {
         &self.manifest.manifest.ship
     }
 
-    /// Its trials; the files stay where they are while the upload is held.
+    /// Iterates over the trials; their files exist as long as the upload.
     pub fn trials(&self) -> impl Iterator<Item = Arrived> {
         let path = |file: usize| self.files[file].path.to_path_buf();
         let manifest = &self.manifest;
@@ -48,10 +49,11 @@ impl Upload {
         })
     }
 
-    /// What tells one upload from another, however its parts are delimited.
+    /// Returns the manifest and the hashes of the files, which identify an upload independently of
+    /// the boundaries of its parts.
     ///
     /// # Errors
-    /// The manifest cannot be written.
+    /// Returns an error if the manifest cannot be written.
     pub fn fingerprint(&self) -> Result<String> {
         let manifest = serde_json::to_string(&self.manifest).map_err(Problem::internal)?;
         let files = self.files.iter().map(|file| file.sha256.as_str());
@@ -59,7 +61,7 @@ impl Upload {
     }
 }
 
-/// The manifest of files with canonical columns.
+/// Returns the manifest of files with canonical columns.
 pub(super) fn canonical(ship: String, trials: Vec<ManifestTrial>) -> Result<Manifest> {
     for trial in &trials {
         let name = &trial.file;

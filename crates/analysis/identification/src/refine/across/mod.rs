@@ -1,7 +1,7 @@
 //! A source of one law as the prior of another.
 //!
-//! What a source says of a ship is not its coefficients but its accelerations. Where they are to
-//! hold another law, they are regressed on its terms over the envelope in which the model will be
+//! A source's information on a ship of another law is not its coefficients but its accelerations.
+//! They are regressed on the terms of the fitted law over the envelope in which the model will be
 //! used ([`OperatingEnvelope`]): mean and covariance of that regression are the prior
 //! ([`SourceRegression`]). docs/decisions/0015 has the reasons.
 
@@ -22,7 +22,7 @@ use sistership_priors::transfer::{Approach, blank_of, transfer};
 pub use source_envelopes::SourceEnvelopes;
 pub(super) use source_regression::SourceRegression;
 
-/// A source by its own law on a ship; as it is on its own.
+/// Returns a source transferred to a ship by its own law; unchanged if it is a model of that ship.
 pub(super) fn carried_over(
     (source, own): (&Model, &Law),
     target: &Vessel,
@@ -34,8 +34,8 @@ pub(super) fn carried_over(
     transfer(source, own, target, approach)
 }
 
-/// A source carried over to the target by its own law, and a model of the law to be fitted that
-/// knows nothing yet.
+/// Returns a model of the fitted law without coefficients, and the envelope of a source that is
+/// transferred to the target by its own law.
 pub(super) fn begun(
     (source, own): (&Model, &Law),
     law: &Law,
@@ -49,6 +49,7 @@ pub(super) fn begun(
         Ok(OperatingEnvelope { source: source.name.clone(), ..envelope })
     })?;
     let mut model = blank_of(law, target, &carried, approach)?;
+    // Approach and steering gear are properties of the ship, whatever the law.
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;
     model.note = Some(format!("regressed on what {} says", source.name));

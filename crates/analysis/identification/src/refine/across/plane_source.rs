@@ -1,9 +1,10 @@
-//! A source of another law that does not roll, as the prior of a law with roll.
+//! A 3-DOF source of another law, as the prior of a law with roll (4-DOF).
 //!
-//! What it says it says of a ship that stays upright. It is regressed on the terms of surge, sway
-//! and yaw that have no heel in them, which are held by it jointly. Of roll and of what the heel
-//! does it says nothing: roll begins with hydrostatics, and each of those terms is held by its size
-//! in the manoeuvres that the model so begun sails, where the ship heels further than in trials.
+//! Its accelerations are those of a ship that stays upright. They are regressed on the terms of
+//! surge, sway and yaw without heel, for which they are the prior jointly. They have no information
+//! on roll and on the effects of heel: roll begins with hydrostatics, and each of those terms is
+//! measured by its size in the manoeuvres of the model so begun, where the ship heels further than
+//! in trials.
 
 use std::sync::Arc;
 
@@ -21,19 +22,20 @@ use super::super::family::terms_without_heel;
 use super::super::outcome::RefineError;
 use super::SourceRegression;
 
-/// What is held by a source of the plane.
+/// The prior from a source of the plane.
 pub(in super::super) struct PlaneSource {
-    /// What it says, upright.
+    /// Envelope of the upright ship.
     upright: Arc<OperatingEnvelope>,
-    /// Where the model that begins with it sails; none where it does not.
+    /// Envelope of the model that begins with it; none if that cannot be simulated.
     sailed: Option<OperatingEnvelope>,
 }
 
 impl PlaneSource {
-    /// Of what a source says upright; a model that knows nothing yet says the same then.
+    /// Creates the prior from the accelerations of an upright ship, and sets a model's coefficients
+    /// to them; a model without coefficients gets the terms without heel first.
     ///
     /// # Errors
-    /// The law takes something that the trials do not record.
+    /// Returns an error if the law has an input that the trials do not record.
     pub fn begin(
         upright: Arc<OperatingEnvelope>,
         model: &mut Model,
@@ -46,15 +48,16 @@ impl PlaneSource {
         }
         let blocks = Blocks::new(model, law)?;
         SourceRegression::of_plane(&upright, &blocks, model)?.fill(&blocks, model);
+        // Only now: the regression must not assign upright accelerations to terms of heel.
         model.coefficients.extend(hydrostatics(model, law).into_iter().flatten());
         let sailed = OperatingEnvelope::new(model, law, trials).ok();
         Ok(Self { upright, sailed })
     }
 
-    /// Gives a model's regressions their precision, and the model what the source says.
+    /// Gives a model's regressions their precision, and the model the coefficients of the source.
     ///
     /// # Errors
-    /// As [`PlaneSource::begin`].
+    /// Returns an error if the law has an input that the trials do not record.
     pub fn hold(
         &self,
         blocks: &mut Blocks,
@@ -76,7 +79,7 @@ impl PlaneSource {
         Ok(())
     }
 
-    /// What it is, for people.
+    /// Description for reports.
     pub fn words(&self, blocks: &Blocks, model: &Model, law: &Law) -> Option<String> {
         let upright = SourceRegression::of_plane(&self.upright, blocks, model).ok()?;
         Some(format!(
@@ -87,13 +90,14 @@ impl PlaneSource {
     }
 }
 
-/// A regression's precision, where terms of which the source says nothing are held each by its
-/// size.
+/// The precision of a regression, in which terms without information from the source are measured
+/// each by its size.
 fn unsaid_by_size(block: &Block, said: &Moments, sizes: &DVector<f64>) -> DMatrix<f64> {
     let Some(mut precision) = block.precision.clone() else {
         return DMatrix::from_diagonal(sizes);
     };
     let squares = said.raw_products().diagonal();
+    // A regressor that is zero at every upright state is one of the heel.
     for place in (0..block.regressors()).filter(|place| squares[*place] == 0.0) {
         precision.row_mut(place).fill(0.0);
         precision.column_mut(place).fill(0.0);

@@ -1,4 +1,4 @@
-//! What sources say, kept while one ship is fitted by several laws.
+//! Cache of the envelopes of sources, while one ship is fitted by several laws.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,24 +9,24 @@ use sistership_model::law::Law;
 use crate::refine::envelope::{MemberRates, OperatingEnvelope};
 use crate::refine::outcome::RefineError;
 
-/// What sources say where a model will be used, by source and its law. The same for every law that
-/// is fitted to the same trials of the same ship, and only among those may it be shared.
+/// Envelopes of sources, by source and its law. They are the same for every law that is fitted to
+/// the same trials of the same ship, and may be shared only among those.
 #[derive(Debug, Default)]
 pub struct SourceEnvelopes {
     envelopes: Kept<OperatingEnvelope>,
-    /// What the ships of a population say at the states of a source's.
+    /// Accelerations of the ships of a population at the states of a source's envelope.
     populations: Kept<Vec<MemberRates>>,
 }
 
-/// By source and its law.
+/// Values by the names of a source and its law.
 type Kept<T> = Mutex<BTreeMap<(String, String), Arc<T>>>;
 
 impl SourceEnvelopes {
-    /// That of a source, which is asked where it has not been. Two that ask at once both do: to
-    /// wait for each other could stop the threads that they share.
+    /// Returns the envelope of a source, computed on first use. Concurrent first uses all compute
+    /// it: waiting for each other could block the threads of the pool that they share.
     ///
     /// # Errors
-    /// As `ask`.
+    /// Returns the error of `ask`.
     pub(super) fn of(
         &self,
         (source, law): (&Model, &Law),
@@ -35,10 +35,11 @@ impl SourceEnvelopes {
         kept(&self.envelopes, (source.name.clone(), law.name.clone()), ask)
     }
 
-    /// What a population says at the states of a source's envelope.
+    /// Returns the accelerations of a population at the states of a source's envelope, computed on
+    /// first use.
     ///
     /// # Errors
-    /// As `ask`.
+    /// Returns the error of `ask`.
     pub(in super::super) fn population(
         &self,
         envelope: &OperatingEnvelope,
@@ -48,11 +49,14 @@ impl SourceEnvelopes {
     }
 }
 
+/// The cached value of a key, or that of `ask`, which is then cached. The lock is not held while
+/// `ask` runs.
 fn kept<T>(
     known: &Kept<T>,
     key: (String, String),
     ask: impl FnOnce() -> Result<T, RefineError>,
 ) -> Result<Arc<T>, RefineError> {
+    // A poisoned lock is harmless: values are inserted whole.
     let found = known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
     if let Some(found) = found {
         return Ok(found);

@@ -1,5 +1,5 @@
-//! A law's coefficients from what a source of another law says, with the covariance that this
-//! earns.
+//! Coefficients of a law from the accelerations of a source of another law, with the covariance
+//! that follows.
 
 use nalgebra::DMatrix;
 use sistership_model::Model;
@@ -13,24 +13,25 @@ use super::super::ridge::{Choices, Fold, fit};
 use super::super::thresholds::SOURCE;
 use sistership_numerics::{Moments, RidgeChoice, merged};
 
-/// The statistics of what a source says, as a law's regressions see it.
+/// Statistics of a source's accelerations for the regressions of a law.
 pub(in super::super) struct SourceRegression<'a> {
     envelope: &'a OperatingEnvelope,
-    /// By group and regression.
+    /// Statistics by group and regression.
     moments: Vec<Vec<Moments>>,
     /// Strength of the ridge about zero.
     ridge: f64,
     zero: Model,
-    /// Whether a source that does not roll is asked for sway and yaw where the law couples them
+    /// True if a source that does not roll determines sway and yaw although the law couples them
     /// with roll.
     plane: bool,
 }
 
 impl<'a> SourceRegression<'a> {
-    /// Of a law's regressions for the coefficients that a model has; its own values are not read.
+    /// Creates the regressions of a law for the coefficients that a model has; the model's own
+    /// values are not read.
     ///
     /// # Errors
-    /// The law takes something that the trials do not record.
+    /// Returns an error if the law has an input that the trials do not record.
     pub fn new(
         envelope: &'a OperatingEnvelope,
         blocks: &Blocks,
@@ -39,8 +40,8 @@ impl<'a> SourceRegression<'a> {
         Self::made(envelope, blocks, model, false)
     }
 
-    /// The same, where a source that does not roll says sway and yaw, of a ship that stays upright,
-    /// though the law couples them with roll.
+    /// As [`SourceRegression::new`], for a source that does not roll and determines sway and yaw of
+    /// a ship that stays upright although the law couples them with roll.
     ///
     /// # Errors
     /// As [`SourceRegression::new`].
@@ -52,6 +53,7 @@ impl<'a> SourceRegression<'a> {
         Self::made(envelope, blocks, model, true)
     }
 
+    /// The regressions, with the best of the ridges that are tried.
     fn made(
         envelope: &'a OperatingEnvelope,
         blocks: &Blocks,
@@ -59,6 +61,7 @@ impl<'a> SourceRegression<'a> {
         plane: bool,
     ) -> Result<Self, RefineError> {
         let moments = envelope.moments(blocks)?;
+        // The ridge is about zero, whatever the model's present values are.
         let mut zero = model.clone();
         zero.coefficients.values_mut().for_each(|quantity| quantity.value = 0.0);
         let ridge = SOURCE.ridges[0];
@@ -67,7 +70,7 @@ impl<'a> SourceRegression<'a> {
         Ok(imitation)
     }
 
-    /// The same of another envelope, by the same ridge.
+    /// Returns the regressions of another envelope with the same ridge.
     ///
     /// # Errors
     /// As [`SourceRegression::new`].
@@ -80,8 +83,10 @@ impl<'a> SourceRegression<'a> {
         Ok(SourceRegression { envelope, moments, zero, ..*self })
     }
 
-    /// The ridge by which groups left out are foretold best.
+    /// The strength of the ridge by which held-out groups are predicted best.
     fn best_ridge(&self, blocks: &Blocks) -> f64 {
+        // Groups (trials and manoeuvres) are held out together, not samples, which depend on each
+        // other.
         let count = self.moments.len().min(SOURCE.folds);
         let folds: Vec<Fold<'_>> = (0..count)
             .filter_map(|fold| {
@@ -95,6 +100,7 @@ impl<'a> SourceRegression<'a> {
             let shares = fold.shares(ridge).into_iter();
             shares.filter(|(axis, _)| is_said(axis)).map(|(_, share)| share).sum()
         };
+        // Sum over folds and axes of the unexplained share of the mean square.
         let error = |ridge: f64| folds.iter().map(|fold| of_fold(fold, ridge)).sum::<f64>();
         SOURCE
             .ridges
@@ -103,9 +109,10 @@ impl<'a> SourceRegression<'a> {
             .unwrap_or(SOURCE.ridges[0])
     }
 
-    /// Sets a model's coefficients, with standard errors, to what the source says; none of an axis
-    /// that it does not know.
+    /// Sets a model's coefficients, with standard errors, to those of the regression; axes that the
+    /// source does not cover stay as they are.
     pub fn fill(&self, blocks: &Blocks, model: &mut Model) {
+        // All groups at once: the coefficients use every state.
         let fitted = fit(blocks, &self.together(), &self.zero, &self.choices(blocks));
         let known = blocks
             .blocks
@@ -125,8 +132,9 @@ impl<'a> SourceRegression<'a> {
         }
     }
 
-    /// Gives the regressions the precision that this one earns. What the source does not know is
-    /// held to where it is, in the deviations of its regressors.
+    /// Gives the regressions of a law the precision that the source determines. Regressions that it
+    /// does not cover keep none, so that their prior is measured by the deviations of their
+    /// regressors.
     pub fn hold(&self, blocks: &mut Blocks, trials: &[Moments]) {
         let all = self.together();
         for ((block, source), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
@@ -134,17 +142,17 @@ impl<'a> SourceRegression<'a> {
         }
     }
 
-    /// The statistics of all that the source says, one set per regression.
+    /// The statistics of all groups together, one set for each regression.
     pub fn together(&self) -> Vec<Moments> {
         merged(&self.moments, |_| true).unwrap_or_default()
     }
 
-    /// The strength of its ridge.
+    /// Strength of its ridge.
     pub fn ridge(&self) -> f64 {
         self.ridge
     }
 
-    /// What it has done, for people.
+    /// Description for reports.
     pub fn words(&self, blocks: &Blocks, law: &str) -> String {
         let samples: usize = self.envelope.groups.iter().map(|group| group.samples.len()).sum();
         let all = self.together();
@@ -169,15 +177,19 @@ impl<'a> SourceRegression<'a> {
         [words].into_iter().chain(self.envelope.mixed.clone()).collect::<Vec<_>>().join("; ")
     }
 
+    /// Returns true if the source covers a regression: all of its axes, or any of them for a source
+    /// of the plane.
     fn knows(&self, block: &Block) -> bool {
         let says = |axis: &Axis| self.says(*axis);
         if self.plane { block.axes.iter().any(says) } else { block.axes.iter().all(says) }
     }
 
+    /// Returns true if the source covers an axis.
     fn says(&self, axis: Axis) -> bool {
         self.envelope.roll || axis != Axis::K
     }
 
+    /// Choices of its ridge for every target.
     fn choices(&self, blocks: &Blocks) -> Choices {
         blocks
             .blocks
@@ -187,8 +199,8 @@ impl<'a> SourceRegression<'a> {
     }
 }
 
-/// What the source says at every state, and a share (`ignorance`) of what would be needed to say as
-/// much of each coefficient alone.
+/// The precision that a source determines: the products of the regressors at every state, and a
+/// share (`ignorance`) of the precision that would determine each coefficient alone.
 fn earned(block: &Block, source: &Moments, trials: &Moments) -> DMatrix<f64> {
     let p = block.regressors();
     let mut precision = source.raw_products().view((0, 0), (p, p)).into_owned();

@@ -1,4 +1,4 @@
-//! The search as a candidate of a refinement.
+//! The search by CMA-ES as a candidate of a refinement.
 
 use std::collections::BTreeMap;
 
@@ -28,18 +28,18 @@ use sistership_numerics::cma_es::{
 };
 use sistership_priors::transfer::ready;
 
-/// The search among one variant's coefficients.
+/// The search over the coefficients of one variant.
 struct VariantSearch<'a> {
     problem: &'a Problem<'a>,
     variant: &'a Variant,
     settings: &'a CmaEs,
     objective: Objective,
     segments: Vec<Segment>,
-    /// Coefficients that the trials move, by their places among all.
+    /// Places of the coefficients on which the trials have information.
     moved: Vec<usize>,
 }
 
-/// What the fit on all trials and those with trials left out found: coefficients each.
+/// Coefficients of the fit on all trials and of the fits with held-out trials.
 struct SearchSolution {
     all: Vec<f64>,
     left_out: Vec<Vec<f64>>,
@@ -51,7 +51,7 @@ impl Solution for Fit {
         Ok(Some(self.clone()))
     }
 
-    /// A search without slopes knows none.
+    /// A search without derivatives gives no errors.
     fn errors(
         &self,
         _: &Problem<'_>,
@@ -64,7 +64,8 @@ impl Solution for Fit {
 /// Adds a candidate for each family of terms.
 ///
 /// # Errors
-/// A trial lacks a channel, the trials are too short, or it was cancelled.
+/// Returns an error if a trial lacks a channel, if the trials are too short, or if it was
+/// cancelled.
 pub(super) fn search(
     problem: &Problem<'_>,
     variants: &[Variant],
@@ -81,10 +82,11 @@ pub(super) fn search(
     Ok(())
 }
 
-/// How trials are cut into subsequences, and the comparisons that fall on samples.
+/// Lengths by which trials are divided into subsequences, with comparisons on samples.
 fn sequences(problem: &Problem<'_>) -> SegmentLengths {
     let (interval, settings) = (problem.interval_s(), &problem.settings);
     let wanted = settings.step_s.unwrap_or(interval);
+    // Steps are whole intervals or whole parts of one, so that every sample falls on a step.
     let step_s = if wanted >= interval {
         interval * (wanted / interval).round()
     } else {
@@ -113,10 +115,13 @@ impl<'a> VariantSearch<'a> {
                 "no trial is as long as a third of a subsequence".into(),
             ));
         }
+        // The ship is needed for its physical range only.
         let ship = ready(&variant.model, problem.law, &problem.training)?;
         let sizes = natural_sizes(variant, system.names())?;
+        // A coefficient of size zero has no effect on the trials and keeps the source's value.
         let moved = (0..sizes.len()).filter(|k| sizes[*k] > 0.0).collect();
         let objective = Objective {
+            // Accelerations are means over a few steps, as the measured ones that limit them.
             deviation: DeviationPenalty::new(
                 &system,
                 problem.law,
@@ -136,7 +141,7 @@ impl<'a> VariantSearch<'a> {
         Ok(Self { problem, variant, settings, objective, segments, moved })
     }
 
-    /// On all trials, then without those of each fold.
+    /// Searches on all trials, then without those of each fold.
     fn search(&self, told: PartProgress<'_>) -> Result<SearchSolution, RefineError> {
         let given = self.settings;
         let budget =
@@ -147,6 +152,8 @@ impl<'a> VariantSearch<'a> {
         let mut tell = |standing: &SearchState<'_>| self.tell(standing, &budget, told);
         let outcome =
             search.least(&cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)?;
+        // The budget of folds counts evaluations only: it is a share of those that were made, so
+        // that the result can be reproduced.
         let budget = Budget {
             evaluations: (given.fold_share * outcome.spent.evaluations as f64).ceil() as usize,
             wall_s: None,
@@ -164,6 +171,7 @@ impl<'a> VariantSearch<'a> {
             left_out.push(self.objective.coefficients(&self.spread(&again.best)));
         }
         let all = self.objective.coefficients(&self.spread(&outcome.best));
+        // Error and deviation are reported without their weights.
         let report = SearchReport {
             seed: given.seed,
             evaluations: outcome.spent.evaluations,
@@ -177,7 +185,7 @@ impl<'a> VariantSearch<'a> {
         Ok(SearchSolution { all, left_out, report })
     }
 
-    /// Goes on from the optimum for all trials with those of a fold left out.
+    /// Continues from the optimum for all trials with those of a fold held out.
     fn without(
         &self,
         fold: usize,
@@ -189,7 +197,10 @@ impl<'a> VariantSearch<'a> {
         let sequences = Sequences::new(&self.objective, self.segments.iter().filter(inside));
         let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
         let search =
+            // Folds have different seeds, so that they draw different candidates.
             self.searching(budget, self.settings.seed.wrapping_add(1000 * (fold as u64 + 1)));
+        // The shape of the distribution is kept; its spread is at least the given one, so that a
+        // converged search moves again.
         let first = optimum.strategy.renewed(
             &optimum.best,
             OBJECTIVE.fold_spread * self.settings.spread,
@@ -200,6 +211,7 @@ impl<'a> VariantSearch<'a> {
         search.from(first, &cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)
     }
 
+    /// The settings of one search over the coefficients in `moved`.
     fn searching(&self, budget: Budget, seed: u64) -> CmaEsSearch {
         let CmaEs { population, largest_population, spread, box_width, .. } = *self.settings;
         CmaEsSearch {
@@ -212,13 +224,15 @@ impl<'a> VariantSearch<'a> {
         }
     }
 
-    /// Parameters of all coefficients from those that are searched.
+    /// Parameters of all coefficients from those that are searched; 0 for the others.
     fn spread(&self, searched: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.objective.source.len()];
         self.moved.iter().zip(searched).for_each(|(&k, value)| all[k] = *value);
         all
     }
 
+    /// Reports the state of the search to the observer and the callback; returns false if it is
+    /// cancelled.
     fn tell(&self, standing: &SearchState<'_>, budget: &Budget, told: PartProgress<'_>) -> bool {
         let (best, cost) = standing.best;
         let model = || self.model(&self.objective.coefficients(&self.spread(best)));
@@ -234,6 +248,7 @@ impl<'a> VariantSearch<'a> {
         told(0.7 * standing.spent.share(budget).min(1.0), &what).is_ok()
     }
 
+    /// The model of the variant with these coefficients.
     fn model(&self, coefficients: &[f64]) -> Model {
         let values: BTreeMap<String, f64> = self
             .objective
@@ -246,6 +261,7 @@ impl<'a> VariantSearch<'a> {
         self.variant.model_at(&values)
     }
 
+    /// The candidate of a finished search, with its held-out trials simulated.
     fn candidate(&self, found: SearchSolution) -> Result<CandidateFit, RefineError> {
         let models: Vec<Model> =
             found.left_out.iter().map(|coefficients| self.model(coefficients)).collect();
@@ -255,10 +271,13 @@ impl<'a> VariantSearch<'a> {
             let deviation = self.objective.sizes[k];
             (
                 name.clone(),
+                // A search gives no standard errors; the natural size takes the place of the
+                // prior's deviation.
                 Fitted { value: found.all[k], standard_error: 0.0, prior_deviation: deviation },
             )
         };
         let coefficients = self.objective.system.names().iter().enumerate().map(one).collect();
+        // The search has no regression whose condition could be reported.
         let fit =
             Fit { coefficients, condition_number: 1.0, collinear_groups: Vec::new(), errors: None };
         let label = format!("cma-es, {}", self.variant.family.name());
@@ -268,13 +287,14 @@ impl<'a> VariantSearch<'a> {
     }
 }
 
-/// What is compared: u, v and r.
+/// The plan of comparisons: of u, v and r.
 fn plan(
     problem: &Problem<'_>,
     system: &CandidateSystem,
     cutting: SegmentLengths,
 ) -> Result<ComparisonPlan, RefineError> {
     let all = compared(system.states(), &problem.deviations);
+    // The objective of the paper has u, v and r only.
     let velocities: Vec<_> =
         all.into_iter().filter(|&(_, place, _)| [at::U, at::V, at::R].contains(&place)).collect();
     if velocities.len() < 3 {
@@ -290,10 +310,12 @@ fn plan(
     Ok(ComparisonPlan { compared: velocities, stride, step_s: cutting.step_s })
 }
 
-/// The change of each coefficient that changes an acceleration by the acceleration's own size; zero
-/// where the trials say nothing of it.
+/// The change of each coefficient that changes an acceleration by the acceleration's own root mean
+/// square; zero where the trials have no information on it.
 fn natural_sizes(variant: &Variant, names: &[String]) -> Result<Vec<f64>, RefineError> {
     let all = variant.together(|_| true)?;
+    // Without a source (`lambda` of 0) the diagonal of the weak form's Hessian is the square of
+    // each coefficient's effect, relative to the acceleration's mean square.
     let prior = WeakFormPrior::new(names, &variant.blocks, &all, &|_| (0.0, 0.0), 0.0);
     let size =
         |square: &f64| if *square > 0.0 && square.is_finite() { 1.0 / square.sqrt() } else { 0.0 };

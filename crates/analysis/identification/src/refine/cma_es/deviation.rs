@@ -10,9 +10,9 @@ use sistership_simulation::tape::Lanes;
 
 use super::thresholds::OBJECTIVE;
 
-/// States and controls in lockstep.
+/// Combinations of states and controls that are simulated in lockstep.
 const LANES: usize = 16;
-/// The combinations, with what their accelerations may be.
+/// Combinations of extreme states and controls, with the limits of their accelerations.
 #[derive(Debug)]
 pub(super) struct DeviationPenalty {
     blocks: Vec<(Vec<StateVector>, Vec<Lanes<LANES>>)>,
@@ -23,8 +23,8 @@ pub(super) struct DeviationPenalty {
 }
 
 impl DeviationPenalty {
-    /// From the extremes of trials; accelerations are means over `window_s`, for as long as which
-    /// each combination is simulated.
+    /// Creates the penalty from the extremes of trials. Accelerations are means over `window_s`,
+    /// the duration for which each combination is simulated.
     pub fn new(
         system: &CandidateSystem,
         law: &Law,
@@ -46,6 +46,7 @@ impl DeviationPenalty {
             .iter()
             .flat_map(|start| controls.iter().map(|inputs| (state(start), inputs)))
             .collect();
+        // A short chunk repeats its last combination; the sum below leaves the repetitions out.
         let blocks = pairs.chunks(LANES).map(|chunk| {
             let starts = chunk.iter().map(|(start, _)| *start).collect();
             let width = chunk[0].1.len();
@@ -61,18 +62,20 @@ impl DeviationPenalty {
         Self { blocks, limits, steps, step_s, count: pairs.len() as f64 }
     }
 
-    /// The mean penalty over the combinations, Eq. 29 by their number: 0 where none leaves the
-    /// limits, about 1 where all do at once.
+    /// Returns the mean penalty over the combinations, Eq. 29 divided by their number: 0 if none
+    /// exceeds the limits, about 1 if all do at once.
     pub fn penalty(&self, system: &CandidateSystem, method: Method, coefficients: &[f64]) -> f64 {
         let mut run = CandidateRun::<LANES>::new(system);
         let one = |(starts, inputs): &(Vec<StateVector>, Vec<Lanes<LANES>>)| {
             (0..LANES).for_each(|lane| run.start(lane, &starts[lane.min(starts.len() - 1)]));
+            // First step at which a lane exceeds a limit; `steps` if it never does.
             let mut over = [self.steps; LANES];
             for step in 0..self.steps {
                 run.step(method, self.step_s, [inputs, inputs, inputs], coefficients);
                 for (row, limit) in self.limits.iter().enumerate() {
                     for (over, rate) in over.iter_mut().zip(run.rate(row)) {
-                        // What is not a number is beyond any limit.
+                        // A value that is not a number fails the comparison and so exceeds any
+                        // limit.
                         let within = rate.abs() <= *limit;
                         *over = if within { *over } else { step.min(*over) };
                     }
@@ -91,8 +94,8 @@ impl DeviationPenalty {
     }
 }
 
-/// Low, middle (rest where that is between) and high of a channel; a single zero where no trial has
-/// it.
+/// Low, middle (0 if that is between them) and high value of a channel; a single zero if no trial
+/// has it.
 fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
     let values = trials.iter().filter_map(|trial| trial.channel(channel)).flatten();
     let (low, high) = values
@@ -106,8 +109,8 @@ fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
     if low < high { vec![low, middle, high] } else { vec![low] }
 }
 
-/// What an input is set to: extremes of a control, no wind, and of anything else what it is where
-/// nobody says.
+/// Values of an input: its default where it has one, the extremes of the trials for a control
+/// without a default, otherwise 0.
 fn settings(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
     let default = law.inputs.get(name).and_then(|input| input.default);
     match (default, input_channel(name)) {
@@ -117,8 +120,8 @@ fn settings(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
     }
 }
 
-/// Every combination of one value from each; beyond the first few that have several, their middle
-/// alone.
+/// All combinations of one value from each list. Beyond the first few lists with several values,
+/// only the middle value is used.
 fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new()];
     let mut several = 0;
@@ -140,13 +143,15 @@ fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
     all
 }
 
+/// A state with these velocities.
 fn state(velocities: &[f64]) -> StateVector {
     let mut state = StateVector::zeros();
     RECORDED.iter().zip(velocities).for_each(|(&(_, place), value)| state[place] = *value);
     state
 }
 
-/// The 99.7th percentile of absolute accelerations, as means over a window: Eq. 33.
+/// The 99.7th percentile of absolute accelerations, as means over a window: Eq. 33. Infinite
+/// without data.
 fn limit(trials: &[&Trial], channel: Channel, window_s: f64) -> f64 {
     let mut sizes = Vec::new();
     for trial in trials {

@@ -1,4 +1,4 @@
-//! The search without slopes as an estimator.
+//! The search by CMA-ES as an estimator.
 
 use super::super::candidate::CandidateFit;
 use super::super::equations::Equations;
@@ -14,12 +14,12 @@ use super::candidates::search;
 use super::thresholds::OBJECTIVE;
 use sistership_model::law::Law;
 
-/// The search by covariance matrix adaptation; it alone is weighed against the source.
+/// The search by covariance matrix adaptation; its only competitor is the source.
 pub(in super::super) struct CovarianceMatrixAdaptation;
 
 impl Estimator for CovarianceMatrixAdaptation {
     fn resolve(&self, settings: &mut Settings, _: &Law, length_s: Option<f64>) {
-        // It is too dear to be repeated for families that nobody asked for.
+        // It is too expensive to be repeated for families that were not requested.
         weak::resolve(settings, length_s, &[Family::Own]);
         settings.cma_es.get_or_insert_default();
         settings.step_s = settings.step_s.or(length_s.map(|s| s / OBJECTIVE.steps_a_length));

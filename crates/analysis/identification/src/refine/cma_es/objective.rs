@@ -1,4 +1,5 @@
-//! What a set of coefficients costs: Miyauchi 2024, Eqs. 20 to 23, by the duration of the trials.
+//! The objective of a set of coefficients: Miyauchi 2024, Eqs. 20 to 23, divided by the duration of
+//! the trials.
 
 use sistership_simulation::candidates::{CandidateRun, CandidateSystem};
 use sistership_simulation::state::StateVector;
@@ -9,31 +10,31 @@ use super::super::trajectory::{ComparisonPlan, Segment};
 use super::deviation::DeviationPenalty;
 use super::thresholds::OBJECTIVE;
 
-/// Subsequences in lockstep.
+/// Subsequences that are simulated in lockstep.
 const LANES: usize = 16;
 
-/// Subsequences in lockstep: where each starts, what is put in and what should come out, by lane.
+/// Subsequences that are simulated in lockstep: initial states, inputs and measurements, by lane.
 #[derive(Debug)]
 struct SequenceBlock {
     starts: Vec<StateVector>,
-    /// At every whole or half step, as the method needs, one after the other.
+    /// Inputs at every whole or half step, as the method needs, one step after the other.
     inputs: Vec<Lanes<LANES>>,
     steps: usize,
-    /// u, v and r at every comparison; not a number where a lane has ended.
+    /// Measured u, v and r at every comparison; not a number after a lane's end.
     measured: Vec<[Lanes<LANES>; 3]>,
-    /// Comparisons of each lane.
+    /// Number of comparisons of each lane.
     compared: Lanes<LANES>,
 }
 
-/// The sequences of some trials.
+/// Subsequences of some trials.
 #[derive(Debug)]
 pub(super) struct Sequences {
     blocks: Vec<SequenceBlock>,
-    /// Comparisons of all.
+    /// Number of comparisons of all subsequences.
     count: f64,
 }
 
-/// What the error is made of, the same for all sequences.
+/// The constant parts of the objective, the same for all subsequences.
 #[derive(Debug)]
 pub(super) struct Objective {
     pub system: CandidateSystem,
@@ -51,7 +52,7 @@ pub(super) struct Objective {
 }
 
 impl Sequences {
-    /// Of segments, those of a length together.
+    /// Creates the subsequences of segments, which are sorted by length.
     pub fn new<'s>(objective: &Objective, segments: impl Iterator<Item = &'s Segment>) -> Self {
         let all: Vec<&Segment> = segments.collect();
         let blocks: Vec<SequenceBlock> =
@@ -65,6 +66,7 @@ impl SequenceBlock {
     fn new(objective: &Objective, segments: &[&Segment]) -> Self {
         let Objective { system, plan, method, .. } = objective;
         let (steps, width) = (segments[0].steps, system.input_names().len());
+        // Segments have inputs at half steps; Euler's method needs those at whole steps only.
         let every = if *method == Method::Euler { 2 } else { 1 };
         // Lanes without a segment repeat the first, and nothing of theirs is compared.
         let of = |lane: usize| segments.get(lane).copied().unwrap_or(segments[0]);
@@ -80,6 +82,7 @@ impl SequenceBlock {
                 (0..lanes[0].len()).map(|input| std::array::from_fn(|lane| lanes[lane][input])),
             );
         }
+        // A lane that has ended, or has no segment, is compared with NaN, which is never counted.
         let measured = |k: usize, channel: usize| -> Lanes<LANES> {
             let own = |segment: &&Segment| {
                 segment.measured.get(k * plan.compared.len() + channel).copied()
@@ -103,7 +106,7 @@ impl SequenceBlock {
 }
 
 impl Objective {
-    /// The coefficients that parameters stand for.
+    /// Returns the coefficients of parameters.
     pub fn coefficients(&self, parameters: &[f64]) -> Vec<f64> {
         self.source
             .iter()
@@ -113,24 +116,25 @@ impl Objective {
             .collect()
     }
 
-    /// The whole objective.
+    /// Returns the whole objective.
     pub fn cost(&self, sequences: &Sequences, parameters: &[f64]) -> f64 {
         let coefficients = self.coefficients(parameters);
         let (by_deviation, by_size) = self.weights;
         let mut cost = self.error(sequences, &coefficients);
         if by_size > 0.0 {
+            // Parameters in units of the box's half width: 1 is its edge.
             cost += by_size * parameters.iter().map(|p| p.abs()).sum::<f64>() / self.width;
         }
         if by_deviation > 0.0 { cost + by_deviation * self.deviated(&coefficients) } else { cost }
     }
 
-    /// The deviation penalty as a mean over the combinations.
+    /// Returns the deviation penalty as a mean over the combinations.
     pub fn deviated(&self, coefficients: &[f64]) -> f64 {
         self.deviation.penalty(&self.system, self.method, coefficients)
     }
 
-    /// The first part: the standardised squared error of u, v and r together, in the mean over
-    /// time.
+    /// Returns the first part of the objective: the standardised squared error of u, v and r
+    /// together, in the mean over time.
     pub fn error(&self, sequences: &Sequences, coefficients: &[f64]) -> f64 {
         let mut run = CandidateRun::new(&self.system);
         let sum: f64 =
@@ -138,6 +142,8 @@ impl Objective {
         sum / sequences.count.max(1.0)
     }
 
+    /// The sum of the squared errors of a block; comparisons after a lane has left the physical
+    /// range count the fixed error `lost` in each of the three velocities.
     fn of_block(
         &self,
         block: &SequenceBlock,
@@ -145,6 +151,7 @@ impl Objective {
         coefficients: &[f64],
     ) -> f64 {
         block.starts.iter().enumerate().for_each(|(lane, start)| run.start(lane, start));
+        // Values of one step, prepared inputs included.
         let width = block.inputs.len()
             / if self.method == Method::Euler { block.steps + 1 } else { 2 * block.steps + 1 };
         let at = |k: usize| &block.inputs[k * width..(k + 1) * width];
@@ -163,6 +170,7 @@ impl Objective {
                     &mut left,
                     &mut lost,
                 );
+                // Nothing more can be gained: remaining comparisons count the fixed error.
                 if lost.iter().all(|lost| *lost) {
                     break;
                 }
@@ -174,8 +182,8 @@ impl Objective {
             .sum()
     }
 
-    /// Adds a comparison to the lanes that have not left the physical range before; `left` are
-    /// those that remain.
+    /// Adds a comparison to the lanes that have not left the physical range; `left` are the
+    /// comparisons that remain.
     fn compare(
         &self,
         run: &CandidateRun<'_, LANES>,
@@ -188,7 +196,7 @@ impl Objective {
         let (speed, turn) = (self.envelope.speed_m_s().powi(2), self.envelope.yaw_rate_rad_s());
         for lane in 0..LANES {
             let [u, v, r] = states.map(|state| state[lane]);
-            // What is not a number is outside.
+            // A value that is not a number counts as outside the range.
             lost[lane] |= !(u * u + v * v <= speed && r.abs() <= turn);
         }
         for lane in (0..LANES).filter(|lane| !lost[*lane] && measured[0][*lane].is_finite()) {

@@ -1,10 +1,10 @@
-//! What a search may be told, and what it reports.
+//! Settings and report of the search by CMA-ES.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_simulation::Method;
 
-/// Settings of the search.
+/// Settings of the search by CMA-ES.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CmaEs {
@@ -16,26 +16,26 @@ pub struct CmaEs {
     /// Largest population of a restart, each of which has twice that of the run before.
     #[schemars(range(min = 4, max = 100_000))]
     pub largest_population: usize,
-    /// Most evaluations of the fit on all trials. What was really evaluated is what a version
-    /// records, so that it can be derived again.
+    /// Largest number of evaluations of the fit on all trials. A version records the number of
+    /// evaluations that were made, so that it can be derived again.
     #[schemars(range(min = 1))]
     pub evaluations: usize,
-    /// Most time of the fit on all trials, s on the wall.
+    /// Longest elapsed time of the fit on all trials, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub wall_s: Option<f64>,
-    /// Most time of the fit on all trials, s of the whole process on all cores.
+    /// Longest CPU time of the fit on all trials, s, summed over all cores.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub cpu_s: Option<f64>,
-    /// Evaluations of each fit with trials left out, by those of the fit on all, at whose optimum
-    /// it starts.
+    /// Evaluations of each fit with held-out trials as a share of those of the fit on all trials,
+    /// at whose optimum it starts.
     #[schemars(range(min = 0, max = 1))]
     pub fold_share: f64,
-    /// Half width of the box by the natural size of a coefficient.
+    /// Half width of the box in units of the natural size of a coefficient.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub box_width: f64,
-    /// Standard deviation of the first candidates likewise.
+    /// Standard deviation of the first candidates in the same units.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub spread: f64,
     /// Weight of the deviation penalty, `alpha/T` for as many combinations as in the paper.
@@ -62,6 +62,7 @@ impl Default for CmaEs {
             fold_share: 0.1,
             box_width: 10.0,
             spread: 0.05,
+            // `alpha/T` of the paper.
             deviation: 1e2 / 7407.4,
             absolute: 0.0,
             integration: Method::Euler,
@@ -69,7 +70,7 @@ impl Default for CmaEs {
     }
 }
 
-/// Why settings of the search are refused.
+/// The error type for settings of the search that are refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(in super::super) enum CmaEsError {
     #[error("population must be from 4 to 100000, largest_population not less")]
@@ -85,10 +86,10 @@ pub(in super::super) enum CmaEsError {
 }
 
 impl CmaEs {
-    /// Checks the numbers.
+    /// Checks that the settings are in range.
     ///
     /// # Errors
-    /// Says which and what it may be.
+    /// Returns an error with the settings at fault and the values that are allowed.
     pub(in super::super) fn check(&self) -> Result<(), CmaEsError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let limit = |value: Option<f64>| value.is_none_or(positive);
@@ -116,14 +117,14 @@ impl CmaEs {
     }
 }
 
-/// What a search did on all trials.
+/// Report of a search on all trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchReport {
     /// Its seed.
     pub seed: u64,
-    /// Evaluations, and those of the fits with trials left out together.
+    /// Evaluations of the fit on all trials.
     pub evaluations: usize,
-    /// Of the fits with trials left out.
+    /// Evaluations of the fits with held-out trials together.
     pub fold_evaluations: usize,
     /// The population of each run.
     pub populations: Vec<usize>,
@@ -131,9 +132,9 @@ pub struct SearchReport {
     pub restarts: usize,
     /// The least objective.
     pub objective: f64,
-    /// Its first part: the standardised squared error of u, v and r by time.
+    /// First part of the objective: the standardised squared error of u, v and r by time.
     pub error: f64,
-    /// The share of the extreme states and controls whose accelerations are beyond what was
-    /// measured, weighed by how soon.
+    /// Share of the extreme states and controls whose accelerations exceed the measured ones,
+    /// weighted by how soon they do.
     pub deviation: f64,
 }

@@ -1,12 +1,12 @@
-//! Every constant of the search's objective, with symbol, meaning, unit and source; what a user may
-//! set is in the settings.
+//! Constants of the search's objective, with symbol, meaning, unit and source; those that a user
+//! may set are in the settings.
 //!
-//! `L/U` is the time in which the ship sails its length. The paper is Miyauchi, Akimoto and Maki
-//! (2024): a ship of 3 m at 0.4 m/s, so that its `L/U` is 7.5 s. A source that begins with "chosen"
-//! has no measurement of how results move at half and at double the value: the reason that can be
-//! given is the one of the mathematics.
+//! `L/U` is the time in which the ship travels its own length. The paper is Miyauchi, Akimoto and
+//! Maki (2024): a ship of 3 m at 0.4 m/s, so that its `L/U` is 7.5 s. A source that begins with
+//! "chosen" has not been measured at half and at double the value; the reason given is a
+//! mathematical one.
 
-/// How trials are cut, compared and bounded.
+/// Constants by which trials are divided, compared and bounded.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ObjectiveThresholds {
     /// `n_h`: integration steps in `L/U`, a count. Source: the paper's 0.1 s.
@@ -22,21 +22,22 @@ pub(super) struct ObjectiveThresholds {
     /// Steps over which accelerations are means, a count. Source: the paper's moving average of one
     /// second (section 3.1.2).
     pub mean_steps: f64,
-    /// `r_l`: what a standardised difference counts that a simulation never came to. Source:
-    /// chosen, more than any state within the physical range is off; who goes on longer is then
-    /// better, as by the paper's Eq. 25.
+    /// `r_l`: standardised difference that is counted where a simulation has ended early. Source:
+    /// chosen, more than the error of any state within the physical range; a longer simulation is
+    /// then better, as by the paper's Eq. 25.
     pub lost: f64,
-    /// `m`: by how much of the range that the trials covered the extremes of the states are beyond
-    /// it, dimensionless. Source: chosen; the paper's own extremes are of its ship.
+    /// `m`: distance of the extreme states beyond the range that the trials covered, as a share of
+    /// that range, dimensionless. Source: chosen; the paper's own extremes are of its ship.
     pub beyond: f64,
     /// Most controls whose extremes are combined, a count. Source: chosen; combinations grow as
     /// three to that power.
     pub controls: usize,
-    /// `Q`: the share of measured accelerations that may be, dimensionless. Source: the paper, Eq.
-    /// 33.
+    /// `Q`: percentile of the measured accelerations that is allowed, as a share, dimensionless.
+    /// Source: the paper, Eq. 33.
     pub percentile: f64,
-    /// `s_f`: spread of a search with trials left out by that of the first, at whose optimum it
-    /// starts, dimensionless. Source: chosen; decision 14 gives it a tenth of the evaluations.
+    /// `s_f`: spread of a search with held-out trials relative to that of the first search, at
+    /// whose optimum it starts, dimensionless. Source: chosen; decision 14 gives it a tenth of the
+    /// evaluations.
     pub fold_spread: f64,
 }
 

@@ -1,21 +1,22 @@
-//! How residuals depend on each other: their autocovariance within each equation and between them.
+//! Autocovariance of residuals within each equation, and their covariance between equations.
 
 use nalgebra::DVector;
 
 use super::thresholds::POSTERIOR;
 
-/// Autocovariances up to a lag from which they count no more.
+/// Weighted autocovariances up to the lag at which their weights vanish.
 pub(super) struct ResidualAutocovariance {
-    /// By pair of equations, the later one's row of the lower triangle, then by lag.
+    /// Values by pair of equations (rows of the lower triangle), then by lag.
     pairs: Vec<Vec<f64>>,
 }
 
 impl ResidualAutocovariance {
-    /// Of residuals by equation and sequence.
+    /// Computes the autocovariances of residuals by equation and sequence.
     pub fn of(residuals: &[Vec<DVector<f64>>]) -> Self {
         let longest = residuals.iter().flatten().map(DVector::len).max().unwrap_or(0);
         let own = |own: &Vec<DVector<f64>>| lasts(longest, &|lag| covariance(own, own, lag));
         let last = residuals.iter().map(own).max().unwrap_or(0);
+        // The equation with the longest memory sets the lags of all.
         let lags = (POSTERIOR.bandwidth * (last + 1)).min(longest.max(1));
         let pair = |i: usize, j: usize| {
             // Bartlett's weights keep every variance made of them above zero (Newey and West 1987,
@@ -29,27 +30,27 @@ impl ResidualAutocovariance {
         Self { pairs: pairs.map(|(i, j)| pair(i, j)).collect() }
     }
 
-    /// Weighted covariance of two equations' residuals by lag, for `other <= one`.
+    /// Returns the weighted covariance of two equations' residuals by lag, for `other <= one`.
     pub fn kernel(&self, one: usize, other: usize) -> Vec<f64> {
         self.pairs[one * (one + 1) / 2 + other].clone()
     }
 
-    /// Mean square of an equation's residuals.
+    /// Returns the mean square of an equation's residuals.
     pub fn variance(&self, one: usize) -> f64 {
         self.kernel(one, one).first().copied().unwrap_or(0.0)
     }
 }
 
 /// The lag until which sums of two neighbouring autocovariances stay above zero (Geyer 1992,
-/// Statistical Science 7, 473-483, section 3.3).
+/// Statistical Science 7, 473-483, section 3.3), at most a third of the longest sequence.
 fn lasts(longest: usize, covariance: &dyn Fn(usize) -> f64) -> usize {
     let most = longest / 3;
     let pair = |m: usize| covariance(2 * m) + covariance(2 * m + 1);
     2 * (1..=most / 2).find(|&m| pair(m) <= 0.0).unwrap_or(most / 2)
 }
 
-/// Over all sequences, by the number of rows, so that covariances of all lags together are those of
-/// some process.
+/// Covariance at a lag over all sequences, divided by the number of rows rather than of products,
+/// so that covariances of all lags together are those of some process.
 fn covariance(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
     let count: usize = one.iter().map(DVector::len).sum();
     let product = |(a, b): (&DVector<f64>, &DVector<f64>)| {
@@ -58,6 +59,7 @@ fn covariance(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
     one.iter().zip(other).map(product).sum::<f64>() / (count as f64).max(1.0)
 }
 
+/// Mean of the covariances at a positive and a negative lag.
 fn both_ways(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
     0.5 * (covariance(one, other, lag) + covariance(other, one, lag))
 }

@@ -1,4 +1,4 @@
-//! One target of one regression at its choice.
+//! The ridge of one target of one regression at its choice.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,12 +6,12 @@ use super::rows::{RowSequence, SequencedRows};
 use super::thresholds::POSTERIOR;
 use sistership_numerics::{Metric, Moments, RidgeChoice};
 
-/// One target of one regression.
+/// The ridge of one target of one regression.
 pub(super) struct RidgeEquation<'a> {
     pub block: usize,
     pub target: usize,
     pub choice: RidgeChoice,
-    /// What standardises its coefficients.
+    /// Metric that standardises its coefficients.
     pub metric: &'a Metric,
     /// `C`, standardised.
     pub products: &'a DMatrix<f64>,
@@ -23,12 +23,13 @@ pub(super) struct RidgeEquation<'a> {
     pub source: DVector<f64>,
     /// `S^-1`.
     pub inverse: DMatrix<f64>,
-    /// The same at a strength that holds nothing which the trials can tell, and the solution there,
-    /// standardised.
+    /// `S^-1` at a strength so small that the source has no influence where the trials have
+    /// information, and the solution there, standardised.
     pub free: (DMatrix<f64>, DVector<f64>),
 }
 
 impl<'a> RidgeEquation<'a> {
+    /// Creates the equation; `None` if its normal equations are not positive definite.
     pub fn new(
         (block, target): (usize, usize),
         moments: &Moments,
@@ -53,8 +54,8 @@ impl<'a> RidgeEquation<'a> {
         Some(Self { block, target, choice, metric, products, data, square, source, inverse, free })
     }
 
-    /// What the law leaves of its target, by sequence, where no source holds it: else the source's
-    /// error would seem noise.
+    /// Residuals of the target by sequence, for the solution without influence of the source: the
+    /// source's error would otherwise count as noise.
     pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
         let coefficients = self.metric.back() * &self.free.1;
         let of = |sequence: &RowSequence| {
@@ -63,16 +64,16 @@ impl<'a> RidgeEquation<'a> {
         rows.blocks[self.block].iter().map(of).collect()
     }
 
-    /// Places of its coefficients that the trials moved.
+    /// Number of its coefficients.
     pub fn size(&self) -> usize {
         self.metric.size()
     }
 }
 
 impl RidgeEquation<'_> {
-    /// By how much the residuals' variance is more than it seems, for the coefficients have taken
-    /// up a part of it: with the hat matrix `A` and correlations `R`, the sum of squares is
-    /// expected to be `tr (I - A) R (I - A)` of the variance.
+    /// Factor by which the residuals' variance exceeds its estimate, since the coefficients have
+    /// taken up a part of it: with the hat matrix `A` and correlations `R`, the expected sum of
+    /// squares is `tr (I - A) R (I - A)` times the variance.
     pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
         let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
         let moved = &self.free.0 * unit;

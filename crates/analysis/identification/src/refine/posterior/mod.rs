@@ -1,15 +1,15 @@
-//! How far a ridge's coefficients may be from the truth, jointly over the axes.
+//! Joint errors of a ridge's coefficients over the axes.
 //!
 //! With standardised regressors `F`, `C = F'F/n` and `S = C + lambda I`, the error of the ridge is
-//! `S^-1 (F'e/n + lambda d)`, where `e` is what the law leaves of the accelerations and `d` how far
-//! the pull's target is from the truth. Its covariance is `S^-1 (M + lambda^2 D) S^-1` whatever
-//! strength was chosen, and by whatever rule.
+//! `S^-1 (F'e/n + lambda d)`, where `e` are the residuals of the accelerations and `d` is the
+//! distance of the prior's mean from the truth. Its covariance is `S^-1 (M + lambda^2 D) S^-1`
+//! whatever strength was chosen, and by whatever rule.
 //!
 //! `M` is the covariance of `F'e/n` for residuals that depend on each other (White 1980,
 //! Econometrica 48, 817-838; Newey and West 1987, Econometrica 55, 703-708):
-//! [`ResidualAutocovariance`] has their autocovariance, within and between the axes. `D` is not
-//! what `lambda` would make of it, for that was chosen by simulation: [`spread`] learns from the
-//! trials how far the source is off.
+//! [`ResidualAutocovariance`] has their autocovariance, within and between the axes. `D` is not the
+//! covariance that `lambda` implies, since that was chosen by simulation: the source's error is
+//! estimated from the trials.
 
 mod autocovariance;
 mod equation;
@@ -31,11 +31,11 @@ pub(super) use rows::{SequencedRows, rows};
 use sistership_numerics::{Metric, Moments, RidgeChoice};
 use spread::spread;
 
-/// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the
-/// source.
+/// Returns the errors of the ridge at its choices; `rows` are the rows behind `moments`, `model` is
+/// the source.
 ///
 /// # Errors
-/// Names the axis whose equations are not positive definite.
+/// Returns an error with the axis whose equations are not positive definite.
 pub(super) fn errors(
     blocks: &Blocks,
     moments: &[Moments],
@@ -59,6 +59,7 @@ pub(super) fn errors(
             equations.push(equation.ok_or_else(|| not_positive(block.axes[target]))?);
         }
     }
+    // Residuals of all equations first: their covariance links the equations.
     let residuals: Vec<Vec<DVector<f64>>> =
         equations.iter().map(|equation| equation.residuals(rows)).collect();
     let memory = ResidualAutocovariance::of(&residuals);
@@ -72,7 +73,7 @@ pub(super) fn errors(
     Ok(gathered(blocks, &equations, &scatter.all, &spreads))
 }
 
-/// The refusal where a matrix of an axis has no root.
+/// The error for an axis with a matrix that has no Cholesky root.
 fn not_positive(axis: Axis) -> RefineError {
     RefineError::Data(format!(
         "the standard errors of the {axis:?} axis cannot be computed: its normal equations are not \
@@ -80,7 +81,7 @@ fn not_positive(axis: Axis) -> RefineError {
     ))
 }
 
-/// What standardises a block's coefficients, and the mean products of its regressors so
+/// The metric that standardises a block's coefficients, and the mean products of its regressors so
 /// standardised.
 fn standardised((block, moments): (&Block, &Moments)) -> (Metric, DMatrix<f64>) {
     let metric = block.metric(moments);
@@ -88,14 +89,16 @@ fn standardised((block, moments): (&Block, &Moments)) -> (Metric, DMatrix<f64>) 
     (metric, products)
 }
 
-/// Covariances of `F'e/n`.
+/// Covariance of `F'e/n`.
 struct ScoreCovariance {
-    /// Over all equations one after the other.
+    /// Joint covariance over all equations, one after the other.
     all: DMatrix<f64>,
-    /// Of each alone.
+    /// Covariance of each equation alone.
     own: Vec<DMatrix<f64>>,
 }
 
+/// The covariance of `F'e/n` from the autocovariance of the residuals, corrected for the variance
+/// that the coefficients have taken up.
 fn scatter(
     equations: &[RidgeEquation<'_>],
     rows: &SequencedRows,
@@ -106,9 +109,12 @@ fn scatter(
     let mut all = DMatrix::zeros(total, total);
     let mut factors = Vec::new();
     for (i, one) in equations.iter().enumerate() {
+        // Only the lower triangle is computed; the upper one is its transpose.
         for (j, other) in equations.iter().enumerate().take(i + 1) {
             let part = rows.weighed(one.block, other.block, &memory.kernel(i, j));
             let part = one.metric.back().transpose() * part * other.metric.back();
+            // The correction of variance is known only on the diagonal; its root scales rows and
+            // columns after the loop.
             if i == j {
                 factors.push(one.taken_up(&part, memory.variance(i), rows.count()).sqrt());
             }
@@ -129,6 +135,7 @@ fn scatter(
     ScoreCovariance { all, own }
 }
 
+/// First place of each equation's coefficients.
 fn starts(equations: &[RidgeEquation<'_>]) -> Vec<usize> {
     let next = |at: &mut usize, equation: &RidgeEquation<'_>| {
         let start = *at;
@@ -138,7 +145,7 @@ fn starts(equations: &[RidgeEquation<'_>]) -> Vec<usize> {
     equations.iter().scan(0, next).collect()
 }
 
-/// From errors of standardised equations to those of the coefficients of each axis.
+/// Joint errors of the coefficients of each axis from those of the standardised equations.
 fn gathered(
     blocks: &Blocks,
     equations: &[RidgeEquation<'_>],
@@ -155,18 +162,22 @@ fn gathered(
         let (size, RidgeChoice { lambda, alpha }) = (equation.size(), equation.choice);
         inverse.view_mut((at, at), (size, size)).copy_from(&equation.inverse);
         pulled.rows_mut(at, size).copy_from(&(&equation.source * (lambda * alpha)));
+        // A regressor that never moves has no source error and no pull.
         (0..size).filter(|j| !equation.metric.is_still(*j)).for_each(|j| {
             source[at + j] = spread[j];
             strengths[at + j] = lambda;
         });
     }
     for (b, block) in blocks.blocks.iter().enumerate() {
+        // Equations of a block are consecutive, one for each target.
         let Some(first) = equations.iter().position(|equation| equation.block == b) else {
             continue;
         };
         place(block, equations, &starts, first, &mut map);
         names.extend(block.names.iter().flatten().cloned());
     }
+    // `S^-1 (M + lambda^2 D + pull pull') S^-1`; the pull is the bias by which alpha moves the
+    // prior's mean towards zero.
     let held = DMatrix::from_diagonal(&source.component_mul(&strengths).component_mul(&strengths));
     let covariance = &inverse * (scatter + held + &pulled * pulled.transpose()) * &inverse;
     let cross = &inverse * DMatrix::from_diagonal(&source.component_mul(&strengths));
@@ -179,7 +190,8 @@ fn gathered(
     }
 }
 
-/// Coefficients of a block's axes from its targets' standardised ones.
+/// Writes the map from the standardised coefficients of a block's targets to the coefficients of
+/// its axes.
 fn place(
     block: &Block,
     equations: &[RidgeEquation<'_>],

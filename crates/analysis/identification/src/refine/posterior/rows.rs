@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::super::blocks::Blocks;
 use super::super::rows::Table;
 
-/// Rows that follow each other, of one regression.
+/// Consecutive rows of one regression.
 pub(in super::super) struct RowSequence {
     /// Regressors by column.
     pub regressors: DMatrix<f64>,
@@ -13,7 +13,7 @@ pub(in super::super) struct RowSequence {
 }
 
 impl RowSequence {
-    /// A target over the rows.
+    /// Returns a target over the rows.
     pub fn target(&self, target: usize) -> DVector<f64> {
         self.targets.column(target).into_owned()
     }
@@ -24,8 +24,8 @@ pub(in super::super) struct SequencedRows {
     pub blocks: Vec<Vec<RowSequence>>,
 }
 
-/// Gathers tables, by sequence and regression. So many rows are merged into their mean where they
-/// follow each other closely; `centred` takes the mean of all rows off each column.
+/// Creates sequences from tables, by sequence and regression. Each `merged` consecutive rows are
+/// replaced by their mean; `centred` subtracts the mean of all rows from each column.
 pub(in super::super) fn rows(
     blocks: &Blocks,
     tables: &[Vec<Table>],
@@ -54,6 +54,7 @@ fn means(tables: &[Vec<Table>], block: usize) -> Vec<f64> {
     (0..columns).map(mean).collect()
 }
 
+/// The rows of one table; a rest of fewer than `merged` rows is dropped.
 fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) -> RowSequence {
     let count = table.first().map_or(0, |column| column.len() / merged);
     let entry = |row: usize, column: usize| {
@@ -69,15 +70,15 @@ fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) ->
 }
 
 impl SequencedRows {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn count(&self) -> f64 {
         self.blocks
             .first()
             .map_or(0.0, |sequences| sequences.iter().map(|s| s.regressors.nrows() as f64).sum())
     }
 
-    /// `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over rows of
-    /// the same sequence.
+    /// Returns `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over
+    /// rows of the same sequence.
     pub fn weighed(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
         let (first, second) = (&self.blocks[one], &self.blocks[other]);
         let columns =
@@ -90,7 +91,7 @@ impl SequencedRows {
     }
 }
 
-/// Columns under a symmetric kernel, which ends with them.
+/// Columns convolved with a symmetric kernel, truncated at the ends.
 fn smoothed(columns: &DMatrix<f64>, kernel: &[f64]) -> DMatrix<f64> {
     let count = columns.nrows();
     let mut result = columns * kernel.first().copied().unwrap_or(0.0);

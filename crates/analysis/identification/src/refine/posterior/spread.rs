@@ -1,17 +1,19 @@
-//! How far a source is from the truth, as the trials themselves say.
+//! Estimate of the error of a source, from the trials themselves.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::equation::RidgeEquation;
 use super::thresholds::POSTERIOR;
 
-/// The variances of the source's standardised coefficients about the true ones: a share of their
-/// squares, and a common part, without which a term that the source does not have would be known to
-/// be none. `F'y/n` less what the source makes of it is `C d + F'e/n`, normal with `C D C + M`;
-/// these are the squares of the mean deviations over both parts' distribution given the trials,
-/// with `1/(1 + x^2)` before them for deviations by their unit (Gelman 2006, Bayesian Analysis 1,
-/// 515-533). Means of the variances themselves are ruled by the far end of what cannot be excluded.
-/// None where a covariance is not positive definite.
+/// Returns the variances of the source's standardised coefficients about the true ones: a share of
+/// their squares, and a common part, without which a term that the source does not have would be
+/// certain to be zero. `F'y/n` less the source's prediction is `C d + F'e/n`, normal with
+/// covariance `C D C + M`.
+///
+/// The results are the squares of the mean deviations over the posterior distribution of both
+/// parts, with the prior `1/(1 + x^2)` for deviations in their unit (Gelman 2006, Bayesian Analysis
+/// 1, 515-533). Means of the variances themselves would be dominated by the largest deviations that
+/// cannot be excluded. `None` if a covariance is not positive definite.
 pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> Option<DVector<f64>> {
     let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
     let variances =
@@ -27,11 +29,13 @@ pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> Op
     let weighed: Vec<(DVector<f64>, f64)> = pairs
         .map(|(relative, common)| {
             let variances = variances(relative, common);
-            // Steps are even in the logarithm.
+            // The grid is even in the logarithm: the prior has the factor `x` of the change of
+            // variable.
             let weight = seen.log_likelihood(&variances)? + before(relative) + before(common);
             Some((variances, weight))
         })
         .collect::<Option<_>>()?;
+    // Weights are taken relative to the largest one, against underflow.
     let most = weighed.iter().map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max);
     let all: f64 = weighed.iter().map(|(_, weight)| (weight - most).exp()).sum();
     let none = DVector::zeros(own.len());
@@ -42,10 +46,11 @@ pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> Op
     Some(mean.component_mul(&mean))
 }
 
-/// What the trials say in the eigenbasis of the regressors, each direction by its size.
+/// Likelihood of the source's variances in the eigenbasis of the regressors, each direction scaled
+/// by its size.
 struct SpreadLikelihood {
     surprise: DVector<f64>,
-    /// From coefficients to directions.
+    /// Map from coefficients to directions.
     response: DMatrix<f64>,
     scatter: DMatrix<f64>,
 }
@@ -58,6 +63,8 @@ impl SpreadLikelihood {
     ) -> Option<Self> {
         let basis = equation.products.clone().symmetric_eigen();
         let least = POSTERIOR.silent * basis.eigenvalues.max();
+        // Directions without regressors carry no information, and their rounding error would be
+        // scaled up.
         let kept: Vec<usize> =
             (0..basis.eigenvalues.len()).filter(|&k| basis.eigenvalues[k] > least).collect();
         if kept.is_empty() {
@@ -79,6 +86,8 @@ impl SpreadLikelihood {
         Some(Self { surprise, response, scatter })
     }
 
+    /// Logarithm of the likelihood of variances, but for a constant; `None` if the covariance is
+    /// not positive definite.
     fn log_likelihood(&self, variances: &DVector<f64>) -> Option<f64> {
         let mut covariance = &self.scatter + weighed(&self.response, variances);
         covariance
@@ -91,7 +100,7 @@ impl SpreadLikelihood {
     }
 }
 
-/// `A diag(w) A'`.
+/// The product `A diag(w) A'`.
 fn weighed(matrix: &DMatrix<f64>, weights: &DVector<f64>) -> DMatrix<f64> {
     let mut scaled = matrix.clone();
     scaled.column_iter_mut().zip(weights.iter()).for_each(|(mut column, weight)| column *= *weight);

@@ -1,30 +1,32 @@
-//! Every constant of the posterior, with symbol, meaning, unit and source.
+//! Constants of the posterior, with symbol, meaning, unit and source.
 //!
-//! A source that begins with "chosen" has no measurement of how results move at half and at double
-//! the value: the reason that can be given is the one of the mathematics.
+//! A source that begins with "chosen" has not been measured at half and at double the value; the
+//! reason given is a mathematical one.
 
-/// How residuals and the source's deviations are measured.
+/// Constants by which residuals and the source's deviations are measured.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PosteriorThresholds {
-    /// `lambda_r`: strength at which residuals are taken, dimensionless. Source:
+    /// `lambda_r`: strength of the prior at which residuals are taken, dimensionless. Source:
     /// `docs/evidence/intervals.md`: at the chosen strength the source's error would count as
-    /// noise; this one holds nothing that the trials can tell.
+    /// noise; at this one the source has no influence where the trials have information.
     pub residual_strength: f64,
-    /// `f_0`: least share of the residuals' variance that coefficients may leave for it to be
-    /// corrected, dimensionless. Source: chosen; below it residuals say nothing of their own size.
+    /// `f_0`: smallest share of the residuals' variance that coefficients may leave for it to be
+    /// corrected, dimensionless. Source: chosen; below it residuals have no information on their
+    /// own size.
     pub least_left: f64,
-    /// `b`: lags that count, by the lag at which residuals have forgotten, a count. Source: chosen;
-    /// Bartlett's weights have then fallen to half at that lag.
+    /// `b`: number of lags that count, relative to the lag at which residuals are uncorrelated, a
+    /// count. Source: chosen; Bartlett's weights have then fallen to half at that lag.
     pub bandwidth: usize,
-    /// Deviations tried of the source's coefficients by their own size, dimensionless. Source:
-    /// chosen, from a thousandth to three times a coefficient.
+    /// Deviations of the source's coefficients that are tried, relative to their own size,
+    /// dimensionless. Source: chosen, from a thousandth to three times a coefficient.
     pub relative: LogGrid,
-    /// Deviations tried of all coefficients alike, by the root mean square of the target,
-    /// dimensionless. Source: chosen, from what no trial can tell to ten times all of the target.
+    /// Deviations of all coefficients alike that are tried, relative to the root mean square of the
+    /// target, dimensionless. Source: chosen, from less than trials can resolve to ten times the
+    /// target.
     pub common: LogGrid,
-    /// `e_0`: eigenvalue by the largest below which a direction of the regressors says nothing,
-    /// dimensionless. Source: derived: the root of it is far below any noise by its signal, and it
-    /// is far above rounding.
+    /// `e_0`: ratio to the largest eigenvalue below which a direction of the regressors has no
+    /// information, dimensionless. Source: derived: its root is far below any ratio of noise to
+    /// signal, and it is far above rounding.
     pub silent: f64,
     /// `e_d`: added to the diagonal of a covariance of unit size, dimensionless. Source: derived,
     /// as [`Self::silent`].
@@ -34,16 +36,16 @@ pub(super) struct PosteriorThresholds {
 /// Values evenly spaced in their logarithm.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LogGrid {
-    /// The least.
+    /// Least value.
     pub least: f64,
-    /// The greatest.
+    /// Greatest value.
     pub most: f64,
-    /// How many.
+    /// Number of values.
     pub count: usize,
 }
 
 impl LogGrid {
-    /// The values, from the least on.
+    /// Returns the values, from the least to the greatest.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         let (low, step) =
             (self.least.ln(), (self.most / self.least).ln() / (self.count - 1) as f64);

@@ -14,9 +14,9 @@ use super::settings::Settings;
 use super::variant::Variant;
 use sistership_model::law::Law;
 
-/// `T_d`: time over which accelerations are differenced, by that in which the ship sails its
-/// length, dimensionless. Source: decision 2, with the table of how errors move from one sample to
-/// twice the value.
+/// `T_d`: time over which accelerations are differenced, in units of the time in which the ship
+/// travels its own length, dimensionless. Source: decision 2, with the table of errors from one
+/// sample to twice the value.
 const DIFFERENCE: f64 = 0.1;
 
 /// The published estimator.
@@ -45,7 +45,7 @@ impl Estimator for Published {
     }
 }
 
-/// One candidate for each range; a single trial allows the first range only.
+/// Adds one candidate for each range; a single trial allows the first range only.
 fn by_range(
     problem: &Problem<'_>,
     at: (usize, &Variant),

@@ -23,28 +23,28 @@ use super::thresholds::TRAJECTORY;
 use sistership_numerics::{Moments, merged};
 use sistership_priors::transfer::ready;
 
-/// What the trajectory form makes of one variant.
+/// The fit of one variant by the trajectory form.
 struct TrajectoryDescent<'a> {
     problem: &'a Problem<'a>,
     variant: &'a Variant,
-    /// Its place among all.
+    /// Place of the variant among all.
     index: usize,
     choices: &'a Choices,
     passing: SegmentPass<'a>,
     names: Vec<String>,
 }
 
-/// Coefficients with the pass at them.
+/// Coefficients, with residuals and sensitivities of all segments there.
 struct Linearisation {
     at: DVector<f64>,
     pass: SegmentSums,
 }
 
-/// Adds candidates of the trajectory form, started from the best of the weak form; where every one
-/// stops while manoeuvres are simulated, from the first, which the source holds most.
+/// Adds candidates of the trajectory form, started from the best of the weak form; if all of these
+/// diverge on held-out manoeuvres, from the first one, which is closest to the source.
 ///
 /// # Errors
-/// A trial lacks a channel, or it was cancelled.
+/// Returns an error if a trial lacks a channel, or if it was cancelled.
 pub(super) fn from_weak_form(
     problem: &Problem<'_>,
     variants: &[Variant],
@@ -62,14 +62,19 @@ pub(super) fn from_weak_form(
     let cutting = cutting(problem);
     let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
     let system = SensitiveSystem::new(&model, problem.law)?;
+    // Residuals fall on whole steps.
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
+    // Channels without a deviation over the trials, or without a state in the system, are not
+    // compared.
     let compared = compared(system.states(), &problem.deviations);
     let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
     let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
     if segments.is_empty() {
         return Ok(());
     }
+    // The ship is needed for its physical range only.
     let ship = ready(&model, problem.law, &problem.training)?;
+    // Without thresholds at first, which are set from the residuals of the first simulations.
     let thresholds = vec![f64::INFINITY; plan.compared.len()];
     let trials = problem.training.len();
     let passing = SegmentPass {
@@ -84,6 +89,7 @@ pub(super) fn from_weak_form(
         .candidates(error, candidates, progress)
 }
 
+/// Lengths by which trials are divided into segments, rounded to whole sampling intervals.
 fn cutting(problem: &Problem<'_>) -> SegmentLengths {
     let given = &problem.settings;
     let interval = problem.interval_s();
@@ -109,7 +115,7 @@ fn weak_form(
 }
 
 impl TrajectoryDescent<'_> {
-    /// Candidates after the weak form's, which has an error.
+    /// Adds a candidate for each pull; `weak` is the error of the weak form from which they start.
     fn candidates(
         mut self,
         weak: Option<f64>,
@@ -117,11 +123,15 @@ impl TrajectoryDescent<'_> {
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
+        // Thresholds are fixed at the weak form, so that the cost of the residuals is the same
+        // function for every pull.
         self.passing.thresholds = self.thresholds(&prior.weak)?;
+        // Each fold has the prior of its own training trials, without its held-out ones.
         let priors: Vec<WeakFormPrior> = (0..self.problem.fold_count())
             .into_par_iter()
             .map(|fold| self.prior(&|t| self.problem.is_fitted(t, fold)))
             .collect::<Result<_, _>>()?;
+        // Each pull starts at the result of the stronger one before it.
         let mut reached = self.reached(prior.weak.clone())?;
         let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
         for pull in TRAJECTORY.pulls {
@@ -146,6 +156,7 @@ impl TrajectoryDescent<'_> {
             );
             errors.push(candidate.option.error.unwrap_or(f64::INFINITY));
             candidates.push(CandidateFit { left_out: models, ..candidate });
+            // Weaker pulls cost a descent each.
             if is_past_best(&errors) {
                 break;
             }
@@ -153,7 +164,7 @@ impl TrajectoryDescent<'_> {
         Ok(())
     }
 
-    /// Huber's thresholds from some of the segments.
+    /// Huber's thresholds from the residuals of every few blocks of segments.
     fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
         let model = self.variant.model_at(&self.values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
@@ -165,9 +176,10 @@ impl TrajectoryDescent<'_> {
             .collect())
     }
 
-    /// What the weak form says on some trials.
+    /// The prior by the weak form on some trials.
     fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
+        // Coefficient of the weak form, and of the source.
         let values = |name: &str| {
             (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name))
         };
@@ -177,25 +189,29 @@ impl TrajectoryDescent<'_> {
             .flatten()
             .map(|choice| choice.lambda)
             .fold(0.0, f64::max)
+            // The strength that the weak form needs may be far too large for trajectories.
             .min(TRAJECTORY.source_share);
         Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
+    /// Coefficients by name.
     fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
         self.names.iter().cloned().zip(at.iter().copied()).collect()
     }
 
+    /// Simulates all segments with coefficients.
     fn pass(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
         let model = self.variant.model_at(&self.values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
         Ok(self.passing.pass(&system))
     }
 
+    /// The linearisation at coefficients.
     fn reached(&self, at: DVector<f64>) -> Result<Linearisation, RefineError> {
         Ok(Linearisation { pass: self.pass(&at)?, at })
     }
 
-    /// From coefficients to the least cost nearby.
+    /// Descends from coefficients to the least cost nearby.
     fn descend(
         &self,
         prior: &WeakFormPrior,
@@ -203,10 +219,13 @@ impl TrajectoryDescent<'_> {
         mut here: Linearisation,
     ) -> Result<Linearisation, RefineError> {
         let mut damping = TRAJECTORY.damping;
+        // The cost of the prior is part of the comparison of steps, not of the segments' sums.
         let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
         for _ in 0..TRAJECTORY.steps {
             let model = || self.variant.model_at(&self.values(&here.at));
             self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
+            // A step that promises less than the least gain ends the descent, as does one without a
+            // solution.
             let Some(step) =
                 held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain)
             else {
@@ -219,10 +238,12 @@ impl TrajectoryDescent<'_> {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
                 damping *= TRAJECTORY.damping_falls;
+                // An accepted step that gains little ends the descent as well.
                 if gained < TRAJECTORY.least_gain {
                     break;
                 }
             } else {
+                // A refused step is shortened by a stronger damping from the same linearisation.
                 damping = (damping * TRAJECTORY.damping_grows).max(TRAJECTORY.damping_least);
                 if damping > TRAJECTORY.damping_most {
                     break;
@@ -232,8 +253,8 @@ impl TrajectoryDescent<'_> {
         Ok(here)
     }
 
-    /// The model of a fold: one step from where all trials are fitted, on the trials inside it and
-    /// their weak form.
+    /// The model of a fold: one Gauss-Newton step from the fit on all trials, with the fold's
+    /// training trials and their weak form.
     fn left_out(
         &self,
         fold: usize,
@@ -241,6 +262,7 @@ impl TrajectoryDescent<'_> {
         pull: f64,
         reached: &Linearisation,
     ) -> Model {
+        // The sums by trial are kept, so that no further simulation is needed.
         let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
         let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
         let at = held
@@ -249,7 +271,7 @@ impl TrajectoryDescent<'_> {
         self.variant.model_at(&self.values(&at))
     }
 
-    /// The fit at coefficients.
+    /// The fit at coefficients, with the data of its errors.
     fn fit(
         &self,
         prior: &WeakFormPrior,
@@ -272,8 +294,9 @@ impl TrajectoryDescent<'_> {
     }
 }
 
-/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the
-/// last two were no better than one before them, or the last is clearly worse than another pull.
+/// Returns true if weaker pulls are not worth trying. The first error is that of the weak form.
+/// Either the last two pulls were no better than one before them, or the last is clearly worse than
+/// another pull that is better than the weak form.
 fn is_past_best(errors: &[f64]) -> bool {
     let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
     let [weak, .., before, last] = *errors else { return false };
@@ -282,7 +305,7 @@ fn is_past_best(errors: &[f64]) -> bool {
     none_better || (best < weak && last > TRAJECTORY.clearly_worse * best)
 }
 
-/// Sums over some trials.
+/// Normal equations of some trials together.
 fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
     let mut all =
         NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
@@ -294,13 +317,15 @@ fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
     all
 }
 
-/// Huber's threshold from absolute residuals: their median, as that of a normal distribution.
+/// Huber's threshold from absolute residuals, by their median as a robust standard deviation;
+/// infinite without residuals.
 fn threshold(mut sizes: Vec<f64>) -> f64 {
     let middle = sizes.len() / 2;
     if sizes.is_empty() {
         return f64::INFINITY;
     }
     let (_, &mut median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    // 1.4826 times the median absolute value is the standard deviation of a normal distribution.
     if median > 0.0 { TRAJECTORY.huber * 1.4826 * median } else { f64::INFINITY }
 }
 

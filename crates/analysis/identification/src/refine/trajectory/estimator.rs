@@ -15,7 +15,7 @@ use super::candidates::from_weak_form;
 use super::thresholds::TRAJECTORY;
 use sistership_model::law::Law;
 
-/// The trajectory form, after the weak form.
+/// The trajectory form, started from the weak form.
 pub(in super::super) struct TrajectoryForm;
 
 impl Estimator for TrajectoryForm {
@@ -42,6 +42,7 @@ impl Estimator for TrajectoryForm {
         candidates: &mut Vec<CandidateFit>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
+        // Trajectories start from a ridge of the weak form, which must be among the candidates.
         WeakForm.candidates(problem, variants, candidates, progress)?;
         from_weak_form(problem, variants, candidates, progress)
     }

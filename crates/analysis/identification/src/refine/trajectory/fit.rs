@@ -1,9 +1,9 @@
-//! A fit by the trajectory form, and how far its coefficients may be from the truth.
+//! A fit by the trajectory form, and the joint errors of its coefficients.
 //!
 //! With `H` the Hessian, `g` the gradient of the residuals, and `W` and `L` as in [the
 //! form](super), the error is `H^-1 (g + mu W (c_weak - c) + mu/(1 + mu) L (c_source - c))`: the
 //! scatter of the segments' gradients, within which residuals may depend on each other (Huber 1967,
-//! Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of what pulls.
+//! Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of the means of the prior.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,7 +16,7 @@ use super::super::variant::Variant;
 use super::prior::{WeakFormPrior, by_source};
 use super::solve::PenalisedEquations;
 
-/// A fit, and what its errors follow from.
+/// A fit, with the data of its errors.
 pub(super) struct TrajectoryFit {
     /// The weak form from which it started: place of its variant, and choices.
     pub variant: usize,
@@ -25,9 +25,9 @@ pub(super) struct TrajectoryFit {
     pub(super) names: Vec<String>,
     pub(super) at: DVector<f64>,
     pub(super) held: PenalisedEquations,
-    /// By segment.
+    /// Gradients of the residuals by segment.
     pub(super) gradients: Vec<DVector<f64>>,
-    /// Of the residuals, summed.
+    /// Cost of the residuals, summed.
     pub(super) cost: f64,
     pub(super) count: f64,
     pub(super) prior: WeakFormPrior,
@@ -54,6 +54,7 @@ impl TrajectoryFit {
     fn coefficients(&self) -> Fit {
         let deviations = self.prior.deviations(self.pull);
         let one = |(k, name): (usize, &String)| {
+            // The prior counts in units of the residuals' mean square.
             let prior_deviation = deviations[k] * (self.cost / self.count.max(1.0)).sqrt();
             (name.clone(), Fitted { value: self.at[k], standard_error: 0.0, prior_deviation })
         };
@@ -66,13 +67,16 @@ impl TrajectoryFit {
         }
     }
 
-    /// Joint errors of the coefficients; `weak` are those of the weak form, in any order.
+    /// Joint errors of the coefficients; `weak` are those of the weak form, in any order. `None` if
+    /// a matrix cannot be inverted or a coefficient is missing.
     fn joint_errors(&self, weak: &CoefficientErrors) -> Option<CoefficientErrors> {
         let Self { names, prior, pull, .. } = self;
         let inverse = self.held.inverse()?;
         let weak = weak.ordered(names)?;
         let to_weak = &prior.hessian * *pull;
         let to_source = &prior.of_source * by_source(*pull);
+        // The errors of weak form and source are correlated, since the source is the weak form's
+        // prior.
         let both = &to_weak * &weak.cross * &to_source;
         let middle = scatter(&self.gradients, self.count, names.len())
             + &to_weak * &weak.covariance * &to_weak
@@ -89,8 +93,8 @@ impl TrajectoryFit {
     }
 }
 
-/// Covariance of the mean gradient from that of the segments', which have one direction less than
-/// there are segments.
+/// Covariance of the mean gradient from the gradients of the segments, with the correction `n/(n -
+/// 1)` for their number.
 fn scatter(gradients: &[DVector<f64>], count: f64, size: usize) -> DMatrix<f64> {
     let segments = gradients.len() as f64;
     let mut sum = DMatrix::zeros(size, size);

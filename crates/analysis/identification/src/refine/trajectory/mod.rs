@@ -1,14 +1,15 @@
 //! The trajectory form: Gauss-Newton on simulated segments with forward sensitivities, damped as by
-//! Levenberg and Marquardt, robust as by Huber, started at the weak form and held by it.
+//! Levenberg and Marquardt, robust as by Huber, started at the weak form, which is also its prior.
 //!
-//! With `r` the differences of simulated and measured states, each by its channel's standard
-//! deviation, what is least is `mean huber(r) + mu (c - c_weak)' W (c - c_weak) + mu/(1 + mu) (c -
-//! c_source)' L (c - c_source)`. `W` is the weak form's Hessian by the mean square of each
-//! acceleration: a change of coefficients that changes every acceleration by its own size costs
-//! `mu` an axis. `L` is the source's share of `W`; it counts no more than a hundredth of an axis,
-//! since how much the weak form needs says little of how much trajectories do. A strong `mu` gives
-//! the weak form, where the source has its weight already; with a small one the source has to hold
-//! what trajectories say nothing of, so that it pulls besides.
+//! With `r` the differences of simulated and measured states, each divided by its channel's
+//! standard deviation, the objective is `mean huber(r) + mu (c - c_weak)' W (c - c_weak) + mu/(1 +
+//! mu) (c - c_source)' L (c - c_source)`. `W` is the weak form's Hessian, each acceleration divided
+//! by its mean square: a change of coefficients that changes every acceleration by its own size
+//! costs `mu` an axis. `L` is the source's share of `W`; it counts no more than a hundredth of an
+//! axis, since the strength that the weak form needs has little relation to the one that
+//! trajectories need. A strong `mu` gives the weak form, in which the source has its weight
+//! already; with a small one the source must determine the directions on which trajectories have no
+//! information, so that it is a prior besides.
 
 mod candidates;
 mod estimator;

@@ -1,4 +1,4 @@
-//! One pass over all segments: residuals, and the normal equations of the coefficients.
+//! Simulation of all segments: residuals, and the normal equations of the coefficients.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -8,31 +8,31 @@ use sistership_simulation::{Envelope, Method};
 use super::segments::{ComparisonPlan, Segment, difference};
 use super::thresholds::TRAJECTORY;
 
-/// Segments in lockstep.
+/// Segments that are simulated in lockstep.
 const LANES: usize = 8;
-/// Rows of residuals gathered before they are multiplied.
+/// Rows of sensitivities that are collected before they are multiplied.
 const ROWS: usize = 96;
 /// Columns of the Hessian that are multiplied together.
 const COLUMNS: usize = 48;
 /// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until
-/// then. More threads than this have nothing to do; it is not their number, so that the memory of a
-/// fit does not depend on the machine.
+/// then. More threads than this have no work; it is a constant, so that the memory of a fit does
+/// not depend on the machine.
 const BLOCKS: usize = 16;
 
 /// Sums over the residuals of some segments.
 #[derive(Debug, Clone)]
 pub(super) struct NormalEquations {
-    /// Of squared sensitivities by Huber's weights.
+    /// Sum of squared sensitivities with Huber's weights.
     pub hessian: DMatrix<f64>,
-    /// Of sensitivities times residuals.
+    /// Sum of sensitivities times residuals.
     pub gradient: DVector<f64>,
-    /// Of Huber's function (twice: squares near zero).
+    /// Sum of twice Huber's function (squares near zero).
     pub cost: f64,
-    /// Of residual times.
+    /// Number of times at which residuals are taken.
     pub count: f64,
 }
 
-/// A pass: sums by trial, and gradients by segment for the standard errors.
+/// Sums by trial, and gradients by segment for the standard errors.
 pub(super) struct SegmentSums {
     pub trials: Vec<NormalEquations>,
     pub gradients: Vec<DVector<f64>>,
@@ -56,7 +56,7 @@ impl NormalEquations {
     }
 }
 
-/// What a pass needs besides the system.
+/// Inputs of a simulation of all segments besides the system.
 pub(super) struct SegmentPass<'a> {
     pub segments: &'a [Segment],
     pub plan: &'a ComparisonPlan,
@@ -67,8 +67,8 @@ pub(super) struct SegmentPass<'a> {
 }
 
 impl SegmentPass<'_> {
-    /// Simulates every segment. Sums are added in the segments' order, so that batches change
-    /// nothing but the memory taken.
+    /// Simulates every segment. Sums are added in the segments' order, so that the size of batches
+    /// affects only the memory.
     pub fn pass(&self, system: &SensitiveSystem) -> SegmentSums {
         let size = system.names().len();
         let mut pass = SegmentSums {
@@ -76,6 +76,7 @@ impl SegmentPass<'_> {
             gradients: Vec::new(),
         };
         for batch in self.segments.chunks(LANES * BLOCKS) {
+            // Parallel over blocks of lanes; `collect` keeps their order.
             let blocks: Vec<Vec<LaneSums>> =
                 batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
             for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
@@ -89,7 +90,7 @@ impl SegmentPass<'_> {
         pass
     }
 
-    /// Absolute residuals by compared state, of every `some`th block of segments.
+    /// Returns the absolute residuals by compared state, of every `some`th block of segments.
     pub fn sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
         let blocks: Vec<&[Segment]> = self.segments.chunks(LANES).step_by(some).collect();
         let of_block = |block: &[Segment]| {
@@ -103,6 +104,7 @@ impl SegmentPass<'_> {
         sizes
     }
 
+    /// Simulates up to `LANES` segments in lockstep.
     fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<LaneSums> {
         let size = system.names().len();
         let mut run = SensitiveRun::<LANES>::new(system);
@@ -114,12 +116,16 @@ impl SegmentPass<'_> {
         let width = system.input_names().len();
         let mut inputs =
             [vec![[0.0; LANES]; width], vec![[0.0; LANES]; width], vec![[0.0; LANES]; width]];
+        // Segments are sorted by length: the first one of a block is its longest.
         for k in 0..block[0].steps {
             for (half, given) in inputs.iter_mut().enumerate() {
+                // The classical Runge-Kutta method reads inputs at the beginning, middle and end of
+                // a step.
                 load(block, 2 * k + half, width, given);
             }
             run.step(Method::Rk4, self.plan.step_s, [&inputs[0], &inputs[1], &inputs[2]]);
             if (k + 1) % self.plan.stride == 0 {
+                // A lane whose segment has ended is simulated on, but no longer compared.
                 let due = lanes
                     .iter_mut()
                     .zip(block)
@@ -145,12 +151,15 @@ impl SegmentPass<'_> {
     ) {
         let state = run.state(lane);
         own.normal.count += 1.0;
+        // A lane that left the physical range once stays lost: its later residuals count a fixed
+        // cost and no gradient.
         own.lost = own.lost || self.envelope.check(0.0, &state).is_err();
         let width = self.plan.compared.len();
         let measured = &segment.measured[residual * width..(residual + 1) * width];
         for (index, (&(row, place, deviation), measured)) in
             self.plan.compared.iter().zip(measured).enumerate()
         {
+            // A channel that the trial lacks has no residual.
             if !measured.is_finite() {
                 continue;
             }
@@ -170,7 +179,7 @@ impl SegmentPass<'_> {
     }
 }
 
-/// The inputs of each lane at a half step; a lane that is done keeps its last.
+/// Loads the inputs of each lane at a half step; a lane that has ended keeps its last.
 fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LANES]]) {
     for lane in 0..LANES {
         let segment = block.get(lane).unwrap_or(&block[0]);
@@ -181,7 +190,7 @@ fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LAN
     }
 }
 
-/// Sums of one lane, with rows that wait to be multiplied.
+/// Sums of one lane, with rows that wait to be multiplied together.
 struct LaneSums {
     normal: NormalEquations,
     rows: DMatrix<f64>,
@@ -202,11 +211,13 @@ impl LaneSums {
         }
     }
 
+    /// Adds one residual in standard deviations with its sensitivities, weighted as by Huber.
     fn add(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
         let size = value.abs();
         let weight = if size <= threshold { 1.0 } else { threshold / size };
         self.normal.cost +=
             if size <= threshold { size * size } else { threshold * (2.0 * size - threshold) };
+        // Rows have the root of the weight, so that their products have the weight once.
         let factor = weight.sqrt() / deviation;
         let mut row = self.rows.column_mut(self.waiting);
         row.iter_mut().zip(sensitivity).for_each(|(out, s)| *out = factor * s);
@@ -217,11 +228,13 @@ impl LaneSums {
         }
     }
 
-    /// Below the diagonal, and as much above it as comes with columns done together.
+    /// Multiplies the waiting rows into the Hessian: its lower triangle, and the part of the upper
+    /// one that shares the columns of a panel.
     fn flush(&mut self) {
         let (rows, size) = (self.rows.columns(0, self.waiting), self.rows.nrows());
         for from in (0..size).step_by(COLUMNS) {
             let width = COLUMNS.min(size - from);
+            // Each panel starts at the diagonal and reaches to the last row.
             let mut part = self.normal.hessian.view_mut((from, from), (size - from, width));
             part.gemm(1.0, &rows.rows(from, size - from), &rows.rows(from, width).transpose(), 1.0);
         }

@@ -1,4 +1,4 @@
-//! What holds the coefficients: the weak form, with the source that holds it.
+//! The prior of the trajectory form: the weak form, and the source that is its prior.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,22 @@ use nalgebra::{DMatrix, DVector};
 use super::super::blocks::{Block, Blocks};
 use sistership_numerics::Moments;
 
-/// What holds the coefficients: the weak form, by where its cost is least and how it rises from
-/// there, and the source.
+/// The prior by the weak form, as the minimum and the Hessian of its cost, and by the source.
 #[derive(Debug, Clone)]
 pub(in super::super) struct WeakFormPrior {
-    /// Half the second derivative of the weak form's cost, each acceleration by its mean square;
-    /// the source's share is in it.
+    /// Half the second derivative of the weak form's cost, each acceleration divided by its mean
+    /// square; it includes the source's share.
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,
-    /// The source's share alone.
+    /// The source's share of `hessian`.
     pub of_source: DMatrix<f64>,
     source: DVector<f64>,
 }
 
 impl WeakFormPrior {
-    /// For coefficients in an order, of the weak form on statistics, held by the source with a
-    /// strength; `values` has the weak form's coefficient and the source's.
+    /// Creates the prior for the coefficients `names` from the statistics of the weak form, with
+    /// the strength `lambda` of the source; `values` gives the weak form's coefficient and the
+    /// source's.
     pub fn new(
         names: &[String],
         blocks: &Blocks,
@@ -36,6 +36,8 @@ impl WeakFormPrior {
         let (mut hessian, mut of_source) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
         for (block, moments) in blocks.blocks.iter().zip(moments) {
             let raw = moments.raw_products();
+            // Targets follow the regressors: the diagonal there has the square of each
+            // acceleration.
             let weights: Vec<f64> = (block.regressors()..raw.nrows())
                 .map(|t| 1.0 / raw[(t, t)].max(f64::MIN_POSITIVE))
                 .collect();
@@ -45,6 +47,7 @@ impl WeakFormPrior {
             }
         }
         for (block, name, shrinkage) in blocks.blocks.iter().flat_map(each) {
+            // Without a joint precision each coefficient is measured by its own curvature.
             if let (None, Some(&k)) = (&block.precision, place.get(name.as_str())) {
                 of_source[(k, k)] = shrinkage * hessian[(k, k)];
             }
@@ -55,14 +58,14 @@ impl WeakFormPrior {
         Self { hessian, weak: weak.into(), of_source, source: source.into() }
     }
 
-    /// What it costs at coefficients, where the weak form pulls with a strength.
+    /// Returns its cost at coefficients, for a pull towards the weak form.
     pub fn cost(&self, at: &DVector<f64>, pull: f64) -> f64 {
         let (weak, source) = (at - &self.weak, at - &self.source);
         pull * weak.dot(&(&self.hessian * &weak))
             + by_source(pull) * source.dot(&(&self.of_source * &source))
     }
 
-    /// Adds that to normal equations.
+    /// Adds its Hessian and gradient to normal equations.
     pub fn add(
         &self,
         at: &DVector<f64>,
@@ -75,9 +78,11 @@ impl WeakFormPrior {
         gradient.gemv(by_source(pull), &self.of_source, &(at - &self.source), 1.0);
     }
 
-    /// How far the source alone, within the weak form and beside it, lets each coefficient be, as
-    /// if the motion were missed by its own size.
+    /// Standard deviations of the coefficients by the source alone, within the weak form and
+    /// directly, for an error of the motion of its own size.
     pub fn deviations(&self, pull: f64) -> DVector<f64> {
+        // Scaled to a diagonal of ones before it is inverted, since coefficients differ by orders
+        // of magnitude.
         let scales = self.of_source.diagonal().map(|own| 1.0 / own.max(1e-300).sqrt());
         let unit = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
             self.of_source[(i, j)] * scales[i] * scales[j]
@@ -90,21 +95,21 @@ impl WeakFormPrior {
     }
 }
 
-/// How strongly the source pulls by how it holds the weak form, where that pulls with a strength:
-/// no more than so, and less where the weak form pulls little.
+/// Pull of the source relative to its strength in the weak form, for a pull towards the weak form:
+/// at most 1, and less where the weak form pulls little.
 pub(super) fn by_source(pull: f64) -> f64 {
     pull / (1.0 + pull)
 }
 
-/// The coefficients of a block with how many times stronger the source pulls them than it pulls
-/// others.
+/// Coefficients of a block, with the factor of the source's strength on each.
 fn each(block: &Block) -> impl Iterator<Item = (&Block, &String, f64)> {
     block.names.iter().flat_map(move |own| {
         own.iter().zip(&block.shrinkage).map(move |(name, factor)| (block, name, *factor))
     })
 }
 
-/// Products of regressors by what each coefficient does to each acceleration.
+/// Adds the products of regressors, weighted by the effect of each coefficient on each
+/// acceleration.
 fn add_block(
     into: &mut DMatrix<f64>,
     block: &Block,

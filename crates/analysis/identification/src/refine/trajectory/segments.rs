@@ -1,4 +1,4 @@
-//! Segments of trials: where each starts, what is put in along it, and what it should come to.
+//! Segments of trials: initial states, inputs along them, and the measured states.
 
 use std::ops::Range;
 
@@ -12,12 +12,12 @@ use sistership_simulation::state::{RECORDED, StateVector, at};
 use super::super::outcome::RefineError;
 use super::thresholds::TRAJECTORY;
 
-/// How a motion is cut and weighed.
+/// Lengths by which trials are divided and compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in super::super) struct SegmentLengths {
     /// Length of a segment, s.
     pub segment_s: f64,
-    /// From one residual to the next, s.
+    /// Time from one residual to the next, s.
     pub residual_s: f64,
     /// Integration step, s; whole sampling intervals.
     pub step_s: f64,
@@ -38,7 +38,7 @@ pub(in super::super) struct Segment {
     pub measured: Vec<f64>,
 }
 
-/// What is the same for every segment.
+/// Plan of the comparisons, the same for every segment.
 #[derive(Debug)]
 pub(in super::super) struct ComparisonPlan {
     /// Compared states: row among the sensitivities, place in the state vector, standard deviation.
@@ -49,10 +49,10 @@ pub(in super::super) struct ComparisonPlan {
     pub step_s: f64,
 }
 
-/// Cuts trials into segments; a rest of at least a third of a segment is kept.
+/// Divides trials into segments; a rest of at least a third of a segment is kept.
 ///
 /// # Errors
-/// Names the channel that a trial lacks.
+/// Returns an error with the channel that a trial lacks.
 pub(in super::super) fn cut(
     trials: &[&Trial],
     law: &Law,
@@ -66,6 +66,8 @@ pub(in super::super) fn cut(
         for part in trial.segments() {
             let (mut from, end) = (trial.t_s[part.start], trial.t_s[part.end - 1]);
             while end - from >= cut.segment_s / TRAJECTORY.least_part {
+                // Whole steps that end with a comparison; the small term keeps ratios that are
+                // whole but for rounding.
                 let steps = (cut.segment_s.min(end - from) / plan.step_s + 1e-9).floor() as usize
                     / plan.stride
                     * plan.stride;
@@ -89,6 +91,7 @@ struct SegmentRecord<'a> {
     states: Vec<(usize, &'a [f64])>,
 }
 
+/// An input of a segment.
 enum SegmentInput<'a> {
     Constant(f64),
     Recorded { column: &'a [f64], cubic: MonotoneCubic<'a>, angle: bool },
@@ -116,6 +119,7 @@ impl<'a> SegmentRecord<'a> {
             let default = law.inputs.get(name.as_str()).and_then(|input| input.default);
             let constant =
                 if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+            // An input without a channel of its own is reported as the rudder.
             let missing = || RefineError::Channel {
                 trial: trial.name.clone(),
                 channel: channel.unwrap_or(Channel::Delta),
@@ -128,11 +132,13 @@ impl<'a> SegmentRecord<'a> {
         Ok(Self { trial, plan, inputs, states })
     }
 
+    /// A segment of a part of the record from a time on.
     fn segment(&self, index: usize, part: Range<usize>, from: f64, steps: usize) -> Segment {
         let half = 0.5 * self.plan.step_s;
         let mut inputs = Vec::with_capacity((2 * steps + 1) * self.inputs.len());
         for k in 0..=2 * steps {
             let t = from + k as f64 * half;
+            // Inputs are averaged over a quarter step to both sides of a half step.
             inputs.extend(self.inputs.iter().map(|input| self.input(input, &part, t, 0.5 * half)));
         }
         let mut start = StateVector::zeros();
@@ -150,7 +156,7 @@ impl<'a> SegmentRecord<'a> {
         Segment { trial: index, start, inputs, steps, measured }
     }
 
-    /// Sample before a time, and how far it is to the next.
+    /// Returns the sample before a time, and the fraction of the interval to the next.
     fn place(&self, part: &Range<usize>, t: f64) -> (usize, f64) {
         let t_s = &self.trial.t_s;
         let after = part.start + t_s[part.clone()].partition_point(|s| *s <= t + 1e-9);
@@ -160,14 +166,14 @@ impl<'a> SegmentRecord<'a> {
         (k, ((t - t_s[k]) / step).clamp(0.0, 1.0))
     }
 
-    /// A state between samples, straight.
+    /// A state at a time, linear between samples.
     fn value(&self, column: &[f64], part: &Range<usize>, t: f64) -> f64 {
         let (k, w) = self.place(part, t);
         if k + 1 < part.end { column[k] + w * (column[k + 1] - column[k]) } else { column[k] }
     }
 
-    /// An input at a time: the mean over a quarter step to both sides where there are as many as
-    /// three samples in it, else as in a simulation.
+    /// An input at a time: the mean over a quarter step to both sides if that contains three
+    /// samples or more, otherwise interpolated as in a simulation.
     fn input(&self, input: &SegmentInput<'_>, part: &Range<usize>, t: f64, around: f64) -> f64 {
         let SegmentInput::Recorded { column, cubic, angle } = input else {
             let SegmentInput::Constant(value) = input else { return 0.0 };
@@ -180,7 +186,9 @@ impl<'a> SegmentRecord<'a> {
         let near = &column[part.start + low..part.start + high];
         let from = column[k];
         if *angle {
+            // Directions are averaged as differences to a sample nearby, which may cross 180 deg.
             let turned = |value: &f64| wrapped(value - from);
+            // The last sample has no next one to be turned to.
             let next = column.get(k + 1).map_or(0.0, turned);
             return from
                 + if near.len() < 3 {
@@ -193,8 +201,8 @@ impl<'a> SegmentRecord<'a> {
     }
 }
 
-/// The states that are compared: all that some trial records, by their standard deviation over the
-/// trials.
+/// Returns the states that are compared: those that some trial records, with their standard
+/// deviations over the trials.
 pub(in super::super) fn compared(
     states: &[usize],
     deviations: &std::collections::BTreeMap<Channel, f64>,
@@ -207,7 +215,8 @@ pub(in super::super) fn compared(
     RECORDED.iter().filter_map(of).collect()
 }
 
-/// The difference of a simulated from a measured value of a state.
+/// Returns the simulated less the measured value of a state; headings are differenced on the
+/// circle.
 pub(super) fn difference(place: usize, simulated: f64, measured: f64) -> f64 {
     if place == at::PSI { wrapped(simulated - measured) } else { simulated - measured }
 }

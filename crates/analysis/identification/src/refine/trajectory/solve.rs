@@ -6,7 +6,7 @@ use super::normal::NormalEquations;
 use super::prior::WeakFormPrior;
 use super::thresholds::TRAJECTORY;
 
-/// Normal equations with what holds the coefficients, by the number of residuals.
+/// Normal equations with the prior, divided by the number of residual times.
 pub(super) struct PenalisedEquations {
     pub hessian: DMatrix<f64>,
     pub gradient: DVector<f64>,
@@ -14,7 +14,7 @@ pub(super) struct PenalisedEquations {
 }
 
 impl PenalisedEquations {
-    /// At coefficients.
+    /// Combines the normal equations at coefficients with the prior there.
     pub fn new(
         normal: &NormalEquations,
         prior: &WeakFormPrior,
@@ -27,8 +27,8 @@ impl PenalisedEquations {
         Self { hessian, gradient, cost: normal.cost / count + prior.cost(at, pull) }
     }
 
-    /// The step with every curvature enlarged by a share; none where the equations cannot be
-    /// solved.
+    /// Returns the step with every curvature increased by the share `damping`; `None` if the
+    /// equations cannot be solved.
     pub fn step(&self, damping: f64) -> Option<DVector<f64>> {
         let (mut scaled, scales) = self.scaled();
         scaled
@@ -40,13 +40,13 @@ impl PenalisedEquations {
         Some(-step.component_mul(&scales))
     }
 
-    /// The share of the cost that a step gains where everything is as linear as it seems.
+    /// Returns the share of the cost that a step gains if the residuals are linear.
     pub fn foretold(&self, step: &DVector<f64>) -> f64 {
         -(2.0 * self.gradient.dot(step) + step.dot(&(&self.hessian * step)))
             / self.cost.max(f64::MIN_POSITIVE)
     }
 
-    /// The Hessian with ones on its diagonal, and the scales that make it so.
+    /// The Hessian scaled to a diagonal of ones, and the scales.
     fn scaled(&self) -> (DMatrix<f64>, DVector<f64>) {
         let scales = self.hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
         let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
@@ -55,14 +55,14 @@ impl PenalisedEquations {
         (scaled, scales)
     }
 
-    /// Ratio of the extreme eigenvalues of the scaled Hessian.
+    /// Returns the ratio of the extreme eigenvalues of the scaled Hessian.
     pub fn condition_number(&self) -> f64 {
         let values = self.scaled().0.symmetric_eigenvalues();
         let largest = values.max();
         largest / values.min().max(largest * f64::EPSILON)
     }
 
-    /// The inverse of the Hessian; none where it cannot be inverted.
+    /// Returns the inverse of the Hessian; `None` if it cannot be inverted.
     pub fn inverse(&self) -> Option<DMatrix<f64>> {
         let (mut scaled, scales) = self.scaled();
         scaled

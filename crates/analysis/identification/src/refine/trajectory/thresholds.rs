@@ -1,14 +1,14 @@
-//! Every constant of the trajectory form, with symbol, meaning, unit and source.
+//! Constants of the trajectory form, with symbol, meaning, unit and source.
 //!
-//! `L/U` is the time in which the ship sails its length at the approach speed of its trials. A
-//! source that begins with "chosen" has no measurement of how results move at half and at double
-//! the value: the reason that can be given is the one of the mathematics.
+//! `L/U` is the time in which the ship travels its own length at the approach speed of its trials.
+//! A source that begins with "chosen" has not been measured at half and at double the value; the
+//! reason given is a mathematical one.
 
-/// How trajectories are cut, fitted and held.
+/// Constants by which trajectories are divided and fitted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrajectoryThresholds {
-    /// `n_r`: residuals in `L/U`, a count. Source: chosen, every fourth step; neighbours say the
-    /// same.
+    /// `n_r`: residuals in `L/U`, a count. Source: chosen, every fourth step; neighbours have the
+    /// same information.
     pub residuals_a_length: f64,
     /// The same where no more is computed than needed, a count. Source: chosen, every third step,
     /// or fifth where the ship rolls.
@@ -22,29 +22,30 @@ pub(super) struct TrajectoryThresholds {
     /// `n_d`: steps from one residual to the next where no length is known, a count. Source:
     /// derived: `n_h/n_r`.
     pub fallback_stride: f64,
-    /// `s_t`: a rest of at least one such part of a segment is kept, a count. Source: chosen.
+    /// `s_t`: a rest of a trial is kept as a segment if it is at least a segment divided by this, a
+    /// count. Source: chosen.
     pub least_part: f64,
-    /// `mu_k`: pulls towards the weak form, strongest first, dimensionless; each starts where the
-    /// one before has ended. Source: chosen, decades from where the weak form is given; errors on
-    /// trials left out end them (`is_past_best`).
+    /// `mu_k`: pulls towards the weak form, strongest first, dimensionless; each starts at the
+    /// result of the one before. Source: chosen, decades from the value that gives the weak form;
+    /// errors on held-out trials end them (`is_past_best`).
     pub pulls: [f64; 6],
-    /// `lambda_s`: how strongly the source holds trajectories at most, however much of it the weak
-    /// form needs, dimensionless. Source: `docs/evidence/estimators.md`, "How the source holds
-    /// trajectories": errors left out are 0.0275 on all files of the Esso Osaka and 0.435 on
-    /// Train-TZRB; on the ten calmer trials of the diagnosis, where the weak form takes a tenth,
+    /// `lambda_s`: largest strength of the source in trajectories, however much of it the weak form
+    /// needs, dimensionless. Source: `docs/evidence/estimators.md`, "How the source holds
+    /// trajectories": errors on held-out trials are 0.0275 on all files of the Esso Osaka and 0.435
+    /// on Train-TZRB; on the ten calmer trials of the diagnosis, where the weak form takes a tenth,
     /// all of that as the share gives 0.51, the next pull diverges and wind is not always named,
     /// and with a hundredth it always is.
     pub source_share: f64,
-    /// `r_p`: error by that of another pull from which on it is clearly worse, dimensionless.
-    /// Source: chosen, twice the share by which candidates count as different; ends the pulls early
-    /// (Train-TZRB in 0.24 s in place of 0.56).
+    /// `r_p`: ratio to the error of another pull from which on an error is clearly worse,
+    /// dimensionless. Source: chosen, twice the share by which candidates count as different; ends
+    /// the pulls early (Train-TZRB in 0.24 s in place of 0.56).
     pub clearly_worse: f64,
     /// `k_H`: Huber's threshold in robust standard deviations of a state's residuals,
     /// dimensionless. Source: derived: of normal residuals 99.7 % count in full, so that nothing is
     /// lost where there are no outliers.
     pub huber: f64,
-    /// `n_m`: a median is taken of every so many blocks of segments, a count. Source: chosen; its
-    /// error grows by the root of that.
+    /// `n_m`: one in this number of blocks of segments is used for a median, a count. Source:
+    /// chosen; the median's error grows by the root of it.
     pub median_stride: usize,
     /// `n_i`: most steps of a descent, a count. Source: chosen; [`Self::least_gain`] ends it
     /// earlier.
@@ -55,25 +56,25 @@ pub(super) struct TrajectoryThresholds {
     /// `d_0`: damping of the first step by each curvature, dimensionless. Source: chosen; near the
     /// weak form equations are nearly linear.
     pub damping: f64,
-    /// What damping is multiplied by after a step that gains, dimensionless. Source: chosen, a
-    /// decade.
+    /// Factor of the damping after a step that gains, dimensionless. Source: chosen, a decade.
     pub damping_falls: f64,
-    /// What it is multiplied by after one that does not, dimensionless. Source: chosen; more than
-    /// one step that gains takes back.
+    /// Factor of the damping after a step that does not gain, dimensionless. Source: chosen; larger
+    /// than the inverse of the other factor.
     pub damping_grows: f64,
-    /// What it is then at least, dimensionless. Source: chosen; less would hardly shorten the step.
+    /// Least damping after such a step, dimensionless. Source: chosen; less would hardly shorten
+    /// the step.
     pub damping_least: f64,
-    /// From where on a descent has ended, dimensionless. Source: derived: a step of a millionth
+    /// Damping at which a descent has ended, dimensionless. Source: derived: a step of a millionth
     /// changes nothing.
     pub damping_most: f64,
-    /// `d_f`: damping of the one step from the fit on all trials to one with trials left out,
-    /// dimensionless. Source: derived: as good as none, so that it is a Gauss-Newton step.
+    /// `d_f`: damping of the single step from the fit on all trials to one with held-out trials,
+    /// dimensionless. Source: derived: so small that it is a Gauss-Newton step.
     pub fold_damping: f64,
-    /// `r_l`: what a residual counts that a simulation never came to, in standard deviations of its
-    /// state. Source: chosen, more than any state within the physical range is off.
+    /// `r_l`: residual that is counted where a simulation has ended early, in standard deviations
+    /// of its state. Source: chosen, more than the error of any state within the physical range.
     pub lost: f64,
     /// `e_d`: added to the diagonal of ones before equations are solved, dimensionless. Source:
-    /// derived: far below what matters, and far above rounding.
+    /// derived: far below any effect on the result, and far above rounding.
     pub ridge: f64,
 }
 

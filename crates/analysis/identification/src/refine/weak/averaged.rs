@@ -1,12 +1,12 @@
-//! Trials that were recorded more often than windows need: neighbouring samples in the mean, by
-//! which noise falls before terms multiply it, as it would in the mean over a window after.
+//! Averaging of trials that were recorded more often than windows need: means of neighbouring
+//! samples reduce noise before terms multiply it, as the mean over a window would do afterwards.
 
 use sistership_model::trial::{Channel, Trial};
 
 use super::thresholds::WEAK;
 
-/// A trial in means over as many samples as still leave a window its intervals; the trial itself
-/// where that is one, or would leave a part between gaps out.
+/// Returns a trial in means over as many samples as still leave a window its intervals; `None` if
+/// that is one sample, or if a part between gaps would be lost.
 pub(super) fn averaged(trial: &Trial, window_s: f64) -> Option<Trial> {
     let wanted = window_s / WEAK.most_intervals / trial.interval_s();
     let every = (wanted + 1e-9).floor();
@@ -18,6 +18,8 @@ pub(super) fn averaged(trial: &Trial, window_s: f64) -> Option<Trial> {
     let by_group = |column: &[f64], of: fn(&[f64]) -> f64| -> Vec<f64> {
         parts.iter().flat_map(|part| column[part.clone()].chunks_exact(every).map(of)).collect()
     };
+    // A direction has no mean where it passes from 180 to -180 deg: the middle sample stands for
+    // it.
     let channels = trial.channels.iter().map(|(&channel, column)| {
         (channel, by_group(column, if turns(channel) { middle } else { mean }))
     });
@@ -38,7 +40,7 @@ fn middle(group: &[f64]) -> f64 {
     group[group.len() / 2]
 }
 
-/// Whether it may pass from 180 to -180 deg, where it has no mean.
+/// Returns true if a channel is a direction, which may pass from 180 to -180 deg.
 fn turns(channel: Channel) -> bool {
     matches!(channel, Channel::Psi | Channel::WindFrom | Channel::ApparentWindFrom)
 }

@@ -1,4 +1,4 @@
-//! Windows and their weights.
+//! Windows of the weak form and their weights.
 
 use std::ops::Range;
 
@@ -9,11 +9,11 @@ use super::thresholds::WEAK;
 /// Length and spacing of the windows of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Windows {
-    /// Length, s; at least eight sampling intervals are taken.
+    /// Length, s; at least eight sampling intervals are used.
     pub length_s: f64,
-    /// From one window's start to the next, s; at least a sampling interval.
+    /// Time from one window's start to the next, s; at least a sampling interval.
     pub hop_s: f64,
-    /// Whether neighbouring samples are taken in the mean where a window has many.
+    /// True to use means of neighbouring samples where a window has many.
     pub in_means: bool,
 }
 
@@ -22,12 +22,13 @@ impl Windows {
         self.length_s.max(WEAK.least_intervals * interval_s)
     }
 
-    /// How much of a window is its own: neighbours that overlap repeat each other.
+    /// The weight of a window's row: its own share of time, since windows that overlap share
+    /// information.
     pub(super) fn share(&self, interval_s: f64) -> f64 {
         (self.hop_s.max(interval_s) / (WEAK.equivalent * self.length(interval_s))).min(1.0)
     }
 
-    /// The bumps of a trial, none of which reaches over a gap.
+    /// The bump functions of a trial, none of which crosses a gap.
     pub(super) fn over(&self, trial: &Trial) -> Vec<BumpFunction> {
         let interval_s = trial.interval_s();
         let (length, hop) = (self.length(interval_s), self.hop_s.max(interval_s));
@@ -39,12 +40,14 @@ impl Windows {
     }
 }
 
-/// The bumps of a part without gaps.
+/// The bump functions of a part without gaps.
 fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<BumpFunction> {
     let (start, end) = (t_s[segment.start], t_s[segment.end - 1]);
     let count = ((end - start - length) / hop + 1e-9).floor();
     let count = if count < 0.0 { 0 } else { count as usize + 1 };
     let mut first = segment.start;
+    // Windows start one after the other, so that the search for the first sample continues from the
+    // window before.
     let mut one = |k: usize| {
         let from = start + k as f64 * hop;
         first += t_s[first..segment.end].partition_point(|t| *t < from - 1e-9);
@@ -54,8 +57,8 @@ fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump
     (0..count).map(&mut one).collect()
 }
 
-/// A bump over the samples of a window: what integrates a column with it, and what integrates a
-/// rate of change by parts.
+/// A bump function over the samples of a window: weights that integrate a column with it, and
+/// values that integrate a rate of change by parts.
 #[derive(Debug, Clone)]
 pub(super) struct BumpFunction {
     samples: Range<usize>,
@@ -66,11 +69,14 @@ pub(super) struct BumpFunction {
 }
 
 impl BumpFunction {
+    /// The bump `(1 - s^2)^3` of a window about `centre`, `s` being time from the centre in half
+    /// widths.
     fn new(t_s: &[f64], samples: Range<usize>, centre: f64, half: f64) -> Self {
         let t = &t_s[samples.clone()];
         let shape = |t: &f64| (1.0 - ((t - centre) / half).powi(2)).max(0.0).powi(3);
         let mut bump: Vec<f64> = t.iter().map(shape).collect();
         let last = t.len().saturating_sub(1);
+        // Trapezoidal rule for samples that need not be evenly spaced.
         let width = |k: usize| 0.5 * (t[(k + 1).min(last)] - t[k.saturating_sub(1)]);
         let mut weights: Vec<f64> = bump.iter().enumerate().map(|(k, b)| b * width(k)).collect();
         let total: f64 = weights.iter().sum();
@@ -78,13 +84,13 @@ impl BumpFunction {
         Self { samples, weights, bump }
     }
 
-    /// The weighted mean of a column of the trial.
+    /// Returns the weighted mean of a column of the trial.
     pub fn mean(&self, column: &[f64]) -> f64 {
         product(&self.weights, &column[self.samples.clone()])
     }
 
-    /// The weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b m)`,
-    /// summed so that a constant velocity gives exactly zero. Mass is 1 where none is given.
+    /// Returns the weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b
+    /// m)`, summed so that a constant velocity gives exactly zero. The mass is 1 if none is given.
     pub fn rate(&self, mass: Option<&[f64]>, velocity: &[f64]) -> f64 {
         let v = &velocity[self.samples.clone()];
         let weighted =
@@ -96,11 +102,12 @@ impl BumpFunction {
             sum -= 0.5 * (v[k] + v[k - 1]) * (here - before);
             before = here;
         }
+        // The boundary term, which is zero only if samples fall on the window's ends.
         sum + (before * v[v.len() - 1] - weighted(0) * v[0])
     }
 }
 
-/// The sum of products, eight sums side by side: one alone would wait for each of its additions.
+/// The sum of products in eight separate sums: a single one would wait for each of its additions.
 fn product(a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_left), (b, b_left)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut sums = [0.0; 8];

@@ -42,8 +42,8 @@ impl Estimator for WeakForm {
     }
 }
 
-/// Fills in windows, strengths and families, among these where the settings name none. Estimators
-/// that begin with the weak form do so too.
+/// Fills in windows and strengths, and `families` if the settings name none. Estimators that start
+/// from the weak form use it too.
 pub(in super::super) fn resolve(
     settings: &mut Settings,
     length_s: Option<f64>,
@@ -54,14 +54,14 @@ pub(in super::super) fn resolve(
     settings.fill_selection(families);
 }
 
-/// Rows by windows.
+/// Returns the windows of the settings as the method that makes rows.
 pub(in super::super) fn equations(settings: &Settings) -> Equations {
     let length_s = settings.window_s.unwrap_or(0.0);
     let hop_s = settings.hop_s.unwrap_or(WEAK.hop * length_s);
     Equations::Windows(Windows { length_s, hop_s, in_means: settings.economical })
 }
 
-/// One candidate for each strength of the prior, from the source outwards.
+/// Adds one candidate for each strength of the prior, from the source outwards.
 fn by_strength(
     problem: &Problem<'_>,
     at: (usize, &Variant),
@@ -70,6 +70,8 @@ fn by_strength(
     candidates: &mut Vec<CandidateFit>,
 ) -> Result<(), RefineError> {
     let strengths = strengths(problem, at.1.family, candidates);
+    // A single trial cannot be held out, so that it allows only the strengths nearest to the
+    // source.
     let allowed = if problem.training.len() == 1 {
         strengths.len().min(WEAK.strengths_of_one_trial)
     } else {
@@ -85,8 +87,8 @@ fn by_strength(
     Ok(())
 }
 
-/// The strengths that a family of terms is tried with: asymmetric terms, of which most ships have
-/// none, with those near the best of other terms.
+/// The strengths with which a family of terms is tried. Asymmetric terms, which most ships do not
+/// have, are tried only near the best strength of the other terms.
 fn strengths(problem: &Problem<'_>, family: Family, candidates: &[CandidateFit]) -> Vec<f64> {
     let all = &problem.settings.strengths;
     let known =

@@ -1,5 +1,5 @@
-//! The weak form: the equations of motion multiplied by a smooth bump and integrated by parts, so
-//! that no error of a measurement is ever differentiated (Messenger and Bortz 2021, Multiscale
+//! The weak form: the equations of motion multiplied by a smooth bump function and integrated by
+//! parts, so that no measurement error is differentiated (Messenger and Bortz 2021, Multiscale
 //! Model Simul 19, 1474-1497, Eqs. 2.4-2.6).
 //!
 //! With a bump `b(t)` that vanishes with its slope at both ends of a window, `M dv/dt = sum c_i
@@ -25,11 +25,11 @@ use bump::BumpFunction;
 use samples::{SampledRegression, columns};
 use sistership_numerics::Moments;
 
-/// The statistics of one trial in weak form about zero, one set for each regression; no window
-/// reaches over a gap. Windows overlap, so that each counts as the share of time that is its own.
+/// Returns the statistics of one trial in weak form about zero, one set for each regression; no
+/// window crosses a gap. Windows overlap, so that each counts as its own share of time.
 ///
 /// # Errors
-/// Names the channel that the trial lacks.
+/// Returns an error with the channel that the trial lacks.
 pub fn weak_moments(
     blocks: &Blocks,
     trial: &Trial,
@@ -42,8 +42,8 @@ pub fn weak_moments(
     Ok(blocks.blocks.iter().zip(&tables).map(of).collect())
 }
 
-/// The rows behind [`weak_moments`]: for each regression its columns over the windows, regressors
-/// then targets, in the mean over the bump.
+/// Returns the rows behind [`weak_moments`]: for each regression its columns over the windows,
+/// regressors then targets, in the mean over the bump.
 ///
 /// # Errors
 /// As [`weak_moments`].
@@ -63,7 +63,7 @@ pub fn weak_tables(
     Ok(tables)
 }
 
-/// One window's row.
+/// Appends the row of one window.
 fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Table) {
     let (regressors, targets) = table.split_at_mut(columns.regressors.len());
     for (out, column) in regressors.iter_mut().zip(&columns.regressors) {

@@ -1,5 +1,5 @@
-//! What a regression is made of at every sample of a trial: regressors, masses with the velocities
-//! they multiply, rests.
+//! The parts of a regression at every sample of a trial: regressors, masses with the velocities
+//! they multiply, and rests.
 
 use std::borrow::Cow;
 
@@ -22,15 +22,15 @@ pub(super) struct SampledRegression<'a> {
 /// A mass, 1 where absent, with the velocity it multiplies.
 pub(super) type InertialTerm<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
 
-/// What a target is made of.
+/// The parts of a target.
 pub(super) struct RegressionTarget<'a> {
     /// Masses, 1 where absent, and velocities whose rate of change they multiply.
     pub inertia: Vec<InertialTerm<'a>>,
-    /// What is known of the right-hand side.
+    /// Known part of the right-hand side.
     pub rest: Vec<f64>,
 }
 
-/// The columns of every regression of a law over a trial.
+/// Returns the columns of every regression of a law over a trial.
 pub(super) fn columns<'a>(
     blocks: &Blocks,
     trial: &'a Trial,
@@ -43,6 +43,7 @@ pub(super) fn columns<'a>(
         .collect();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
     let mut work = Slots::default();
+    // The record loads pairs of samples; a pair of the same sample is that sample.
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
     for chunk in samples.chunks(LANES) {
         record.load(chunk, &mut lanes);
@@ -58,6 +59,7 @@ pub(super) fn columns<'a>(
 impl<'a> SampledRegression<'a> {
     fn new(block: &Block, record: &RegressionRecord<'a>, samples: usize) -> Self {
         let velocity = |axis| Cow::Borrowed(record.velocity(axis));
+        // The last chunk is appended whole before it is truncated.
         let room = || Vec::with_capacity(samples + LANES);
         let target = |own| RegressionTarget {
             inertia: match block.axes.len() {
@@ -74,7 +76,8 @@ impl<'a> SampledRegression<'a> {
         Self { regressors: vec![room(); block.regressors()], targets }
     }
 
-    /// Every lane, also of a chunk that has fewer samples.
+    /// Appends all lanes of a chunk, also those beyond the last sample of a short chunk; `truncate`
+    /// removes these.
     fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>]) {
         let read = |output: usize| blocks.tape.read(output, work);
         let own_mass = if block.is_force() || block.axes.len() > 1 {
@@ -90,6 +93,8 @@ impl<'a> SampledRegression<'a> {
             let term = read(term);
             column.extend(divided(std::array::from_fn(|lane| scale[lane] * term[lane])));
         }
+        // A regression of one axis keeps mass and velocity apart, since the mass may change during
+        // a window.
         if let [target] = self.targets.as_mut_slice() {
             let masses = block.mass[0].iter().flatten();
             for ((column, _), &mass) in target.inertia.iter_mut().zip(masses) {
@@ -101,7 +106,7 @@ impl<'a> SampledRegression<'a> {
         self.append_rests(block, &read);
     }
 
-    /// Back to as many samples as there are.
+    /// Truncates every column to the number of samples.
     fn truncate(&mut self, samples: usize) {
         self.regressors.iter_mut().for_each(|column| column.truncate(samples));
         for target in &mut self.targets {
@@ -114,7 +119,7 @@ impl<'a> SampledRegression<'a> {
         }
     }
 
-    /// The accelerations that the rests of coupled axes cause.
+    /// Appends the accelerations that the rests of coupled axes cause.
     fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>) {
         let (scales, rests): (Vec<_>, Vec<_>) =
             block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();

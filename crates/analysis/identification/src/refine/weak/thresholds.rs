@@ -1,29 +1,30 @@
-//! Every constant of the weak form, with symbol, meaning, unit and source. A window is as long as
-//! the ship takes to sail its length: of windows of 10, 14, 20 and 28 s the errors left out differ
-//! by less than one per cent pooled and by seven per cent single (`docs/evidence/estimators.md`).
+//! Constants of the weak form, with symbol, meaning, unit and source. A window is as long as the
+//! ship takes to travel its own length: for windows of 10, 14, 20 and 28 s the errors on held-out
+//! trials differ by less than one per cent pooled and by seven per cent single
+//! (`docs/evidence/estimators.md`).
 //!
-//! A source that begins with "chosen" has no measurement of how results move at half and at double
-//! the value: the reason that can be given is the one of the mathematics.
+//! A source that begins with "chosen" has not been measured at half and at double the value; the
+//! reason given is a mathematical one.
 
-/// How windows follow each other.
+/// Constants of the windows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WeakThresholds {
-    /// `h/T`: from one window to the next, by a window, dimensionless. Source: chosen; windows that
-    /// overlap by nine tenths repeat each other, so that more of them say nothing new.
+    /// `h/T`: distance from one window to the next as a share of a window, dimensionless. Source:
+    /// chosen; windows that overlap by nine tenths share their information, so that more of them
+    /// add none.
     pub hop: f64,
     /// Strengths that a single trial allows, from the source outwards, a count. Source: chosen: it
     /// cannot be left out.
     pub strengths_of_one_trial: usize,
-    /// Least intervals in a window, a count. Source: chosen: fewer cannot tell the bump from a
-    /// spike.
+    /// Least intervals in a window, a count. Source: chosen: fewer do not resolve the bump.
     pub least_intervals: f64,
-    /// `n_w`: intervals of a window beyond which neighbouring samples are taken in the mean, a
-    /// count. Source: derived: the mean over a sixtieth of a window takes `(pi/60)^2/6`, less than
-    /// a thousandth, from what goes to and fro within the window.
+    /// `n_w`: intervals of a window beyond which means of neighbouring samples are used, a count.
+    /// Source: derived: the mean over a sixtieth of a window takes `(pi/60)^2/6`, less than a
+    /// thousandth, from an oscillation within the window.
     pub most_intervals: f64,
-    /// `(int b)^2 / int b^2` by the length of a window for `b = (1 - s^2)^3`, dimensionless: a bump
-    /// weighs its window as if it were this share of it. Source: derived: `(32/35)^2 / (2 *
-    /// 2048/3003)`.
+    /// `(int b)^2 / int b^2` divided by the length of a window for `b = (1 - s^2)^3`,
+    /// dimensionless: the effective share of a window with the weights of a bump. Source: derived:
+    /// `(32/35)^2 / (2 * 2048/3003)`.
     pub equivalent: f64,
 }
 

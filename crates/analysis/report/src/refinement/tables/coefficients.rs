@@ -1,11 +1,11 @@
-//! The full table of coefficients.
+//! Table of all coefficients.
 
 use crate::numbers::{fixed, known, signed, significant, superscript};
 use crate::refinement::coefficients::{ChangedCoefficient, Coefficients};
 use crate::tables::{Cell, Column, Row, Table};
 use crate::words;
 
-/// Every coefficient by axis, values in one power of ten.
+/// Table of all coefficients by axis, with values in one power of ten.
 pub(crate) fn coefficients(coefficients: &Coefficients<'_>) -> Table {
     let exponent = coefficients.exponent();
     let unit = if exponent == 0 { String::new() } else { format!("×10{}", superscript(exponent)) };

@@ -1,4 +1,4 @@
-//! Stopping, pull-outs and spirals of the refined model.
+//! Table of stopping, pull-outs and spirals of the refined model.
 
 use sistership_simulation::manoeuvre::FurtherManoeuvres;
 use sistership_simulation::metrics::{PullOutMetrics, SpiralMetrics, StoppingMetrics};
@@ -7,7 +7,7 @@ use super::results::pass;
 use crate::numbers::{fixed, known, significant};
 use crate::tables::{Cell, Column, Row, Table};
 
-/// Rows under a heading for each manoeuvre.
+/// Table of the figures, under a heading for each manoeuvre.
 pub(crate) fn further(sailed: &FurtherManoeuvres, lpp_m: f64) -> Table {
     let columns = vec![
         Column::text("figure", ""),
@@ -34,6 +34,7 @@ fn figure(name: &str, unit: &str, value: Option<f64>) -> Row {
     Row::of(vec![Cell::new(name), Cell::new(unit), value, Cell::new(""), Cell::new("")])
 }
 
+/// Row of a figure that has a limit.
 fn limited(name: &str, unit: &str, value: Option<f64>, limit: f64, met: Option<bool>) -> Row {
     Row::of(vec![
         Cell::new(name),

@@ -1,4 +1,4 @@
-//! The tables of the report of a refinement.
+//! Tables of the report of a refinement.
 
 mod coefficients;
 mod further;

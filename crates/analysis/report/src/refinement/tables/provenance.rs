@@ -1,4 +1,4 @@
-//! Where every figure comes from.
+//! Tables of the sources of particulars, parameters and settings.
 
 use sistership_identification::refine::{Range, Settings};
 
@@ -6,12 +6,12 @@ use crate::numbers::{self, known};
 use crate::refinement::provenance::StatedQuantity;
 use crate::tables::{Cell, Column, Row, Table, setting};
 
-/// The ship's particulars.
+/// Table of the ship's particulars.
 pub(crate) fn particulars(stated: &[StatedQuantity<'_>]) -> Table {
     with_sources("particular", stated)
 }
 
-/// The parameters of the law.
+/// Table of the law's parameters.
 pub(crate) fn parameters(stated: &[StatedQuantity<'_>]) -> Table {
     with_sources("parameter", stated)
 }
@@ -25,6 +25,7 @@ fn with_sources(what: &str, stated: &[StatedQuantity<'_>]) -> Table {
         Column::text("source", ""),
     ];
     let remarked = stated.iter().any(|stated| stated.quantity.note.is_some());
+    // The column of remarks only exists if there is one.
     columns.extend(remarked.then(|| Column::prose("remark")));
     Table { columns, rows: stated.iter().map(|stated| row(stated, remarked)).collect() }
 }
@@ -48,7 +49,7 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
     Row::of(cells)
 }
 
-/// What the settings mean, in the order in which they are shown; one that is not listed comes after
+/// Meanings of the settings, in the order of the table; a setting that is not listed comes after
 /// these.
 const MEANINGS: [(&str, &str); 13] = [
     ("method", "the estimator"),
@@ -81,7 +82,7 @@ const MEANINGS: [(&str, &str); 13] = [
     ("held_out", "trials kept out of fit and choice altogether"),
 ];
 
-/// Every setting with what it means.
+/// Table of all settings with their meaning.
 pub(crate) fn settings(settings: &Settings) -> Table {
     let columns =
         vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
@@ -97,7 +98,7 @@ pub(crate) fn settings(settings: &Settings) -> Table {
     Table { columns, rows: lines.into_iter().map(|(_, row)| row).collect() }
 }
 
-/// `7, least λ from 1 to 10⁻⁶`.
+/// Number and limits of the tuning ranges: `7, least λ from 1 to 10⁻⁶`.
 fn ranges(ranges: &[Range]) -> String {
     let least = |range: Option<&Range>| {
         known(range.map(|range| range.lambda_min), |value| numbers::stated(value, 2))

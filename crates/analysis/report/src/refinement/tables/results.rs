@@ -1,4 +1,4 @@
-//! What came out: errors, options, manoeuvres, criteria.
+//! Tables of the results: errors, tuning options, manoeuvres, criteria.
 
 use sistership_identification::refine::StepOption;
 
@@ -9,7 +9,7 @@ use crate::refinement::options::StepOptions;
 use crate::refinement::summary::HeldOutErrors;
 use crate::tables::{Cell, Column, Row, Table};
 
-/// HeldOutErrors before and after.
+/// Table of errors before and after.
 pub(crate) fn errors(errors: &HeldOutErrors<'_>) -> Table {
     let columns = vec![
         Column::text("channel", ""),
@@ -40,7 +40,7 @@ fn error_row(row: &ErrorRow) -> Row {
     ])
 }
 
-/// The steps of the widening ranges.
+/// Table of the tuning options.
 pub(crate) fn options(options: &StepOptions<'_>) -> Table {
     let each = |symbol: &str| {
         let title = |name: &String| Column::number(symbol, name);
@@ -62,6 +62,7 @@ fn option_row(step: &StepOption, width: usize) -> Row {
     let mut cells =
         vec![Cell::new(name), Cell::new(known(step.lambda_min, |value| significant(value, 2)))];
     for (values, digits) in [(&step.lambda, 2), (&step.alpha, 2)] {
+        // An option may have fewer values than there are columns.
         cells.extend((0..width).map(|index| {
             Cell::new(known(values.get(index).copied(), |value| significant(value, digits)))
         }));
@@ -75,7 +76,7 @@ fn option_row(step: &StepOption, width: usize) -> Row {
     Row::of(cells).highlighted(step.chosen)
 }
 
-/// Turning circles, in metres and ship lengths.
+/// Table of turning circles, in metres and ship lengths.
 pub(crate) fn turns(comparison: &ManoeuvreComparison<'_>) -> Table {
     let columns = vec![
         Column::text("figure", ""),
@@ -101,7 +102,7 @@ pub(crate) fn turns(comparison: &ManoeuvreComparison<'_>) -> Table {
     Table { columns, rows: grouped(&comparison.turns, row) }
 }
 
-/// Zigzags.
+/// Table of zigzags.
 pub(crate) fn zigzags(comparison: &ManoeuvreComparison<'_>) -> Table {
     let columns = vec![
         Column::text("figure", ""),
@@ -126,7 +127,7 @@ fn pair_cells(figure: &ManoeuvreFigure, format: impl Fn(f64) -> String) -> Vec<C
     vec![Cell::new(figure.figure), value(figure.pair.source), value(figure.pair.refined)]
 }
 
-/// From where to where 95 % of models drawn from the posterior are.
+/// Cell of an uncertainty band: the interval of 95 % of the models drawn from the posterior.
 fn band_cell(band: Option<[f64; 2]>, write: impl Fn(f64) -> String) -> Cell {
     Cell::new(band.map_or_else(
         || known(None, &write),
@@ -142,11 +143,12 @@ fn change_cell(figure: &ManoeuvreFigure) -> Cell {
     ))
 }
 
-/// Rows under a heading for each manoeuvre.
+/// Rows of figures, under a heading for each manoeuvre.
 fn grouped(figures: &[ManoeuvreFigure], row: impl Fn(&ManoeuvreFigure) -> Row) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut last = "";
     for figure in figures {
+        // Figures come grouped by manoeuvre.
         if figure.manoeuvre != last {
             rows.push(Row::heading(&figure.manoeuvre));
             last = &figure.manoeuvre;
@@ -156,7 +158,7 @@ fn grouped(figures: &[ManoeuvreFigure], row: impl Fn(&ManoeuvreFigure) -> Row) -
     rows
 }
 
-/// The IMO criteria.
+/// Table of the IMO criteria.
 pub(crate) fn imo(comparison: &ManoeuvreComparison<'_>) -> Table {
     let columns = vec![
         Column::text("criterion", ""),

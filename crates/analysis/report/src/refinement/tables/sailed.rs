@@ -1,10 +1,10 @@
-//! Measured figures beside those of both models.
+//! Table of measured and simulated figures.
 
 use crate::numbers::{known, signed, significant};
 use crate::refinement::sailed::Sailed;
 use crate::tables::{Cell, Column, Row, Table};
 
-/// Rows under a heading for each trial.
+/// Table of the figures, under a heading for each trial.
 pub(crate) fn sailed(figures: &[Sailed]) -> Table {
     let columns = vec![
         Column::text("figure", ""),

@@ -1,7 +1,7 @@
 //! Term by term against Miyauchi 2024, Eqs. 13 to 16. Eq. 13 lists the coefficients of the
 //! regressors of Eq. 14, and Eq. 16 the regressors of the coefficients of Eq. 15; those for N are
 //! said to be as those for Y. Transcribed are Eqs. 14 and 15: of the other two our copy shows too
-//! little. Three terms of Eq. 15 are told by their neighbours (decision 6).
+//! little. Three terms of Eq. 15 are determined by their neighbours (decision 6).
 
 use std::collections::BTreeSet;
 

@@ -15,7 +15,7 @@ fn law(rest: &str, values: &str, terms: &str) -> String {
     )
 }
 
-/// What reading says, on the smallest stack on which documents are read, within a second.
+/// Result of reading on the smallest stack on which documents are read, within a second.
 fn read(text: String) -> Result<(), String> {
     let small = std::thread::Builder::new().stack_size(1 << 20);
     let began = Instant::now();

@@ -6,8 +6,8 @@ use super::values::{fitting, sample, unfit, within};
 use super::{Faults, Operation};
 use crate::journey::harness::Harness;
 
-/// How deep the fields of a type are walked; of files of the zoo only the first level, which other
-/// tests read in full.
+/// Depth to which the fields of a type are walked; of files of the zoo only the first level, as
+/// other tests read them in full.
 const DEPTH: usize = 4;
 const FILES: [&str; 2] = ["VesselFile", "Model"];
 
@@ -18,12 +18,12 @@ struct Field {
     schema: Value,
     required: bool,
     nullable: bool,
-    /// The least document of each object above it.
+    /// Least document of each object above it.
     above: Vec<Value>,
 }
 
 impl Field {
-    /// A body in which everything above the field is there.
+    /// Returns a body with everything above the field.
     fn body(&self, base: &Value) -> Value {
         let mut body = base.clone();
         for (depth, made) in self.above.iter().enumerate() {
@@ -37,7 +37,7 @@ impl Field {
     }
 }
 
-/// Sends every field of a body with what it may and may not be.
+/// Sends every field of a body with values that it may and may not have.
 pub(super) async fn walk(
     operation: &Operation,
     harness: &Harness,
@@ -83,7 +83,7 @@ pub(super) async fn walk(
     }
 }
 
-/// A schema without references, and whether it may be null besides.
+/// Returns a schema without references, and whether it may be null as well.
 fn resolved(document: &Value, schema: &Value) -> (Value, bool) {
     if let Some(name) = schema["$ref"].as_str() {
         let pointer = name.trim_start_matches('#');
@@ -133,7 +133,7 @@ fn collect(
         if !file {
             let below: Vec<Value> = above.iter().cloned().chain([made(document, &found)]).collect();
             collect(document, &found, (&at, &below), depth - 1, fields);
-            // An entry of a list is walked where it is a text or a number.
+            // An entry of a list is walked if it is a text or a number.
             let (item, item_nullable) = resolved(document, &found["items"]);
             if found["type"] == "array" && !item["type"].is_null() && item["type"] != "object" {
                 let at = at.iter().cloned().chain(["0".to_owned()]).collect();
@@ -156,7 +156,7 @@ fn collect(
     }
 }
 
-/// The least document of a schema.
+/// Returns the least document of a schema.
 fn made(document: &Value, schema: &Value) -> Value {
     let (schema, nullable) = resolved(document, schema);
     match schema["type"].as_str() {
@@ -266,7 +266,7 @@ fn number(kind: &str, value: f64) -> Value {
     if kind == "integer" && value.abs() < 9e15 { json!(value as i64) } else { json!(value) }
 }
 
-/// An entry of a list of texts or numbers.
+/// Returns an entry of a list of texts or numbers.
 fn item(schema: &Value) -> Option<Value> {
     match schema["items"]["type"].as_str()? {
         "string" => Some(json!(sample(&schema["items"]))),
@@ -285,7 +285,7 @@ fn with(base: &Value, at: &[String], value: Value) -> Value {
     changed
 }
 
-/// Without a field; fields above it are made where they are not there.
+/// Removes a field; missing fields above it are created.
 fn without(base: &Value, at: &[String]) -> Value {
     let mut changed = with(base, at, Value::Null);
     let (last, above) = at.split_last().unwrap();

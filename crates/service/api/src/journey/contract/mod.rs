@@ -11,7 +11,7 @@ use sistership_store::testing::TestDatabase;
 use super::harness::{Harness, read};
 use values::{fitting, unfit};
 
-/// What refusals say that are of no limit of a field.
+/// Texts of refusals that concern no limit of a field.
 const RULES: [&str; 7] = [
     "there is no",
     "has no trials",
@@ -29,7 +29,7 @@ struct Operation {
     about: Value,
 }
 
-/// What is found wrong; all of it is told together.
+/// Errors found; all of them are reported together.
 type Faults = Vec<String>;
 
 impl Operation {
@@ -54,7 +54,7 @@ impl Operation {
         content.map(|content| content.keys().map(String::as_str).collect()).unwrap_or_default()
     }
 
-    /// A request that is right as far as path, query and headers go; `changed` replaces a parameter
+    /// Returns a request that is valid in path, query and headers; `changed` replaces a parameter
     /// of the path.
     fn request(
         &self,
@@ -87,7 +87,7 @@ impl Operation {
         request
     }
 
-    /// Sends what must be refused with one of these statuses, for the reason that `field` is wrong.
+    /// Sends a value that must be refused with one of these statuses, because of `field`.
     async fn refused(
         &self,
         request: RequestBuilder,
@@ -121,14 +121,14 @@ impl Operation {
         }
     }
 
-    /// Sends what must not be refused because of `field`.
+    /// Sends a value that must not be refused because of `field`.
     async fn taken(&self, request: RequestBuilder, field: &str, faults: &mut Faults) {
         let shown = format!("{request:?}");
         let (status, problem) = read(request.send().await.unwrap()).await;
         let mut errors = problem["errors"].as_array().into_iter().flatten();
         let blamed = status.is_client_error() && errors.any(|error| error["field"] == field);
-        // What is named need not be there, two fields may have a rule between them, and a model
-        // may know less than the document allows.
+        // The objects that are named need not exist, two fields may have a rule between them, and a
+        // model may know less than the document allows.
         let detail = problem["detail"].as_str().unwrap_or_default();
         let missing = RULES.iter().any(|words| detail.contains(words));
         if (blamed && !missing) || status.is_server_error() {
@@ -196,7 +196,7 @@ impl Operation {
                 )
                 .await;
             }
-            // The ship is needed by those that follow.
+            // Later operations need the ship.
             for right in
                 fitting(&known["schema"]).into_iter().filter(|_| self.method != Method::DELETE)
             {
@@ -209,7 +209,7 @@ impl Operation {
         }
     }
 
-    /// What is no body at all, or of another kind.
+    /// Sends bodies that are none, or of another kind.
     async fn bodies(&self, harness: &Harness, faults: &mut Faults) {
         let media = self.media();
         let fresh = || self.request(harness, None, &[]).header("if-match", "*");
@@ -235,7 +235,7 @@ impl Operation {
     }
 }
 
-/// What stands in the place of a parameter of the path.
+/// Returns the value of a parameter of the path.
 fn usual(name: &str) -> &'static str {
     match name {
         "ship" | "model" => "mariner",

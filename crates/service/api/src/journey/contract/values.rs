@@ -3,7 +3,7 @@
 use regex::Regex;
 use serde_json::Value;
 
-/// Texts that some pattern takes.
+/// Texts that match some pattern.
 const SAMPLES: [&str; 9] = [
     "mariner",
     "walked",
@@ -18,7 +18,7 @@ const SAMPLES: [&str; 9] = [
 /// Texts that most patterns refuse.
 const ODD: [&str; 9] = ["", " ", "a b", "-", "A", "\u{7}", "é", "a/b/c", "\"\""];
 
-/// Texts that a schema refuses.
+/// Returns texts that a schema refuses.
 pub(super) fn unfit(schema: &Value) -> Vec<String> {
     let mut all: Vec<String> = ODD.iter().map(|text| (*text).to_owned()).collect();
     all.extend(["x", "1.5", "0", "-1", "NaN", "maybe", "99999999999999999999"].map(str::to_owned));
@@ -29,19 +29,19 @@ pub(super) fn unfit(schema: &Value) -> Vec<String> {
     all
 }
 
-/// The longest text that a schema takes: letters without a pattern where it is a password, which may
-/// not be guessed.
+/// Returns the longest text that a schema accepts: letters if it has no pattern; passwords must not
+/// be guessable.
 fn longest(schema: &Value, length: usize) -> String {
     if schema["minLength"].as_u64().is_none_or(|least| least < 12) {
         return "a".repeat(length);
     }
-    // Numerical Recipes' congruential generator.
+    // Linear congruential generator of Numerical Recipes.
     let next = |last: &u32| Some(last.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     let numbers = std::iter::successors(Some(1_u32), next).take(length);
     numbers.map(|number| char::from(b'a' + ((number >> 24) % 26) as u8)).collect()
 }
 
-/// Texts that a schema takes, at its limits where it has some.
+/// Returns texts that a schema accepts, at its limits if it has some.
 pub(super) fn fitting(schema: &Value) -> Vec<String> {
     let mut all: Vec<String> = SAMPLES.iter().map(|text| (*text).to_owned()).collect();
     all.extend(["true", "false", "0.1", "7"].map(str::to_owned));
@@ -56,12 +56,12 @@ pub(super) fn fitting(schema: &Value) -> Vec<String> {
             .filter_map(Value::as_str)
             .map(str::to_owned),
     );
-    // A cursor is what a page gave, and no other text of its form.
+    // A cursor is the one that a page returned, and no other text of its form.
     all.retain(|text| fits(schema, text) && schema["maxLength"] != 4096);
     all
 }
 
-/// Whether a text in a path, a query or a header is what a schema says.
+/// Returns true if a text in a path, a query or a header satisfies a schema.
 pub(super) fn fits(schema: &Value, text: &str) -> bool {
     match schema["type"].as_str() {
         Some("integer") => text.parse::<i64>().is_ok_and(|value| within(schema, value as f64)),
@@ -74,7 +74,7 @@ pub(super) fn fits(schema: &Value, text: &str) -> bool {
     }
 }
 
-/// Whether a number is within the limits of a schema.
+/// Returns true if a number is within the limits of a schema.
 pub(super) fn within(schema: &Value, value: f64) -> bool {
     let limit = |name: &str| schema[name].as_f64();
     limit("minimum").is_none_or(|least| value >= least)
@@ -83,7 +83,7 @@ pub(super) fn within(schema: &Value, value: f64) -> bool {
         && schema["not"]["const"].as_f64().is_none_or(|not| value != not)
 }
 
-/// Whether a text has the length and the form of a schema.
+/// Returns true if a text has the length and the form of a schema.
 pub(super) fn string(schema: &Value, text: &str) -> bool {
     let length = text.chars().count() as u64;
     schema["minLength"].as_u64().is_none_or(|least| length >= least)
@@ -95,7 +95,7 @@ pub(super) fn string(schema: &Value, text: &str) -> bool {
         && schema["const"].as_str().is_none_or(|known| known == text)
 }
 
-/// A text that a schema takes.
+/// Returns a text that a schema accepts.
 pub(super) fn sample(schema: &Value) -> String {
     let word = schema["enum"][0].as_str().or_else(|| schema["const"].as_str());
     word.map_or_else(

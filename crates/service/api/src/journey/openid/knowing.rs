@@ -1,4 +1,4 @@
-//! A server that knows a provider, and a browser that goes between them.
+//! A server with an OpenID provider, and a browser that goes between them.
 
 use std::collections::BTreeMap;
 use std::net::{SocketAddr, TcpListener};
@@ -16,23 +16,23 @@ use crate::{Running, Server, StartError};
 pub(super) const OWNER: &str = "sesame";
 pub(super) const PASSWORD: &str = "a long sentence of its own";
 
-/// A server that knows a provider.
+/// A server with an OpenID provider.
 pub(super) struct Knowing {
     pub server: Running,
     pub url: String,
     pub client: Client,
 }
 
-/// What a browser comes to.
+/// Response to a browser.
 pub(super) struct Shown {
     pub status: StatusCode,
-    /// Where it is sent.
+    /// Address of a redirect.
     pub place: String,
     pub cookies: Vec<String>,
     pub text: String,
 }
 
-/// A browser: it keeps cookies, and follows nothing by itself.
+/// A browser: it keeps cookies, and follows no redirect by itself.
 #[derive(Default)]
 pub(super) struct Browser(pub BTreeMap<String, String>);
 
@@ -53,7 +53,7 @@ pub(super) fn settings(
     with_secret(told.settings(&OpenIdArguments::default()).unwrap().unwrap(), secret)
 }
 
-/// An address that nobody listens on.
+/// Returns an address without a listener.
 pub(super) fn free() -> SocketAddr {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap()
 }
@@ -87,7 +87,7 @@ impl Knowing {
         Self::start(database, listen, settings).await.unwrap()
     }
 
-    /// Asks as the owner.
+    /// Sends a request as the owner.
     pub async fn owner(&self, method: Method, path: &str, body: &Value) -> Value {
         let request = self.client.request(method, format!("{}{path}", self.url));
         let (status, answer) =
@@ -101,13 +101,13 @@ impl Knowing {
         self.owner(Method::POST, "/v1/users", &user).await;
     }
 
-    /// How many entries the audit has.
+    /// Number of entries of the audit.
     pub async fn entries(&self) -> i64 {
         let head = self.owner(Method::GET, "/v1/audit/head", &Value::Null).await;
         head["number"].as_i64().unwrap()
     }
 
-    /// The last entries of the audit, the last first: action, actor and what is true since.
+    /// Returns the last entries of the audit, the last first: action, actor and state afterwards.
     pub async fn audited(&self, count: usize) -> Vec<(String, String, Value)> {
         let audit =
             self.owner(Method::GET, &format!("/v1/audit?limit={count}"), &Value::Null).await;
@@ -168,7 +168,7 @@ impl Browser {
         self.asks(&on.client, Method::POST, &format!("{}{path}", on.url), form).await
     }
 
-    /// Leaves for the provider, which lets the person through; the way back.
+    /// Goes to the provider, which admits the person; returns the address of the way back.
     pub async fn leaves(&mut self, on: &Knowing, hostile: &Hostile, next: &str) -> String {
         let gone = self.looks(on, &format!("/sign-in/oidc{next}")).await;
         assert_eq!(gone.status, StatusCode::SEE_OTHER, "{}", gone.text);
@@ -181,7 +181,7 @@ impl Browser {
         self.looks(on, &back).await
     }
 
-    /// Who the server says is there.
+    /// Returns the user whom the server names.
     pub async fn me(&mut self, on: &Knowing) -> Value {
         let shown = self.looks(on, "/v1/me").await;
         serde_json::from_str(&shown.text).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Signing in at an OpenID provider: who gets in, what is kept of it, and what is refused.
+//! Sign-in at an OpenID provider: admission, audit, and refusals.
 
 mod knowing;
 mod real;
@@ -14,7 +14,7 @@ use super::harness::{Harness, config};
 use crate::{Server, StartError};
 use knowing::{Browser, Knowing, PASSWORD, claims, settings, token};
 
-/// Somebody whom an admin has linked gets in as that user, and nobody else does.
+/// A person whom an admin has linked signs in as that user; others are refused.
 async fn who_is_linked_gets_in(database: TestDatabase) {
     let hostile = Hostile::start().await;
     let on = Knowing::on(&database, &hostile, |_| {}).await;
@@ -49,7 +49,7 @@ async fn who_is_linked_gets_in(database: TestDatabase) {
     assert_eq!((action.as_str(), actor.as_str()), ("session.begin", "ann"));
     assert_eq!(after, json!({ "issuer": hostile.url, "subject": "7-of-9" }));
 
-    // The same way back again, with the ticket that was taken away.
+    // The same way back again, with the ticket that was removed.
     let mut thief = Browser(BTreeMap::from([("sistership_oidc".to_owned(), ticket)]));
     let replayed = thief.looks(&on, &back).await;
     assert!(replayed.text.contains("has expired") && !thief.0.contains_key("sistership_session"));
@@ -59,7 +59,7 @@ async fn who_is_linked_gets_in(database: TestDatabase) {
     on.server.stop().await;
 }
 
-/// A provider that takes a code twice does not let anybody in twice.
+/// A provider that accepts a code twice does not cause a second sign-in.
 async fn a_sign_in_ends_once_whatever_the_provider_says(database: TestDatabase) {
     let hostile = Hostile::start().await;
     let on = Knowing::on(&database, &hostile, |told| {
@@ -79,7 +79,7 @@ async fn a_sign_in_ends_once_whatever_the_provider_says(database: TestDatabase) 
     on.server.stop().await;
 }
 
-/// Whoever has no account gets one, unless the name is somebody's.
+/// A person without an account gets one, unless the name is taken.
 async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
     let hostile = Hostile::start().await;
     let on = Knowing::on(&database, &hostile, |told| {
@@ -101,7 +101,7 @@ async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
     claims(&hostile, json!({ "preferred_username": "robert" }));
     browser.signs_in(&on, &hostile).await;
     assert_eq!(browser.me(&on).await["name"], "bob.yard");
-    // The same name for another subject is nobody yet.
+    // The same name for another subject is not linked yet.
     claims(&hostile, json!({ "sub": "1-of-9", "preferred_username": "bob.yard" }));
     let other = Browser::default().signs_in(&on, &hostile).await;
     assert!(other.text.contains("already that is not linked"), "{}", other.text);
@@ -117,7 +117,7 @@ async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
     on.server.stop().await;
 }
 
-/// The roles of groups are given at each sign-in, and taken.
+/// The roles of groups are given and removed at each sign-in.
 async fn groups_say_what_people_may_do(database: TestDatabase) {
     let hostile = Hostile::start().await;
     let on = Knowing::on(&database, &hostile, |told| {
@@ -158,7 +158,7 @@ async fn groups_say_what_people_may_do(database: TestDatabase) {
     on.server.stop().await;
 }
 
-/// Who has signed in by password links the account on its page, and nobody else's.
+/// A user who has signed in by password links the own account on its page, and no other.
 async fn people_link_their_own_account(database: TestDatabase) {
     let hostile = Hostile::start().await;
     let on = Knowing::on(&database, &hostile, |_| {}).await;
@@ -182,7 +182,7 @@ async fn people_link_their_own_account(database: TestDatabase) {
     let place = format!("http{place}").replace("&#38;", "&").replace("&amp;", "&");
     let query = hostile.lets_through(&place);
     let back = format!("/sign-in/oidc/callback?{query}");
-    // In the browser of somebody else, who is given the ticket.
+    // In the browser of another person, who is given the ticket.
     let mut bob = signed_in("bob").await;
     bob.0.insert("sistership_oidc".into(), ann.0["sistership_oidc"].clone());
     let other = bob.looks(&on, &back).await;
@@ -198,7 +198,7 @@ async fn people_link_their_own_account(database: TestDatabase) {
     on.server.stop().await;
 }
 
-/// Nobody is sent elsewhere, and each failure is told on the page from where one signs in.
+/// No redirect leads to another site, and each failure is shown on the sign-in page.
 async fn failures_are_told_and_local_accounts_go_on(database: TestDatabase) {
     let hostile = Hostile::start().await;
     hostile.told().down = true;

@@ -1,4 +1,4 @@
-//! Against a provider that others have written.
+//! Sign-in at a provider of another project.
 
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
@@ -7,14 +7,14 @@ use sistership_store::testing::TestDatabase;
 
 use super::knowing::{Browser, Knowing, Shown, free, settings};
 
-/// Where a form of the provider's page is sent.
+/// Returns the address to which a form of the provider's page is sent.
 fn action(page: &str) -> String {
     let action = page.split("action=\"").nth(1).expect("a form").split('"').next().unwrap();
     action.to_owned()
 }
 
 impl Browser {
-    /// Follows the provider's redirects from one place to the next, to its page or out of it.
+    /// Follows the provider's redirects to its page or out of it.
     async fn follows(&mut self, on: &Knowing, issuer: &str, mut shown: Shown) -> Shown {
         while shown.status.is_redirection() && !shown.place.starts_with(&on.url) {
             let place = match shown.place.starts_with('/') {
@@ -26,7 +26,7 @@ impl Browser {
         shown
     }
 
-    /// Signs in at the provider under a name, and allows what is asked for; comes back.
+    /// Signs in at the provider under a name, grants the request, and comes back.
     async fn signs_in_really(&mut self, on: &Knowing, issuer: &str, name: &str) -> Shown {
         let gone = self.looks(on, "/sign-in/oidc?next=/jobs").await;
         let mut shown = self.follows(on, issuer, gone).await;

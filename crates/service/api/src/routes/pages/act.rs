@@ -1,4 +1,4 @@
-//! What forms of pages ask to be done. Each does what the endpoint of the same name does.
+//! Actions of the pages' forms. Each does the same as the endpoint of the same name.
 
 use axum::extract::State;
 use axum::response::Response;
@@ -14,12 +14,14 @@ use crate::web::{Id, Name, Place, Word};
 use sistership_jobs::line::CHAMPION;
 use sistership_store::Expect;
 
+/// Queues a refinement, and leads to its job.
 pub(super) async fn refine(
     State(app): State<App>,
     Place(ship): Place<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
     let settings = form.text("method").map_or(json!({}), |method| json!({ "method": method }));
+    // Only the fields that are filled in: the endpoint knows the defaults.
     let mut asked = json!({ "ship": &*ship, "settings": settings });
     for name in ["source", "law"] {
         if let Some(text) = form.text(name) {
@@ -38,7 +40,7 @@ pub(super) async fn diagnose(
     Ok(then(&format!("/jobs/{}", diagnoses::ask(&app, &asked).await?.id)))
 }
 
-/// Moves the champion if it stands where the page saw it.
+/// Moves the champion if its position is still that which the page showed.
 pub(super) async fn promote(
     State(app): State<App>,
     Place(ship): Place<Name>,
@@ -58,7 +60,7 @@ pub(super) async fn note(
     Place(ship): Place<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    // Forms send ends of lines as two characters (WHATWG, HTML, 4.10.22); a person sees one.
+    // Forms send ends of lines as two characters (WHATWG, HTML, 4.10.22); the note has one.
     let text = form.needed("text")?.replace("\r\n", "\n").parse::<Remark>();
     let text = text.map_err(|message| Problem::invalid("text", message))?;
     app.store().ships().note(&ship, &text).await?;
@@ -88,6 +90,7 @@ pub(super) async fn untag(
 pub(super) async fn cancel(
     State(app): State<App>,
     Place(id): Place<Id>,
+    // The form is extracted for the check of its token.
     PageForm(_): PageForm,
 ) -> Result<Response> {
     Ok(then(&format!("/jobs/{}", app.store().jobs().request_cancel(&id).await?.id)))

@@ -1,4 +1,4 @@
-//! A page as an answer.
+//! Pages as HTTP answers.
 
 use std::convert::Infallible;
 
@@ -14,12 +14,13 @@ use crate::rights::carried;
 
 const REFERRER_POLICY: HeaderName = header::REFERRER_POLICY;
 
-/// A page whose content takes time: what stands before it is sent at once. Whoever hangs up before
-/// a seat is free for the work takes none.
+/// Returns a page whose content takes time: the part before the content is sent at once. A client
+/// that hangs up before a permit for the work is free takes none.
 pub(super) fn begun(
     beginning: String,
     page: impl Future<Output = Result<String>> + Send + 'static,
 ) -> Response {
+    // An error can no longer change the status, so that the content is that of the problem's page.
     let content = carried_on(Held::current(), carried(page.boxed())).map(|page| {
         let page = page.unwrap_or_else(|problem| problem.page().unwrap_or_default());
         from_content(&page).to_owned()
@@ -28,7 +29,7 @@ pub(super) fn begun(
     answer(Body::from_stream(parts.map(Ok::<_, Infallible>)))
 }
 
-/// With the headers of a page.
+/// Returns a page with its headers.
 pub(super) fn answer(html: impl Into<Body>) -> Response {
     let head = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
@@ -39,12 +40,12 @@ pub(super) fn answer(html: impl Into<Body>) -> Response {
     (head, html.into()).into_response()
 }
 
-/// Where to go once something is done (RFC 9110, 15.4.4).
+/// Redirects to a page after an action (RFC 9110, 15.4.4).
 pub(super) fn then(place: &str) -> Response {
     Redirect::to(place).into_response()
 }
 
-/// With a cookie that scripts do not see, and which links from elsewhere bring along.
+/// Adds a cookie that scripts cannot read and that links from other sites carry.
 pub(super) fn with_cookie(mut response: Response, cookie: &str) -> Response {
     if let Ok(cookie) = HeaderValue::try_from(format!("{cookie}; HttpOnly; SameSite=Lax")) {
         response.headers_mut().append(header::SET_COOKIE, cookie);
@@ -52,11 +53,11 @@ pub(super) fn with_cookie(mut response: Response, cookie: &str) -> Response {
     response
 }
 
-/// The longest place to go to, bytes: it must fit into a cookie.
+/// Longest path to redirect to, bytes: it must fit into a cookie.
 const LONGEST_PLACE: usize = 2000;
 
-/// A place of this server to go to; its front page where another is named. Browsers leave out tabs
-/// and ends of lines before they look at where a link leads.
+/// Returns a path of this server to redirect to; the front page if `next` leads elsewhere. Browsers
+/// remove tabs and ends of lines before they resolve a link.
 pub(super) fn own_place(next: Option<&str>) -> &str {
     let own = |next: &&str| {
         let plain = next.len() <= LONGEST_PLACE && next.bytes().all(|byte| byte.is_ascii_graphic());

@@ -1,4 +1,5 @@
-//! Uploads in the browser: files arrive, what was read is looked over, and the trials are kept.
+//! Uploads in the browser: files arrive, the proposed reading is reviewed, and the trials are
+//! stored.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use crate::web::form::{PageForm, checked, shell};
 use crate::web::{Id, Name, Place};
 use sistership_web_support::drafts::{Draft, Drafts};
 
-/// Files whose plots are on the page.
+/// Number of files whose plots are on the page.
 const PLOTTED: usize = 4;
 
 pub(super) async fn choose(State(app): State<App>, Place(ship): Place<Name>) -> Result<Response> {
@@ -25,7 +26,7 @@ pub(super) async fn choose(State(app): State<App>, Place(ship): Place<Name>) -> 
     Ok(answer(upload::choose(&shell(&app), &ship)?))
 }
 
-/// Takes the files, proposes how to read them, and goes on to what that comes to.
+/// Receives the files, proposes how to read them, and leads to the review.
 pub(super) async fn arrived(
     State(app): State<App>,
     Place(ship): Place<Name>,
@@ -41,7 +42,7 @@ pub(super) async fn arrived(
             allowed = true;
             continue;
         }
-        // The token stands before the files in the form.
+        // The token precedes the files in the form.
         checked(&app, None).or_else(|refused| if allowed { Ok(()) } else { Err(refused) })?;
         let name = plain_name(field.file_name().unwrap_or_default())?;
         if files.len() >= app.limits().upload_files || files.iter().any(|(known, _)| *known == name)
@@ -58,7 +59,7 @@ pub(super) async fn arrived(
     Ok(then(&format!("/ships/{}/uploads/{id}", &*ship)))
 }
 
-/// The last part of a path, without what no file of a folder may be called.
+/// Returns the last part of a path, without names that a file in a folder must not have.
 fn plain_name(path: &str) -> Result<String> {
     let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
     let plain = !name.is_empty() && name.len() <= 200 && !name.starts_with('.');
@@ -91,13 +92,14 @@ async fn proposed_for(
     Ok(Draft { folder, files, proposed: proposed.into() })
 }
 
-/// A draft's upload as it is read now; its files are links to its own.
+/// Returns a draft's upload as it is read now; its files are hard links to those of the draft.
 fn uploaded(draft: &Draft, app: &App) -> Result<Upload> {
     let Proposed { manifest, diagnose, .. } = draft.proposed();
     let linked = |(name, sha256): &(String, String)| {
         let path = app.spool().temporary().map_err(unwritten)?.into_temp_path();
         std::fs::remove_file(&path).map_err(unwritten)?;
         let from = draft.folder.path().join(name);
+        // A file system without hard links gets copies.
         std::fs::hard_link(&from, &path)
             .or_else(|_| std::fs::copy(&from, &path).map(drop))
             .map_err(unwritten)?;
@@ -128,7 +130,7 @@ pub(super) async fn shown(
     Ok(answer(upload::mapping(&shell(&app), &draft.proposed(), &previews.await?)?))
 }
 
-/// Takes what was corrected, and keeps the trials where that is wished.
+/// Applies the corrections of the form, and stores the trials if it says so.
 pub(super) async fn corrected(
     State(app): State<App>,
     Place((ship, id)): Place<(Name, Id)>,

@@ -1,4 +1,4 @@
-//! Pages to look at.
+//! Pages without actions.
 
 use axum::extract::State;
 use axum::response::Response;
@@ -25,6 +25,7 @@ pub(super) async fn fleet(State(app): State<App>, Params(query): Asked) -> Resul
 pub(super) async fn ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Response> {
     let gathered = pages::ship::gather(app.archive(), shell(&app), &ship).await?;
     let beginning = pages::beginning(shell(&app), &ship, "/")?;
+    // The similar ships take a ranking of the zoo: the page begins before they are known.
     let page = async move {
         let zoo = app.zoo_shown(gathered.vessel()).await?;
         let similar = gathered.similar(app.archive(), zoo).await?;

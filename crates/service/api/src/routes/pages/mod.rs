@@ -1,4 +1,4 @@
-//! Pages for people: `sistership_pages` writes them, the routes here look and act.
+//! Routes of the pages for people, which `sistership_pages` renders.
 
 mod act;
 mod answer;
@@ -15,7 +15,7 @@ use axum::routing::{get, post};
 use crate::app::App;
 use crate::config::Limits;
 
-/// What a form but an upload may be.
+/// Size of a form other than an upload, bytes.
 const FORM_BYTES: usize = 256 << 10;
 
 pub(super) fn routes(limits: &Limits) -> Router<App> {
@@ -61,6 +61,7 @@ pub(super) fn routes(limits: &Limits) -> Router<App> {
         .route("/settings", post(people::settings))
         .route("/audit", get(people::audit))
         .layer(DefaultBodyLimit::max(FORM_BYTES));
+    // Uploads have a limit of their own.
     let upload = Router::new()
         .route("/ships/{ship}/upload", get(draft::choose).post(draft::arrived))
         .layer(DefaultBodyLimit::max(limits.upload_bytes));

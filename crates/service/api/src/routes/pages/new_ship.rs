@@ -1,4 +1,4 @@
-//! A new ship, typed in.
+//! The form of a new ship.
 
 use axum::extract::State;
 use axum::response::Response;

@@ -1,4 +1,4 @@
-//! Signing in at an OpenID provider, and linking an account with it.
+//! Sign-in at an OpenID provider, and linking of an account with it.
 
 use crate::accounts::{Outcome, cookie};
 use axum::extract::{Request, State};
@@ -17,10 +17,10 @@ use crate::web::Params;
 use crate::web::form::{PageForm, shell};
 use crate::web::guard::origin_of;
 
-/// The cookie of a sign-in that is under way.
+/// Cookie of a sign-in in progress.
 const TICKET: &str = "sistership_oidc";
 
-/// Goes to the provider.
+/// Redirects to the provider.
 pub(super) async fn begin(
     State(app): State<App>,
     Params(query): Params<Vec<(String, String)>>,
@@ -33,7 +33,7 @@ pub(super) async fn begin(
     }
 }
 
-/// Comes back from the provider.
+/// Receives the browser from the provider.
 pub(super) async fn callback(State(app): State<App>, request: Request) -> Result<Response> {
     let (parts, _) = request.into_parts();
     let from = origin_of(&parts.extensions);
@@ -46,10 +46,11 @@ pub(super) async fn callback(State(app): State<App>, request: Request) -> Result
         Ok(Outcome::Linked) => then("/account?done=link"),
         Err(problem) => failed(&app, "/", problem)?,
     };
+    // The ticket has served its purpose: its cookie is removed, also after a refusal.
     Ok(with_ticket(&app, response, "", 0))
 }
 
-/// Begins to link one's own account with the provider.
+/// Begins to link the user's own account with the provider.
 pub(super) async fn link(State(app): State<App>, PageForm(_): PageForm) -> Result<Response> {
     let Acting { principal, .. } = who()?;
     if !matches!(principal.kind, Kind::Session { .. }) {
@@ -63,7 +64,8 @@ pub(super) async fn link(State(app): State<App>, PageForm(_): PageForm) -> Resul
     Ok(with_ticket(&app, page, &begun.ticket, LIFETIME_S))
 }
 
-/// The page to sign in at, which says what was wrong; a failure of this server is none of that.
+/// Returns the sign-in page with the error; a failure of this server is an error of the request
+/// instead.
 fn failed(app: &App, next: &str, problem: Problem) -> Result<Response> {
     match problem.status() {
         StatusCode::INTERNAL_SERVER_ERROR | StatusCode::NOT_FOUND => Err(problem),

@@ -1,4 +1,4 @@
-//! Pages of users, keys and the audit, and how people sign in and out.
+//! Pages of users, keys and the audit, and signing in and out.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use sistership_web_support::host;
 
 type Asked = Params<Vec<(String, String)>>;
 
-/// A day, µs.
+/// One day, µs.
 const DAY: i64 = 86_400_000_000;
 
 pub(super) async fn sign_in(State(app): State<App>, Params(query): Asked) -> Result<Response> {
@@ -31,8 +31,8 @@ pub(super) async fn sign_in(State(app): State<App>, Params(query): Asked) -> Res
     sign_in_page(&app, own_place(query.text("next")), None)
 }
 
-/// Begins a session. The form has no session whose token it could send, so the browser must say
-/// that it is of this server: nobody is to be signed in by another site under another name.
+/// Begins a session. The form has no session whose token it could send, so the browser must state
+/// that the form is of this server: another site must not sign anybody in under another name.
 pub(super) async fn signed_in(State(app): State<App>, request: Request) -> Result<Response> {
     let addressed = host::addressed(&request)?;
     if !host::is_same_origin(request.headers(), addressed.as_ref())? {
@@ -44,6 +44,7 @@ pub(super) async fn signed_in(State(app): State<App>, request: Request) -> Resul
     let PageForm(form) = PageForm::from_request(request, &app).await?;
     let (name, password) = (form.needed("name")?, form.needed("password")?);
     let next = own_place(form.text("next"));
+    // The request has no caller yet: the audit names the user who signs in.
     let actor = sistership_store::Actor::new(name, from.as_str());
     match actor.acting(app.accounts().sign_in(name, password, &from)).await {
         Ok(secret) => Ok(with_session(then(next), &secret, secure)),
@@ -54,7 +55,7 @@ pub(super) async fn signed_in(State(app): State<App>, request: Request) -> Resul
     }
 }
 
-/// The page to sign in at, with what was wrong with the last attempt.
+/// Returns the sign-in page, with the error of the last attempt.
 pub(super) fn sign_in_page(app: &App, next: &str, why_not: Option<&str>) -> Result<Response> {
     let place = serde_urlencoded::to_string([("next", next)]).unwrap_or_default();
     let place = format!("/sign-in/oidc?{place}");
@@ -63,19 +64,21 @@ pub(super) fn sign_in_page(app: &App, next: &str, why_not: Option<&str>) -> Resu
     Ok(answer(people::sign_in(shell(app), next, why_not, provider)?))
 }
 
-/// With the cookie of a session that begins; `secure` where the browser's connection is.
+/// Adds the cookie of a new session; `secure` if the browser's connection uses TLS.
 pub(super) fn with_session(response: Response, secret: &str, secure: bool) -> Response {
     let (age, secure) = (SESSION.as_secs(), if secure { "; Secure" } else { "" });
     with_cookie(response, &format!("{COOKIE}={secret}; Max-Age={age}; Path=/{secure}"))
 }
 
-/// What keeps the cookie from connections without TLS, where the browser itself has one.
+/// Returns true if the browser's connection uses TLS, so that its cookie is kept from connections
+/// without.
 fn is_secure(headers: &HeaderMap) -> bool {
     let origin = headers.get(header::ORIGIN).and_then(|value| value.to_str().ok());
     origin.is_some_and(|origin| origin.starts_with("https://"))
 }
 
 pub(super) async fn sign_out(State(app): State<App>, PageForm(_): PageForm) -> Result<Response> {
+    // Keys have no session to end; the cookie is removed in any case.
     if let Kind::Session { sha256, .. } = &who()?.principal.kind {
         app.store().sessions().end(sha256).await?;
         app.accounts().forget();
@@ -101,7 +104,7 @@ pub(super) async fn account(State(app): State<App>, Params(query): Asked) -> Res
     Ok(answer(people::account(shell(&app), &principal.name, roles, known, notice)?))
 }
 
-/// Changes one's own password, which signs out everywhere, and in here again.
+/// Changes the user's own password, which ends all sessions, and begins a new one here.
 pub(super) async fn password(
     State(app): State<App>,
     headers: HeaderMap,
@@ -112,6 +115,7 @@ pub(super) async fn password(
         return Err(Problem::invalid("old", "only who has signed in has a password"));
     }
     let (old, new) = (form.needed("old")?, form.needed("new")?);
+    // A session alone must not be enough to change the password.
     app.accounts().verified(&principal.name, old, &origin).await.map_err(
         |problem| match problem.status() {
             StatusCode::UNAUTHORIZED => Problem::invalid("old", "is not your password"),
@@ -127,7 +131,7 @@ pub(super) async fn users(State(app): State<App>, Params(query): Asked) -> Resul
     Ok(answer(people::users(app.archive(), shell(&app), &Fields::from(query)).await?))
 }
 
-/// Roles as a person writes them, with spaces between.
+/// Parses roles that a person has written, separated by spaces.
 fn roles(form: &Fields) -> Result<Vec<Grant>> {
     let words = form.text("roles").unwrap_or_default().split_whitespace();
     let read = |word: &str| word.parse().map_err(|message| Problem::invalid("roles", message));
@@ -177,14 +181,16 @@ pub(super) async fn enable(
     Ok(then("/users"))
 }
 
-/// Makes a key, and shows it: the only page that ever does.
+/// Creates a key, and shows it: no other page ever does.
 pub(super) async fn make_key(State(app): State<App>, PageForm(form): PageForm) -> Result<Response> {
     let days = form.text("days").map(|_| form.whole("days")).transpose()?;
+    // Saturating, as the number of days comes from a person.
     let expires_us = days.map(|days| app.store().now_us().saturating_add(days.saturating_mul(DAY)));
     let (title, user) = (form.needed("title")?, form.text("user").map(str::to_owned));
     let (key, row) = app.accounts().make_key(title, user, expires_us, &roles(&form)?).await?;
     let KeyRow { title, .. } = row;
     let mut shown = answer(people::new_key(shell(&app), &title, key.as_str())?);
+    // Neither the browser nor a proxy may store the key.
     shown.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     Ok(shown)
 }

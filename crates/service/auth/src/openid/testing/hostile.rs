@@ -1,5 +1,5 @@
-//! A provider that says what it is told to. It signs its own tokens, by ring and not by the
-//! library that reads them, and keeps to the protocol where nobody has told it otherwise.
+//! A provider whose answers a test can falsify. It signs its own tokens, by ring and not by the
+//! library that reads them, and follows the protocol unless a test changes that.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -13,10 +13,10 @@ use serde_json::{Map, Value, json};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 
-/// What a client is known by: its name and its secret.
+/// Name and secret of the client.
 pub const CLIENT: (&str, &str) = ("ships", "a secret: with signs & spaces");
 
-/// A provider on this machine.
+/// A provider on this machine with configurable answers.
 #[derive(Debug)]
 pub struct Hostile {
     /// Its issuer.
@@ -24,41 +24,41 @@ pub struct Hostile {
     told: Arc<Mutex<Told>>,
 }
 
-/// What it does, and what was asked of it.
+/// Behaviour of the provider, and the requests to it.
 #[derive(Debug)]
 pub struct Told {
     /// The keys by name.
     keys: BTreeMap<String, EcdsaKeyPair>,
-    /// Those that it publishes.
+    /// Names of the published keys.
     pub published: Vec<String>,
-    /// The key that it signs with.
+    /// Name of the key that signs.
     pub signs: String,
-    /// What the next token's head has instead; null where it lacks it.
+    /// Replaced fields of the next token's header; null removes a field.
     pub head: Map<String, Value>,
-    /// The same of its claims.
+    /// Replaced claims of the next token; null removes a claim.
     pub claims: Map<String, Value>,
-    /// What is done to the next token at the end.
+    /// Final modification of the next token.
     pub mangle: fn(String) -> String,
-    /// What the discovery document has instead.
+    /// Replaced fields of the discovery document.
     pub discovery: Map<String, Value>,
-    /// What it tells of whoever has signed in.
+    /// Answer of the UserInfo endpoint.
     pub described: Value,
-    /// Whether it checks what was promised by PKCE.
+    /// True if it checks PKCE.
     pub checks_pkce: bool,
-    /// Whether it says nothing but 503.
+    /// True if it answers every request with 503.
     pub down: bool,
-    /// Nonce and challenge by code; each code is good once.
+    /// Nonce and challenge by code; each code can be used once.
     codes: HashMap<String, (String, String)>,
-    /// Requests by path.
+    /// Number of requests by path.
     pub asked: HashMap<String, usize>,
-    /// How the client has shown who it is.
+    /// Method by which the client has authenticated itself.
     pub client_by: &'static str,
 }
 
-/// The time, seconds of the Unix epoch.
+/// Returns the time, seconds of the Unix epoch.
 ///
 /// # Panics
-/// Where the clock is before that.
+/// Panics if the clock is before the epoch.
 pub fn now_s() -> i64 {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)
@@ -79,13 +79,14 @@ fn encoded(bytes: impl AsRef<[u8]>) -> String {
 }
 
 impl Told {
-    /// Makes a key, which is not published yet.
+    /// Creates a key, which is not published yet.
     pub fn add_key(&mut self, name: &str) {
         self.keys.insert(name.to_owned(), key());
     }
 
     fn key_set(&self) -> Value {
         let known = |name: &String| {
+            // An uncompressed point: one byte of format, then 32 bytes each of x and y.
             let point = self.keys[name].public_key().as_ref();
             json!({ "kty": "EC", "crv": "P-256", "use": "sig", "alg": "ES256", "kid": name,
                 "x": encoded(&point[1..33]), "y": encoded(&point[33..]) })
@@ -100,6 +101,7 @@ impl Told {
         let head = changed(head, &self.head).to_string();
         let signed =
             format!("{}.{}", encoded(head), encoded(changed(claims, &self.claims).to_string()));
+        // A JSON Web Signature covers the encoded header and claims, joined by a dot.
         let signature = self.keys[&self.signs]
             .sign(&SystemRandom::new(), signed.as_bytes())
             .expect("a provider for tests");
@@ -114,7 +116,7 @@ impl Told {
         changed(about, &self.discovery)
     }
 
-    /// The answer to a request.
+    /// Returns status and body of the answer to a request.
     fn answer(&mut self, url: &str, path: &str, head: &str, body: &str) -> (u16, String) {
         *self.asked.entry(path.to_owned()).or_default() += 1;
         if self.down {
@@ -139,6 +141,7 @@ impl Told {
             Some(by) => by,
             None => return refused("invalid_client"),
         };
+        // Removed, not only read: a second use of a code is refused.
         let Some((nonce, challenge)) = self.codes.remove(&form["code"]) else {
             return refused("invalid_grant");
         };
@@ -157,8 +160,9 @@ impl Told {
     }
 }
 
-/// How a client shows that it is the one that is known, if it does.
+/// Returns the method by which a client has authenticated itself, if it has.
 fn shown(head: &str, form: &HashMap<String, String>) -> Option<&'static str> {
+    // Name and secret of the client in form encoding; the request's head was set to lower case.
     let basic = BASE64_STANDARD.encode("ships:a+secret%3A+with+signs+%26+spaces").to_lowercase();
     let (id, secret) = (form.get("client_id"), form.get("client_secret"));
     match (id.map(String::as_str), secret.map(String::as_str)) {
@@ -181,10 +185,10 @@ fn changed(mut value: Value, changes: &Map<String, Value>) -> Value {
 }
 
 impl Hostile {
-    /// Starts one.
+    /// Starts the provider.
     ///
     /// # Panics
-    /// Where it cannot.
+    /// Panics if it cannot start.
     pub async fn start() -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").await.expect("a provider for tests");
         let url = format!("http://{}", listener.local_addr().expect("a provider for tests"));
@@ -214,18 +218,19 @@ impl Hostile {
         hostile
     }
 
-    /// What it does.
+    /// Returns the behaviour, for reading and changing.
     ///
     /// # Panics
-    /// Where it has panicked itself.
+    /// Panics if the provider has panicked.
     pub fn told(&self) -> MutexGuard<'_, Told> {
         self.told.lock().expect("a provider for tests")
     }
 
-    /// Lets the person through who asks at this address; with what the browser is sent back.
+    /// Accepts the person at this authorization URL; returns the query with which the browser is
+    /// sent back.
     ///
     /// # Panics
-    /// Where the address does not ask as it must.
+    /// Panics if the URL is not a valid request.
     pub fn lets_through(&self, place: &str) -> String {
         let (_, query) = place.split_once("/authorize?").expect("its own endpoint");
         let asked: HashMap<String, String> =
@@ -259,6 +264,7 @@ async fn served(mut stream: TcpStream, url: String, told: Arc<Mutex<Told>>) -> s
         let head = head.to_lowercase();
         let length = head.split_once("content-length: ").map_or("0", |(_, rest)| rest);
         let length: usize = length.lines().next().unwrap_or_default().parse().unwrap_or(0);
+        // The rest of the body is still to come.
         if body.len() < length {
             continue;
         }

@@ -1,4 +1,4 @@
-//! For tests: a provider that says what it is told to, and one that others have written.
+//! Providers for tests: one with configurable answers, and an independent implementation.
 
 mod hostile;
 mod real;
@@ -8,7 +8,7 @@ pub use real::RealProvider;
 
 use crate::openid::settings::Settings;
 
-/// Settings with the secret of a client, as if a file had held it.
+/// Returns settings with a client secret, as if it were read from a file.
 #[must_use]
 pub fn with_secret(settings: Settings, secret: &str) -> Settings {
     Settings { client_secret: Some(secret.to_owned()), ..settings }

@@ -1,11 +1,12 @@
-//! `oidc-provider` of npm (MIT), which the OpenID Foundation has certified, as a process of its
-//! own: what it asks for and sends is its authors' reading of the standard, not ours.
+//! `oidc-provider` of npm (MIT), certified by the OpenID Foundation, as a separate process: an
+//! interpretation of the standard that is independent of this crate.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-/// A certified provider, which lets anybody in under any name. It is killed when this is dropped.
+/// A certified provider, which accepts any person under any name. It is killed when this is
+/// dropped.
 #[derive(Debug)]
 pub struct RealProvider {
     process: Child,
@@ -14,15 +15,15 @@ pub struct RealProvider {
 }
 
 impl RealProvider {
-    /// The secret by which it knows the client `ships`.
+    /// Secret of the client `ships`.
     pub const SECRET: &str = "of the test & no other";
 
-    /// Starts one for a server at a URL; none, said plainly, where it is not installed (`npm ci` in
-    /// `tests/npm`).
+    /// Starts a provider for a server at a URL; returns none, with a message, if it is not
+    /// installed (`npm ci` in `tests/npm`).
     ///
     /// # Panics
-    /// Where it is not installed although `SISTERSHIP_REQUIRE_OPENID=1` says that it must be, or
-    /// where it does not start.
+    /// Panics if it is not installed although `SISTERSHIP_REQUIRE_OPENID=1` requires it, or if it
+    /// does not start.
     pub fn start(url: &str) -> Option<Self> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/npm");
         if !folder.join("node_modules/oidc-provider").is_dir() {

@@ -1,4 +1,4 @@
-//! Where a ship under way is, as JSON.
+//! Answers of a session as JSON.
 
 use serde_json::{Map, Value, json};
 use sistership_simulation::{StateVector, Trajectory};
@@ -11,10 +11,10 @@ use crate::predictions::outside_trials::with_outside_trials;
 use crate::predictions::track::{COLUMNS, columns, with_share};
 
 impl Session {
-    /// Sails steps under orders, `most` at most; answers with them column by column.
+    /// Simulates steps under orders, at most `most`; returns the samples column by column.
     ///
     /// # Errors
-    /// As [`Session::take`].
+    /// Returns an error that names the invalid field of the request, or the missing memory.
     pub fn sail(&mut self, request: &StepsRequest, most: usize) -> Result<Value> {
         self.take(request, most)?;
         let steps = (0..request.count()).map_while(|_| self.step(request.dt_s.get()));
@@ -22,7 +22,7 @@ impl Session {
         Ok(self.answer(&samples))
     }
 
-    /// Samples column by column, with all that is told of them.
+    /// Returns samples column by column, with band, stop and range of the trials.
     pub(crate) fn answer(&self, samples: &[Sample]) -> Value {
         let track = track(samples);
         let answer = json!({
@@ -35,11 +35,12 @@ impl Session {
         with_outside_trials(with_share(answer, &self.ship, &track), &self.uncovered)
     }
 
-    /// Of the steps that a request asks for, of which some are `sailed`, the next ones, row by row,
-    /// `together` at most; and whether they are the last. With the first its orders are taken.
+    /// Simulates the next rows of a request, at most `together`; returns them, and true if they are
+    /// the last. The second argument is the number of steps that are done; the orders are applied
+    /// with the first.
     ///
     /// # Errors
-    /// As [`Session::take`].
+    /// Returns an error that names the invalid field of the request, or the missing memory.
     pub fn rows(
         &mut self,
         request: &StepsRequest,
@@ -54,6 +55,7 @@ impl Session {
         let mut rows = Vec::new();
         while rows.len() < left.min(together) {
             let sample = self.step(request.dt_s.get());
+            // The last row repeats the present state with the reason of the stop.
             let stopped = sample.is_none();
             rows.push(self.row(&sample.unwrap_or_else(|| self.sample())));
             if stopped {
@@ -64,7 +66,7 @@ impl Session {
         Ok((rows, ended))
     }
 
-    /// Where it is now, under which orders.
+    /// Returns the present state and orders.
     pub fn view(&self) -> Value {
         let mut view = self.row(&self.sample());
         view["orders"] = json!({ "delta_rad": self.order.delta_rad, "n_rps": self.order.n_rps });
@@ -91,10 +93,12 @@ impl Session {
             .map_or(Value::Null, |stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }))
     }
 
-    /// The band over samples, by its ends and columns; how many draws there were, and are left.
+    /// Returns the band over samples, by its ends and columns, with the number of draws at the
+    /// start and now.
     fn band_of(&self, samples: &[Sample]) -> Option<Value> {
         let beside = self.beside.as_ref()?;
         let column = |end: usize, place: usize| {
+            // Null where no draw is left.
             let value = |sample: &Sample| sample.band.map(|band| band[end][place]);
             samples.iter().map(value).collect::<Vec<_>>()
         };
@@ -103,12 +107,13 @@ impl Session {
             Value::Object(all.into_iter().collect())
         });
         band["drawn"] = json!(beside.drawn);
+        // Draws that have left the physical range no longer count in the band.
         band["sailing"] = json!(beside.sisters.states().count());
         Some(band)
     }
 }
 
-/// Both ends of a band.
+/// Object with both ends of a band.
 fn ends(of: impl Fn(usize) -> Value) -> Value {
     let [(low, _), (high, _)] = ENDS;
     json!({ low: of(0), high: of(1) })

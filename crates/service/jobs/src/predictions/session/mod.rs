@@ -1,7 +1,7 @@
-//! A ship under way: it sails on as orders come, and is asked where it is.
+//! Sessions: a simulation that is continued step by step under orders.
 //!
-//! `request` reads, `under_way` sails, `sample` is where it is at an instant, `answer` says so,
-//! `table` keeps those who sail for others than who asks first.
+//! `request` has the requests, `start` creates a session, `under_way` simulates, `sample` is the
+//! state at an instant, `answer` is its JSON, and `table` holds the sessions of a server.
 
 mod answer;
 mod request;

@@ -1,4 +1,4 @@
-//! What is asked of a session.
+//! Requests of sessions.
 
 use std::collections::BTreeMap;
 
@@ -11,31 +11,31 @@ use utoipa::ToSchema;
 
 use crate::predictions::inputs::InitialState;
 
-/// A ship that is to be under way.
+/// Request for a new session.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SessionRequest {
     /// `ship` (its champion), `ship/number` or `ship/alias`.
     #[schema(inline)]
     pub model: ModelName,
-    /// Where it is, and how it moves over the ground; straight ahead to the north at the model's
-    /// approach speed where absent.
+    /// Position and motion over the ground; by default straight ahead to the north at the model's
+    /// approach speed.
     pub(crate) start: Option<InitialState>,
-    /// Its rudder angle at the start, positive to starboard.
+    /// Rudder angle at the start, positive to starboard.
     #[serde(default)]
     pub(crate) delta_rad: f64,
-    /// Water depth for laws that know it, m; deep where absent.
+    /// Water depth for laws with a depth, m; deep water by default.
     #[schema(inline)]
     pub(crate) depth_m: Option<Positive>,
     /// A steady current.
     pub(crate) current: Option<CurrentRequest>,
     /// A steady wind.
     pub(crate) wind: Option<WindRequest>,
-    /// Models drawn from the posterior of a refined one, which sail beside it and give the band;
-    /// none where absent.
+    /// Number of models drawn from the posterior of a refined model, which are simulated in
+    /// parallel and give the band; by default none.
     #[schema(inline)]
     pub(crate) draws: Option<DrawCount>,
-    /// What the draws follow from; 1 where absent.
+    /// Seed of the draws; default 1.
     pub(crate) seed: Option<u64>,
 }
 
@@ -45,7 +45,7 @@ pub struct SessionRequest {
 pub struct CurrentRequest {
     #[schema(inline)]
     speed_m_s: WaterSpeed,
-    /// Where it goes, clockwise from north.
+    /// Direction to which it flows, clockwise from north.
     towards_rad: f64,
 }
 
@@ -55,12 +55,12 @@ pub struct CurrentRequest {
 pub struct WindRequest {
     #[schema(inline)]
     speed_m_s: WindSpeed,
-    /// Where it comes from, clockwise from north.
+    /// Direction from which it comes, clockwise from north.
     from_rad: f64,
 }
 
 impl SessionRequest {
-    /// The surroundings that are asked for.
+    /// Wind, current and depth of the request.
     pub(super) fn environment(&self) -> Environment {
         Environment {
             wind_speed_m_s: self.wind.map(|wind| wind.speed_m_s.get()),
@@ -71,14 +71,14 @@ impl SessionRequest {
 }
 
 impl CurrentRequest {
-    /// To north and east, m/s.
+    /// Components to north and east, m/s.
     pub(super) fn parts(self) -> [f64; 2] {
         parts(self.speed_m_s.get(), self.towards_rad)
     }
 }
 
 impl WindRequest {
-    /// From north and east, m/s.
+    /// Components from north and east, m/s.
     pub(super) fn parts(self) -> [f64; 2] {
         parts(self.speed_m_s.get(), self.from_rad)
     }
@@ -89,36 +89,36 @@ fn parts(speed: f64, direction_rad: f64) -> [f64; 2] {
     [speed * cos, speed * sin]
 }
 
-/// Steps to sail.
+/// Steps to simulate.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StepsRequest {
-    /// What the bridge orders from now on; as before where absent.
+    /// Orders of the bridge from now on; by default unchanged.
     #[serde(default)]
     pub(super) orders: OrdersRequest,
-    /// The length of a step, s; a long one is integrated in parts.
+    /// Length of a step, s; a long one is integrated in several parts.
     #[schema(inline)]
     pub(super) dt_s: StepLength,
-    /// How many; 1 where absent.
+    /// Number of steps; default 1.
     #[schema(inline)]
     pub(super) steps: Option<StepCount>,
 }
 
-/// Orders; what is not given stays as it is.
+/// Orders; those that are not given stay unchanged.
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrdersRequest {
-    /// The rudder angle that the steering gear follows, within its limit and at its rate.
+    /// Ordered rudder angle, which the steering gear follows within its limit and at its rate.
     pub(super) delta_rad: Option<f64>,
     /// Propeller revolutions.
     pub(super) n_rps: Option<f64>,
-    /// Other inputs of the law by their names, such as a thruster's.
+    /// Other inputs of the law by name, such as that of a thruster.
     #[serde(default)]
     pub(super) inputs: BTreeMap<String, f64>,
 }
 
 impl StepsRequest {
-    /// How many steps.
+    /// Number of steps.
     pub(super) fn count(&self) -> usize {
         usize::try_from(self.steps.unwrap_or_default().get()).unwrap_or(1)
     }

@@ -1,4 +1,4 @@
-//! The sessions of a server: few at a time, each somebody's own, ended when nobody asks.
+//! Sessions of a server: limited in number, each owned by one person or key, ended when idle.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -9,19 +9,19 @@ use serde_json::Value;
 use super::under_way::Session;
 use crate::predictions::error::{PredictError, Result};
 
-/// How many sessions there may be, and for how long.
+/// Limits of sessions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SessionLimits {
-    /// Of a server.
+    /// Number of sessions of a server.
     pub all: usize,
-    /// Of one person or key.
+    /// Number of sessions of one person or key.
     pub of_one: usize,
-    /// Without being asked until it ends.
+    /// Idle time after which a session ends.
     pub idle: Duration,
 }
 
 impl Default for SessionLimits {
-    /// A session with 200 draws of a law with 150 coefficients has about 1 MiB.
+    /// A session with 200 draws of a law with 150 coefficients takes about 1 MiB.
     fn default() -> Self {
         Self { all: 128, of_one: 16, idle: Duration::from_secs(600) }
     }
@@ -41,16 +41,16 @@ struct Entry {
     used: Instant,
 }
 
-/// A session that is there.
+/// Handle of an open session.
 #[derive(Debug, Clone)]
 pub struct Handle {
-    /// What sails: `model`, `version`, `sha256`, `law`.
+    /// Description of the model: `model`, `version`, `sha256`, `law`.
     pub about: Value,
     session: Arc<Mutex<Session>>,
 }
 
 impl Sessions {
-    /// None yet.
+    /// Creates an empty table.
     pub fn new(limits: SessionLimits) -> Self {
         Self { limits, ..Self::default() }
     }
@@ -58,29 +58,31 @@ impl Sessions {
     fn table(&self) -> MutexGuard<'_, HashMap<String, Entry>> {
         let mut table = self.table.lock().unwrap_or_else(PoisonError::into_inner);
         let idle = self.limits.idle;
+        // Idle sessions are removed at every access, so that they count against no limit.
         table.retain(|_, entry| entry.used.elapsed() < idle);
         table
     }
 
-    /// Ends those that nobody has asked for a while.
+    /// Ends idle sessions.
     pub fn tidy(&self) {
         drop(self.table());
     }
 
-    /// Whether somebody may have one more; asked before the work of making one.
+    /// Checks that an owner may open another session, before the work of creating one.
     ///
     /// # Errors
-    /// There are too many.
+    /// Returns an error if the limit of the owner or of the server is reached.
     pub fn room(&self, owner: &str) -> Result<()> {
         self.limits.room(&self.table(), owner)
     }
 
-    /// Keeps a session under an id.
+    /// Adds a session under an id.
     ///
     /// # Errors
-    /// There are too many.
+    /// Returns an error if the limit of the owner or of the server is reached.
     pub fn open(&self, id: &str, owner: &str, about: Value, session: Session) -> Result<Handle> {
         let mut table = self.table();
+        // Checked again under the lock: other sessions may have been opened since the first check.
         self.limits.room(&table, owner)?;
         let handle = Handle { about, session: Arc::new(Mutex::new(session)) };
         let entry = Entry { owner: owner.to_owned(), handle: handle.clone(), used: Instant::now() };
@@ -88,10 +90,10 @@ impl Sessions {
         Ok(handle)
     }
 
-    /// A session of somebody, who is known to use it now.
+    /// Returns a session of an owner, and marks it as used.
     ///
     /// # Errors
-    /// They have none of this id.
+    /// Returns an error if the owner has no session with this id.
     pub fn find(&self, id: &str, owner: &str) -> Result<Handle> {
         let mut table = self.table();
         let entry = table.get_mut(id).filter(|entry| entry.owner == owner);
@@ -100,17 +102,17 @@ impl Sessions {
         Ok(entry.handle.clone())
     }
 
-    /// Ends a session of somebody.
+    /// Ends a session of an owner.
     ///
     /// # Errors
-    /// They have none of this id.
+    /// Returns an error if the owner has no session with this id.
     pub fn close(&self, id: &str, owner: &str) -> Result<()> {
         self.find(id, owner)?;
         self.table().remove(id);
         Ok(())
     }
 
-    /// What somebody has, by id.
+    /// Lists the sessions of an owner by id, with their descriptions.
     pub fn of(&self, owner: &str) -> Vec<(String, Value)> {
         let table = self.table();
         let own = table.iter().filter(|(_, entry)| entry.owner == owner);
@@ -135,13 +137,14 @@ impl SessionLimits {
 }
 
 impl Handle {
-    /// Does something with the ship, unless another request has it.
+    /// Runs `work` on the session, unless another request uses it.
     ///
     /// # Errors
-    /// Another request has it, or `work` fails.
+    /// Returns an error if another request uses it, or the error of `work`.
     pub fn with<T>(&self, work: impl FnOnce(&mut Session) -> Result<T>) -> Result<T> {
         match self.session.try_lock() {
             Ok(mut session) => work(&mut session),
+            // A panic in an earlier request does not end the session.
             Err(TryLockError::Poisoned(poisoned)) => work(&mut poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(PredictError::SessionBusy),
         }
